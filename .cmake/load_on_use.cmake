@@ -3,7 +3,7 @@
 # core/base/shared_library.hpp. LIBRARY is an imported target, FILE its library where the target does not say.
 # A shared library with a name of its own (ELF's SONAME) is compiled against and not linked: FETTLE_<NAME>_NAME and FETTLE_<NAME>_PATH tell
 # SOURCE what to load. Any other, such as a static one, is linked, and without these macros SOURCE takes the functions as they are.
-option(FETTLE_LOAD_ON_USE "Load Ipopt, NLopt and libzip where they are first needed, not at every start" ON)
+option(FETTLE_LOAD_ON_USE "Load Ipopt, NLopt, libzip and cairo where they are first needed, not at every start" ON)
 
 # The library's file; empty if the target does not say.
 function(fettle_library_file library result)

@@ -14,8 +14,8 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 # What is linked is found by dpkg-shlibdeps; what is loaded where it is first needed (load_on_use.cmake) has to be named.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "coinor-libipopt1v5, libnlopt0, libassimp5, libzip4")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "coinor-libipopt1v5, libnlopt0, libassimp5, libzip4, libcairo2, fonts-dejavu-core")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-numpy, libcholmod3, libumfpack5, libspqr2, libopenblas0")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
-  "g++, cmake, libeigen3-dev, libtbb-dev, libnlopt-dev, libassimp-dev, zlib1g-dev, libzip-dev, libexpat1-dev, nlohmann-json3-dev, coinor-libipopt-dev, libsuitesparse-dev, pkg-config")
+  "g++, cmake, libeigen3-dev, libtbb-dev, libnlopt-dev, libassimp-dev, zlib1g-dev, libzip-dev, libcairo2-dev, libexpat1-dev, nlohmann-json3-dev, coinor-libipopt-dev, libsuitesparse-dev, pkg-config")
 include(CPack)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Makes docs/files.md, the reference of scene and design files, of their two schemas.
+"""Makes docs/files.md, the reference of scene, design and part files, from their schemas.
 
 Usage: generate_files_reference.py            writes docs/files.md beside this script
        generate_files_reference.py --check    exit code 1 if it is not what would be written (tests/docs_check asks so)
@@ -12,18 +12,23 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 REFERENCE = HERE / "files.md"
-SCHEMAS = (("Scene", "core/scene/scene.schema.json"), ("Design", "design/reading/design.schema.json"))
-HEAD = """# Files: scene and design
+SCHEMAS = (("Scene", "core/scene_files/scene.schema.json"), ("Design", "design/reading/design.schema.json"),
+           ("Part", "core/part_files/part.schema.json"))
+HEAD = """# Files: scene, design and part
 
-<!-- Made by docs/generate_files_reference.py of the two schemas: change those, then run it. -->
+<!-- Made by docs/generate_files_reference.py from the schemas: change those, then run it. -->
 
-Every key of the two files that people write, by the schemas that an editor can check them with
+Every key of the three files that people write. An editor can check them with the same schemas
 ({links}).
 What they mean together: [concepts.md](concepts.md); whole files: [examples/](../examples); how scenes are read, and the source paper's format:
-[core/scene/README.md](../core/scene/README.md). All other files: [interface.md](interface.md#files).
+[core/scene_files/README.md](../core/scene_files/README.md). All other files: [interface.md](interface.md#files).
 
 A key in **bold** is required; `outer.inner` is a key of an object inside. A length is a number in the file's `units`, or a text with a unit
-of its own: `"0.3mm"`. Unknown keys are refused, with the nearest known one.
+of its own: `"0.3mm"`. Any other number that has a dimension may also be such a text (`"2 N/mm"`, `"30deg"`). A text that begins with `=` is
+a formula of the scene's `variables` and, in a design, of its parameters: `"= bore - 2 * gap"`. A formula may contain `+ - * / ^ ( )`,
+`min max hypot abs sqrt sin cos tan asin acos atan atan2 exp log floor`, `if(a < b, x, y)` and `pi`. Dimensions are checked; a number without a
+unit beside a quantity is in the file's unit (angles: degrees). Numbers that no design can move (counts, time steps, tolerances of the solver)
+take formulas of constants only. An unknown key is refused, with the nearest known one.
 """
 
 
@@ -37,7 +42,7 @@ def quoted(value):
 
 
 class Reference:
-    """One schema as a chapter. Definitions with keys of their own become sections, others are told where they are used."""
+    """One schema as a chapter. Definitions with keys of their own become sections, others are described where they are used."""
 
     def __init__(self, name, schema):
         self.name, self.schema, self.lines = name, schema, []
@@ -63,7 +68,7 @@ class Reference:
             if self.has_section(definition):
                 return f"[{name.replace('_', ' ')}](#{self.anchor(name)})"
             return {"length": "length", "lengths": "3 lengths", "point": "3 lengths", "vector": "3 numbers", "positive": "number > 0",
-                    "not_negative": "number >= 0"}.get(name) or self.type_of(definition)
+                    "not_negative": "number >= 0", "number": "number"}.get(name) or self.type_of(definition)
         if "const" in schema:
             return quoted(schema["const"])
         if "enum" in schema:
@@ -122,7 +127,7 @@ class Reference:
         self.table(schema)
 
     def choices(self, schema):
-        """Keys of which one is wanted."""
+        """Keys of which one is expected."""
         return [key for branch in self.branches(schema) if "properties" not in branch for key in branch.get("required", [])]
 
     def more_keys(self, schema):

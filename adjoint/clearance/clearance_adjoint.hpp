@@ -55,7 +55,7 @@ struct SegmentGradient {
     Vector3 base_bar = Vector3::Zero();  ///< dual to phi_t in dR_t = [phi_t] R_t, the nodes' chart coordinates held
     std::array<Vector6, 2> node_bar{Vector6::Zero(), Vector6::Zero()};  ///< (position, rotation vector) of nodes `segment`, `segment` + 1
 };
-/// Of a witness during the motion; nothing if the distance there is 0. Contract: witness.step >= 0, body is a or b.
+/// The derivative at a witness during the motion; nothing if the distance there is 0. Contract: witness.step >= 0, body is a or b.
 std::optional<SegmentGradient> segment_gradient(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int a, int b,
                                                 const core::clearance::Witness& witness, int body);
 

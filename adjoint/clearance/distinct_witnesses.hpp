@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Of many witnesses of one pair of bodies the few that say most about how its least distance can change.
+/// Chooses, among many witnesses of one pair of bodies, the few that say most about how its least distance can change.
 ///
 /// Each witness is a distance of its own, d_i, and the clearance is the least of them: it changes at most as any of them does,
 ///   clearance(p) <= d_i(p),   and to first order   clearance(p + dp) = min_i (d_i + d_i' dp).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How the nodes inside a step's path move with the step's ends, as far as that is known. The first and the last node are the ends. Of the
-/// others, two kinds are a function of the ends, or as good as one:
+/// How the nodes inside a step's path move with the step's ends, as far as that is known. The first and the last node are the ends. Two
+/// kinds of the others are a function of the ends, or as good as one:
 /// - where a prescribed motion changes inside the step (its table, its stop: core/stepper/prescribed_path.hpp) the path has a node, and a
 ///   body all of whose coordinates are prescribed by curves is there where they say. With the rate it moves by the share of the step's
 ///   running time that has passed, with the start as it is, the offset by the table being along the world's axes;
@@ -20,11 +20,11 @@
 
 namespace fettle::adjoint::clearance {
 
-/// Of a node's chart coordinates (position, rotation vector), entry by entry: d(coordinate) = (1 - share) d(start's) + share d(end's), the
-/// start's rotation vector being 0.
+/// The derivative of a node's chart coordinates (position, rotation vector), entry by entry: d(coordinate) = (1 - share) d(start's) + share
+/// d(end's), the start's rotation vector being 0.
 using NodeShare = Vector6;
 
-/// Of bodies a and b at node k of step t; nothing if it is not known. Contract: 0 <= k < nodes of the step.
+/// How bodies a and b move at node k of step t; nothing if it is not known. Contract: 0 <= k < nodes of the step.
 std::optional<std::array<NodeShare, 2>> node_shares(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
                                                     int k, int a, int b);
 

@@ -58,7 +58,7 @@ AreaChange areas_tangent(const core::geometry::Mesh& mesh, const Matrix3X& verti
 
 core::contact::ContactAreas areas_of_contacts(const core::model::Model& model, const std::vector<core::kinematics::Pose>& poses) {
     if (!model.area_weighted) return {};
-    return contact_areas(model, core::contact::find_candidates(model, poses, 0), poses);
+    return core::contact::contact_areas(model, core::ccd::find_candidates(model, poses, 0), poses);
 }
 
 void add_weight_gradient(const std::vector<AreaShare>& shares, double weight_bar, std::vector<AreaChange>& areas_bar) {

@@ -10,7 +10,7 @@
 
 namespace fettle::adjoint::contact {
 
-/// Of one body: gradient in, or change of, Body::vertex_area and Body::edge_area. Empty: nothing is area-weighted.
+/// For one body: gradient in, or change of, Body::vertex_area and Body::edge_area. Empty: nothing is area-weighted.
 struct AreaChange {
     VectorX vertex, edge;
 };
@@ -23,7 +23,7 @@ AreaChange areas_tangent(const core::geometry::Mesh& mesh, const Matrix3X& verti
 /// The shares of a configuration's contacts; none if the model is not area-weighted.
 core::contact::ContactAreas areas_of_contacts(const core::model::Model& model, const std::vector<core::kinematics::Pose>& poses);
 
-/// Of one contact's weight.
+/// The derivative of one contact's weight.
 void add_weight_gradient(const std::vector<core::contact::AreaShare>& shares, double weight_bar, std::vector<AreaChange>& areas_bar);
 double weight_tangent(const std::vector<core::contact::AreaShare>& shares, const std::vector<AreaChange>& areas_dot);
 

@@ -30,7 +30,7 @@ struct DampedContacts {
 /// df_i/ddmin . v_i.
 struct DampingGradients {
     std::vector<std::vector<Matrix34>>& start_bar;
-    std::vector<std::vector<AreaChange>>& areas_bar;  ///< of no matter where nothing is area-weighted
+    std::vector<std::vector<AreaChange>>& areas_bar;  ///< irrelevant where nothing is area-weighted
     std::vector<ModelGradient>& model_bar;
 };
 void subtract_contact_damping_adjoint(const DampedContacts& at, const std::vector<std::vector<Vector6>>& lambda,

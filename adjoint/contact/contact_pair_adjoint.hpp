@@ -5,7 +5,7 @@
 /// With x = c/eps, m = x (2 - x), m' = dm/dc = 2 (1 - x)/eps:
 ///   dm/deps = -2 x (1 - x)/eps,   dm'/deps = (4 x - 2)/eps^2,
 /// and the forces f_i = factor weight (m b' 2 w_i r + b m' dc/dx_i) follow by the product rule. All is zero where m = 1.
-/// With g = d^2 - dmin^2, g_hat = (dmin + dhat)^2 - dmin^2 and a factor that hangs on dmin too,
+/// With g = d^2 - dmin^2, g_hat = (dmin + dhat)^2 - dmin^2 and a factor that depends on dmin too,
 ///   d(factor b)/ddmin = factor' b + factor (-2 dmin b' + 2 dhat db/dg_hat),   db/dg_hat = (g_hat - g)^2/g_hat - 2 (g_hat - g) ln(g/g_hat),
 /// and likewise with b' and db'/dg_hat = 2 ln(g/g_hat) - g_hat/g + 1 - (g_hat - g)(2/g_hat + 1/g).
 #pragma once
@@ -18,7 +18,7 @@ namespace fettle::adjoint::contact {
 
 /// Is the mollifier below 1, so that the potential depends on eps?
 inline bool is_mollified(const core::contact::ContactPair& pair) {
-    return pair.type == core::contact::PairType::edge_edge && core::contact::edge_cross_squared(pair.x) < pair.mollifier_eps;
+    return pair.type == core::geometry::PairType::edge_edge && core::contact::edge_cross_squared(pair.x) < pair.mollifier_eps;
 }
 
 /// df_i/deps (world) [N s^2/m^4 with the weight h^2]. Contract: is_mollified(pair).

@@ -24,7 +24,7 @@ struct ContactsAtPose {
 /// vertices_bar -= dr/dX and dmin_bar -= dr/ddmin for every seed s and body, with the motion lambda[s][body] = (dq, phi):
 ///   v_i = lambda_q + phi x R X_i,   dr/dX_i = R^T ((H v)_i - phi x f_i) + sum_j (df_j/deps . v_j) deps/dX_i.
 /// Contacts are visited once, with all seeds inside.
-/// @param areas_bar  [seed][body]: the areas' part is subtracted; of no matter where nothing is area-weighted
+/// @param areas_bar  [seed][body]: the areas' part is subtracted; irrelevant where nothing is area-weighted
 void subtract_contact_vertices_adjoint(const ContactsAtPose& at, const std::vector<std::vector<Vector6>>& lambda,
                                        std::vector<ModelGradient>& model_bar, std::vector<std::vector<AreaChange>>& areas_bar);
 

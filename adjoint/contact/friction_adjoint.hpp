@@ -6,11 +6,11 @@
 /// n the normal of the lag, lambda its normal force, p_a, p_b the material points in their bodies' frames, e = [p; 1]:
 ///   m = (P_a - P_slip,a) e_a - (P_b - P_slip,b) e_b,   s = (1 - n n^T) m,   nu = V_a e_a - V_b e_b,
 ///   r = F . nu,   F = mu lambda f0'(|s|)/|s| s.
-/// Of the lag, with r = sum w_i x_i the difference of the closest points at distance d, and interior parameters beta
+/// Derivatives of the lag, with r = sum w_i x_i the difference of the closest points at distance d, and interior parameters beta
 /// (geometry/distance.hpp):
 ///   A_a . dx = r_a . sum w_i dx_i + r . sum w'_a,i dx_i,   K dbeta = -A . dx,   dw_i = sum_a w'_a,i dbeta_a,
 ///   dp_a = sum (w_i dX_i + dw_i X_i),   dn = (1 - n n^T) (sum w_i dx_i + sum_a r_a dbeta_a) / d,
-///   lambda = -2 factor w m(c, eps) b'(d^2 - dmin^2) d,   which hangs on dmin too (contact_pair_adjoint.hpp).
+///   lambda = -2 factor w m(c, eps) b'(d^2 - dmin^2) d,   which depends on dmin too (contact_pair_adjoint.hpp).
 /// A contact's weight w is a multiplicity, which is constant, or follows from the areas (area_weights_adjoint.hpp): dlambda/dw = lambda/w.
 /// Derivatives are those of the features that were closest.
 #pragma once
@@ -42,7 +42,7 @@ struct FrictionAtPose {
 struct FrictionAdjoint {
     std::vector<std::vector<Matrix34>>& slip_reference_bar;
     std::vector<std::vector<Matrix34>>& lag_poses_bar;
-    std::vector<std::vector<AreaChange>>& areas_bar;  ///< of no matter where nothing is area-weighted
+    std::vector<std::vector<AreaChange>>& areas_bar;  ///< irrelevant where nothing is area-weighted
     std::vector<ModelGradient>& model_bar;            ///< vertices, coefficients, dmin
 };
 

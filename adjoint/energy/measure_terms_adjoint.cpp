@@ -195,7 +195,7 @@ double slip_dot(const StepEnd& at, const StepTangent& step, const Measure& m, co
     return out;
 }
 
-// Change of g' with all that it hangs on.
+// Change of g' with all that it depends on.
 double first_dot(const StepEnd& at, std::size_t k, const LawValue& law, double m_dot, double m_slip_dot, const ModelTangent& direction) {
     const MeasureTerm& term = at.problem.model->mechanism.terms[k];
     const MechanismTangent& dot = direction.mechanism;

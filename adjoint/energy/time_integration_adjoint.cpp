@@ -4,10 +4,10 @@
 #include <array>
 
 #include "fettle/adjoint/energy/damping_adjoint.hpp"
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/energy/damping_moments.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::adjoint::energy {
 namespace {
@@ -58,7 +58,7 @@ class Balance {
 public:
     Balance(const Body& body, const Matrix3& R) : body_(body), R_(R), factor_(free_part(body, R)) {}
 
-    // @param loads  <N M, unit motions> and what acts besides.  @param held  prescribed accelerations, others of no matter
+    // @param loads  <N M, unit motions> and what acts besides.  @param held  prescribed accelerations, others irrelevant
     Vector6 accelerations(const Vector3& omega, const Vector6& loads, const Vector6& held) const {
         Vector6 known = held;
         mask(known, false);
@@ -93,7 +93,7 @@ private:
 
     const Body& body_;
     Matrix3 R_;
-    SymmetricFactor factor_;
+    core::linear::SymmetricFactor factor_;
 };
 
 // Everything that newmark_rates comes by.

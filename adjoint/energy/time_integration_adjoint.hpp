@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What Newmark's steps and the second-order integrators' torques hang on (core/energy/time_integration.hpp), reverse and forward. All
+/// What Newmark's steps and the second-order integrators' torques depend on (core/energy/time_integration.hpp), reverse and forward. All
 /// are smooth functions of the entries of 3 x 4 matrices; derivatives are entry by entry.
 ///
 /// Newmark's end rates: with N = 4 (P' - P - h V)/h^2 - A, R, R' the rotations of P, P', the axial vectors of V R^T and A R^T giving

@@ -4,7 +4,7 @@
 /// <M_bar, tangent(X_dot)> = <adjoint(M_bar), X_dot> with <A, B> = sum_ij A_ij B_ij.
 ///
 /// Accuracy: terms of size |X|^5 cancel for a part far from the origin, in the moments and here. Shift the vertices to the body's
-/// reference point c first (docs/method.md section 2; the derivative in X - c is the derivative in X, as c is fixed).
+/// reference point c first (docs/method/bodies.md#mass; the derivative in X - c is the derivative in X, as c is fixed).
 #pragma once
 
 #include <vector>
@@ -43,12 +43,13 @@ void capped_solid_moments_adjoint(const Matrix3X& vertices, const std::vector<co
 Matrix4 capped_solid_moments_tangent(const Matrix3X& vertices, const std::vector<core::geometry::Triangle>& triangles,
                                      const std::vector<core::geometry::Opening>& openings, const Matrix3X& vertices_dot);
 
-/// Of line_moments: per edge L = |b - a| f, f = (a'Aa + b'Ab + S'AS)/6 + g.S + w, S = a + b. An edge of exactly zero length contributes 0.
+/// The adjoint of line_moments: per edge L = |b - a| f, f = (a'Aa + b'Ab + S'AS)/6 + g.S + w, S = a + b. An edge of exactly zero length
+/// contributes 0.
 void line_moments_adjoint(const Matrix3X& vertices, const std::vector<core::geometry::Edge>& edges, const Matrix4& moments_bar,
                           Matrix3X& vertices_bar);
 Matrix4 line_moments_tangent(const Matrix3X& vertices, const std::vector<core::geometry::Edge>& edges, const Matrix3X& vertices_dot);
 
-/// Of point_moments: per vertex x'Ax + 2 g.x + w.
+/// The adjoint of point_moments: per vertex x'Ax + 2 g.x + w.
 void point_moments_adjoint(const Matrix3X& vertices, const Matrix4& moments_bar, Matrix3X& vertices_bar);
 Matrix4 point_moments_tangent(const Matrix3X& vertices, const Matrix3X& vertices_dot);
 

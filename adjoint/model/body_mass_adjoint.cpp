@@ -5,7 +5,7 @@
 
 #include "fettle/adjoint/scene/mass_kind_adjoint.hpp"
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 #include "fettle/core/model/body_mass.hpp"
 
 namespace fettle::adjoint::model {
@@ -29,7 +29,7 @@ struct AddedInertia {
         first = moments.col(3);
         mass = first[3];
         const Matrix3 central = moments.topLeftCorner<3, 3>() - first.head<3>() * first.head<3>().transpose() / mass;
-        const SymmetricEigen<3> eigen = symmetric_eigen<3>(central);
+        const core::linear::SymmetricEigen<3> eigen = core::linear::symmetric_eigen<3>(central);
         longest = eigen.vectors.col(2);
         body.mesh.vertices.colwise().squaredNorm().maxCoeff(&farthest);
         if (!(body.radius > dhat)) farthest = -1;

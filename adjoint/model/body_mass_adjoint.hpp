@@ -3,7 +3,7 @@
 ///   M = density U(X) + 1/2 max(lacking, 0) diag(1, 1, 1, 0),   lacking = 1e-8 m r^2 - (s_1 + s_2)
 /// with U the moments of density 1 by the body's MassKind, and of wires and points s_1 <= s_2 the smaller eigenvalues of the central second
 /// moments C, whose sum changes by tr(dC) - u . dC u, u of the largest; r is |X| of the vertex farthest away (of several the first).
-/// A given mass hangs on neither.
+/// A given mass depends on neither.
 #pragma once
 
 #include "fettle/adjoint/model_gradient.hpp"

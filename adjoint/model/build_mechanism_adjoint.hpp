@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// From a model's frames, rows and terms back to the scene's joints, springs, motors and loads that they were made of
-/// (core/model/build_mechanism.hpp). Values as written that rests, screws, gears and motors count from hang on the poses as written too.
+/// (core/model/build_mechanism.hpp). Values as written that rests, screws, gears and motors count from depend on the poses as written too.
 /// A frame's axes are, for an axis of length |a|, z = a/|a|, and across it
 ///   x = unit(e x z), y = z x x, e the world's axis least along z;   of end b, as far as the two axes are not across each other,
 ///   x = unit((1 - z z^T) R_b^T R_a x_a), y = z x x.

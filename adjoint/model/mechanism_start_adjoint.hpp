@@ -4,7 +4,7 @@
 ///   [ M  C^T ] [ delta ]   [      0      ]
 ///   [ C   0  ] [   m   ] = [ rates - C v ]
 /// whose adjoint is, with (lambda, mu) of the same matrix and the right-hand side (u_bar, 0),
-///   v_bar = u_bar - C^T mu,   rates_bar = mu,   and of what M and C hang on  - lambda . dM delta - m . dC lambda - mu . dC u;
+///   v_bar = u_bar - C^T mu,   rates_bar = mu,   and of what M and C depend on  - lambda . dM delta - m . dC lambda - mu . dC u;
 /// then the assembly of the poses (constraint/assembly_adjoint.hpp). Where nothing had to move, the derivative is that of moving: what is
 /// written a little differently is put on the rows too.
 #pragma once
@@ -20,7 +20,7 @@ struct WrittenStartGradient {
     std::vector<Vector6> rate_bar;      ///< of prescribed coordinates: how fast their curves begin
 };
 
-/// @param gradient  whole: of the model's start too. What the start hangs on of frames, rows, densities and vertices is added to it.
+/// @param gradient  whole: of the model's start too. What the start depends on of frames, rows, densities and vertices is added to it.
 /// Contract: masses of bodies that may move are those of their meshes and densities (body_mass_adjoint.hpp: check_masses).
 WrittenStartGradient written_start_adjoint(const core::model::Model& model, ModelGradient& gradient);
 

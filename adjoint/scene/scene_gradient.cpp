@@ -11,6 +11,7 @@ core::scene::Scene zero_scene_gradient(const core::scene::Scene& scene) {
         core::scene::Body& bar = out.bodies.emplace_back();
         bar.shape = body.shape;
         bar.prescribed = body.prescribed;
+        bar.orientation = body.orientation;
         bar.mesh.vertices = Matrix3X::Zero(3, body.mesh.vertices.cols());
         bar.pose.rotation.setZero();
     }

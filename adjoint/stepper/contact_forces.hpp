@@ -3,7 +3,7 @@
 ///   F = - sum_i (f_i + a g_i + t_i) / weight   over the body's vertices in contact,
 /// f_i = d(barrier)/dx_i, a g_i the damping's, t_i the friction's of the step's last round. For a direction n, F . n is minus the contacts'
 /// part of the step's residual along the translation n of the body, over the weight, so that its derivative in poses is the contacts'
-/// Hessian along it, and that in the shapes what the sweeps use (adjoint/contact). Friction's hangs on P_slip too, and on where the round
+/// Hessian along it, and that in the shapes what the sweeps use (adjoint/contact). Friction's depends on P_slip too, and on where the round
 /// before ended (TrajectoryGradient::lag_bar). Likewise the torque about a point R X + q of the body: T . n is that along the turn n about
 /// it, the motion (R X x n, n), whose own change with R adds, with G = dE/dP of the contacts, - <[n]^T G_R, dR> - (n x G e4) . dR X over
 /// the weight. Friction acts on each of two bodies at a point of its own.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Adjoint of a whole simulation: one linear solve with each step's true Hessian, backwards in time. docs/method.md section 10.
+/// Adjoint of a whole simulation: one linear solve with each step's true Hessian, backwards in time. docs/method/adjoint.md.
 /// Contract: the trajectory was simulated from this model with for_gradient = true. The result is as exact as the steps' residuals are
 /// small.
 ///
@@ -8,9 +8,9 @@
 ///   increment_bar_k = (y_bar - H lambda)_k                  prescribed; for positions P_bar gets the same, as y_k = q_k + increment,
 ///   P_hat_bar = v M,   M_bar -= sym(v^T (P' - P_hat)),   force_bar += h^2 lambda_q,   vertices: contact/contact_set_adjoint.hpp,
 ///   P_hat = 2 P[t] - P[t-1] + h^2 [0|gravity]               (at t = 0: P[0] + h velocity_start + h^2 [0|gravity]).
-/// That is implicit Euler. Of BDF2, with tau = 2h/3 (from the second step on),
+/// That is implicit Euler. For BDF2, with tau = 2h/3 (from the second step on),
 ///   P_slip = (4 P[t] - P[t-1])/3,   P_hat = P_slip + tau (4 V[t] - V[t-1])/3 + tau^2 [0|gravity],   V[t+1] = (P' - P_slip)/tau,
-/// and V_bar goes the same way back as P_bar. Of a quasi-static step the weight is W in h^2's place, P_hat = P[t], and gravity is a load
+/// and V_bar goes the same way back as P_bar. In a quasi-static step the weight is W in h^2's place, P_hat = P[t], and gravity is a load
 /// (loads_adjoint.hpp). The chart is based at R: with theta held, a rotation [delta] R turns the end by delta' = exp([theta]) delta. What
 /// this does to J and to the residual cancels where all three rotations of a body are free (lambda solves just that). Where one or two are
 /// prescribed, with the left Jacobian J_l of theta, phi = J_l lambda_theta, and the torque tau = J_l^-T g_theta that holds the prescribed

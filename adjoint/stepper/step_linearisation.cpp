@@ -141,7 +141,7 @@ Errors StepSolver::unsettled(const core::stepper::Trajectory& trajectory, int t)
     const double time = trajectory.time_start + t * trajectory.timestep;
     return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t),
              "the step at t = " + std::to_string(time) +
-                 " s has no derivative: friction jams, its normal forces hang on themselves and do not settle"}};
+                 " s has no derivative: friction jams, its normal forces depend on themselves and do not settle"}};
 }
 
 Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
@@ -239,10 +239,10 @@ void StepRounds::add_end(std::vector<core::kinematics::ChartPoint> points, std::
         ends_.push_back({std::move(points), known_});
         return;
     }
-    const core::contact::Candidates candidates = core::contact::find_candidates(model, poses, 0);
+    const core::ccd::Candidates candidates = core::ccd::find_candidates(model, poses, 0);
     contact::LaggedContacts at{std::move(poses), {}, {}};
     at.contacts = core::contact::find_contacts(model, candidates, at.poses);
-    if (model.area_weighted) at.areas = contact_areas(model, candidates, at.poses);
+    if (model.area_weighted) at.areas = core::contact::contact_areas(model, candidates, at.poses);
     ends_.push_back({std::move(points), std::make_shared<const contact::LaggedContacts>(std::move(at))});
 }
 

@@ -54,17 +54,17 @@ public:
         MatrixX y, mu;       ///< one column per right-hand side
         bool is_one = true;  ///< false: it does not solve the system, which is singular up to rounding; see unsolved()
     };
-    /// With iterative refinement: the barrier makes H stiff. @param of_rows  as many columns as `rhs`; without rows of no matter.
+    /// With iterative refinement: the barrier makes H stiff. @param of_rows  as many columns as `rhs`; without rows irrelevant.
     Solution solve(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
 
     /// The multipliers at the end of a step, whose derivatives are those of the potential alone: C^T m = -gradient over what is free.
     VectorX multipliers(const LinearisedStep& step);
 
-    /// Of the whole step, where a solution is none.
+    /// The error about the whole step, where there is no solution.
     static Errors unsolved(const core::stepper::Trajectory& trajectory, int t);
 
-    /// Of a quasi-static step, where friction's normal forces hang so much on themselves that the simulation's rounds have not settled, or
-    /// `most_repeats` solves leave more than `repeated` of what they had at first.
+    /// The error about a quasi-static step, where friction's normal forces depend so much on themselves that the simulation's rounds have
+    /// not settled, or `most_repeats` solves leave more than `repeated` of what they had at first.
     static Errors unsettled(const core::stepper::Trajectory& trajectory, int t);
     static constexpr int most_repeats = 200;
     static constexpr double repeated = 1e-13;

@@ -61,7 +61,7 @@ public:
             if (model.area_weighted) areas_dot_.push_back(contact::areas_tangent(body.mesh, dot.vertices_dot));
         }
         if (is_newmark()) accelerations_dot_ = energy::start_accelerations_tangent(model, {direction, poses_dot_, moments_dot_});
-        poses_before_dot_ = poses_dot_;  // of no matter in the first step
+        poses_before_dot_ = poses_dot_;  // irrelevant in the first step
         out_.push_back(tangents(0));
     }
 

@@ -35,7 +35,7 @@ std::vector<std::vector<Matrix34>> end_velocities(const Model& model, const core
 }
 
 void add_velocity_seed(const Model& model, int t, int body, const Matrix34& bar, TrajectoryGradient& seeds) {
-    FETTLE_ASSERT(model.integrator != Integrator::quasi_static, "quasi-static steps know no velocities");
+    FETTLE_ASSERT(model.integrator != Integrator::quasi_static, "quasi-static steps have no velocities");
     const auto step = static_cast<std::size_t>(t), i = static_cast<std::size_t>(body);
     const bool is_solved_for = core::energy::has_free_dof(model.bodies[i]);
     if (is_solved_for && model.integrator == Integrator::newmark) {

@@ -16,7 +16,7 @@ enum class ErrorCode {
     file_not_found,    ///< no such file, or not where it was looked for
     file_unreadable,   ///< exists but cannot be read
     file_unwritable,   ///< a file, a folder or standard output that cannot be written: no permission, a full disk
-    out_of_memory,     ///< what was asked for takes more memory than there is
+    out_of_memory,     ///< the request needs more memory than there is
     parse,             ///< not valid JSON, not a mesh of its format
     unknown_key,       ///< a key that the format does not have
     missing_key,       ///< a key that the format requires

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What bounds of rounding are made of. One IEEE operation on doubles returns x (1 + e) with |e| <= unit_roundoff (docs/method.md).
+/// What bounds of rounding are made of. One IEEE operation on doubles returns x (1 + e) with |e| <= unit_roundoff (docs/method/README.md).
 #pragma once
 
 namespace fettle::core::base {

@@ -19,7 +19,7 @@ std::string joined(const Strings& strings) {
 }
 
 /// As a terminal may have it: control characters but line feed and tab as "\\x1b", what is no UTF-8 as "\\xff". A name from a file cannot
-/// colour, move or overwrite what is told beside it.
+/// colour, move or overwrite the text beside it.
 std::string shown(std::string_view text);
 
 /// The same on one line.

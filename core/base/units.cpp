@@ -75,7 +75,7 @@ Result<Unit> unit_of(std::string_view name, Dimension dimension, const std::stri
     if (found != nullptr) {
         return Error{ErrorCode::wrong_type, where,
                      "\"" + std::string(name) + "\" is a unit of " + std::string(dimension_name(found->dimension)) + ", " +
-                         with_article(dimension) + " is wanted; " + allowed_text(dimension)};
+                         with_article(dimension) + " is expected; " + allowed_text(dimension)};
     }
     const std::string what = name.empty() ? with_article(dimension) + " without a unit" : "unknown unit \"" + std::string(name) + "\"";
     return Error{ErrorCode::out_of_range, where, what + "; " + allowed_text(dimension)};

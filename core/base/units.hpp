@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Quantities with units, at the border of the program: everything inside is SI (m, kg, s, rad, N). One table; a unit has a dimension, and
-/// a length where a mass is wanted is an error, not a number.
+/// a length where a mass is expected is an error, not a number.
 #pragma once
 
 #include <span>

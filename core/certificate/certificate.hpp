@@ -10,7 +10,7 @@
 ///   as assembled                         one, the start pose (step -1); k = 1, and nothing moves
 ///   over ranges of joints (`linkage`)    one: all positions of the joints, in every combination; k <= 4, the coordinates that move one
 ///   body
-///                                        against the other (linked_pair), in their ranges. The trajectory's steps count for nothing
+///                                        against the other (linked_pair), in their ranges. The trajectory's steps have no effect
 /// With `joints` a certificate over a path claims, too, how far the bodies are from that path where the joints are met at all times: bounds
 /// of their distances are those of the path, wider by joint_charge.
 ///
@@ -50,7 +50,7 @@
 
 namespace fettle::core::certificate {
 
-/// Of one box: see the top of the file.
+/// The proof over one box: see the top of the file.
 struct BoxProof {
     std::string splits;
     std::vector<Vector3> normals;  ///< about as long as 1
@@ -82,7 +82,7 @@ enum class Solids {
 };
 const char* to_string(Solids solids);  ///< "unproven", "disjoint", "overlap", "not closed", "not verified"
 
-/// Does this leave no way for one to lie inside the other? What is told as clear of each other needs that.
+/// Does this leave no way for one to lie inside the other? Bodies are reported as clear of each other only then.
 inline bool are_apart(Solids solids) { return solids == Solids::disjoint || solids == Solids::not_closed; }
 
 struct PairCertificate {
@@ -100,7 +100,7 @@ struct BodyPieces {
     std::vector<int> cuts;
 };
 
-/// A file of the bodies' meshes, for a printer or another program, that the certificate speaks of too.
+/// A file of the bodies' meshes, for a printer or another program, that the certificate is about too.
 struct ExportedFile {
     std::string file;     ///< relative to the certificate's folder, or absolute
     std::string hash;     ///< files::hash_of its bytes
@@ -144,7 +144,7 @@ std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, 
 [[nodiscard]] base::Errors add_certificate(files::FilesTogether& files, const std::filesystem::path& path, const Certificate& certificate);
 base::Result<Certificate> read_certificate(const std::filesystem::path& path);
 
-/// Is this file a certificate, as far as its keys tell? False for anything that cannot be read.
+/// Is this file a certificate, as far as its keys show? False for anything that cannot be read.
 bool is_certificate_file(const std::filesystem::path& path);
 
 }  // namespace fettle::core::certificate

@@ -61,7 +61,7 @@ private:
             fault("/fettle_certificate", "version " + std::to_string(certificate_version) + " is what this program checks");
         check_hashes();
         if (certificate_.pairs.empty()) fault("/pairs", "there is no pair: nothing is certified");
-        if (certificate_.bodies.size() != model_.bodies.size()) fault("/bodies", "one entry per body of the model is wanted");
+        if (certificate_.bodies.size() != model_.bodies.size()) fault("/bodies", "one entry per body of the model is expected");
         if (!certificate_.linkage) return;
         if (certificate_.motion || certificate_.joints) fault("/motion", "over ranges of joints there is no path, and no joints along one");
         for (const base::Error& e : check_linkage(*certificate_.linkage, model_.bodies.size())) fault(e.where, e.message);
@@ -145,9 +145,9 @@ private:
 
     // Can the rest of it be looked at?
     bool check_pair(const PairCertificate& pair, const std::string& where) {
-        if (!is_body(pair.a) || !is_body(pair.b) || pair.a == pair.b) return fault(where, "a pair of two bodies of the model is wanted");
+        if (!is_body(pair.a) || !is_body(pair.b) || pair.a == pair.b) return fault(where, "a pair of two bodies of the model is expected");
         if (!(pair.lower >= 0) || !(pair.upper >= pair.lower) || !std::isfinite(pair.upper))
-            return fault(where, "bounds with 0 <= lower <= upper are wanted");
+            return fault(where, "bounds with 0 <= lower <= upper are expected");
         if (certificate_.linkage) {
             const LinkedPair linked = linked_pair(*certificate_.linkage, pair.a, pair.b);
             if (linked.coordinates.size() > static_cast<std::size_t>(most_coordinates) ||
@@ -157,7 +157,7 @@ private:
         if (!check_upper(pair, where)) return false;
         if (pair.lower == 0) return true;  // nothing to prove
         if (pair.boxes.size() != places_.size())
-            return fault(where + "/boxes", std::to_string(places_.size()) + " proofs are wanted, one for each box: " +
+            return fault(where + "/boxes", std::to_string(places_.size()) + " proofs are expected, one for each box: " +
                                                (certificate_.linkage ? "the ranges" : "a segment of the path"));
         return prepare(pair.a, where) && prepare(pair.b, where);
     }

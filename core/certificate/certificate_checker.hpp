@@ -57,7 +57,7 @@ struct CertificateFault {
 
 struct CertificateReport {
     std::vector<CertificateFault> faults;  ///< the first thousand; none: every claim is proven
-    bool stale = false;                    ///< meshes or path are not those that it speaks of: nothing else was looked at
+    bool stale = false;                    ///< meshes or path are not those that it is about: nothing else was looked at
     long leaves = 0;                       ///< proven
     long pieces = 0;                       ///< into which these were halved for it
     bool accepted() const { return faults.empty(); }

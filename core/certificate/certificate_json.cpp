@@ -178,7 +178,7 @@ std::vector<int> read_whole_numbers(const JsonNode& node) {
     std::vector<int> out;
     for (const double x : read_numbers(node)) {
         if (x != std::floor(x) || std::abs(x) > 1e9) {
-            node.fail(ErrorCode::out_of_range, "whole numbers are wanted");
+            node.fail(ErrorCode::out_of_range, "whole numbers are expected");
             return {};
         }
         out.push_back(static_cast<int>(x));
@@ -191,7 +191,7 @@ std::uint64_t read_hash(const JsonNode& node) {
     const std::string text = node.string().value_or("0");
     std::uint64_t hash = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
-    if (code != std::errc() || end != text.data() + text.size()) node.fail(ErrorCode::out_of_range, "a hexadecimal number is wanted");
+    if (code != std::errc() || end != text.data() + text.size()) node.fail(ErrorCode::out_of_range, "a hexadecimal number is expected");
     return hash;
 }
 
@@ -238,7 +238,7 @@ BoxProof read_box(const JsonNode& node, Format format) {
     if (format == Format::old_path) std::replace(proof.splits.begin(), proof.splits.end(), 't', '0');
     const JsonNode normals = node.require(format == Format::old_path ? "planes" : "normals");
     const std::vector<double> numbers = read_numbers(normals);
-    if (numbers.size() % 3 != 0) normals.fail(ErrorCode::inconsistent, "three numbers per vector are wanted");
+    if (numbers.size() % 3 != 0) normals.fail(ErrorCode::inconsistent, "three numbers per vector are expected");
     for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) proof.normals.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
     return proof;
 }

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "fettle/core/base/limits.hpp"
-#include "fettle/core/geometry/point_in_solid.hpp"
+#include "fettle/core/solids/point_in_solid.hpp"
 
 namespace fettle::core::certificate {
 namespace {
@@ -27,7 +27,7 @@ Side side_of(const Vector3& x, const Start& at, const SolidMesh& outer, double l
     const Vector3 near = middle(at.outer).inverse() * middle(world);
     if (!near.allFinite() || !(near.cwiseAbs().maxCoeff() < largest_magnitude)) return Side::unknown;
     if (!(norm_bound(times(at.outer, exactly(near)) - world) < lower)) return Side::unknown;
-    const bool inside = outer.closure ? geometry::is_within(near, *outer.closure) : is_in_material(near, outer);
+    const bool inside = outer.closure ? solids::is_within(near, *outer.closure) : is_in_material(near, outer);
     return inside ? Side::inside : Side::outside;
 }
 
@@ -46,7 +46,7 @@ bool is_usable(const BodyPath& path) { return path.magnitude < largest_magnitude
 
 // Is it excluded that a part of `inner` lies in what `outer` would be if it were closed, now or later?
 bool stays_outside(const SolidMesh& inner, const SolidMesh& outer, const Start& at, const PairStart& start, bool is_a_outer, double lower) {
-    const geometry::Closure& closure = *outer.closure;
+    const solids::Closure& closure = *outer.closure;
     // As far as a place may be off that is looked at in the other's frame: much less than the lids are away.
     const double size = closure.vertices.cwiseAbs().maxCoeff() + inner.mesh->vertices.cwiseAbs().maxCoeff();
     const double room = std::min(0.5 * lower, 1e-9 * size);
@@ -74,14 +74,14 @@ SolidMesh solid_of(const model::Body& body) {
 SolidMesh solid_mesh(const geometry::Mesh& mesh, bool is_sheet) {
     SolidMesh solid;
     solid.mesh = &mesh;
-    solid.is_closed = mesh.triangles.empty() || geometry::bounds_a_solid(mesh);
-    if (!solid.is_closed && !is_sheet) solid.closure = geometry::closure_of(mesh);
+    solid.is_closed = mesh.triangles.empty() || solids::bounds_a_solid(mesh);
+    if (!solid.is_closed && !is_sheet) solid.closure = solids::closure_of(mesh);
     if (solid.closure) {
-        geometry::Mesh lids = geometry::lids_of(*solid.closure);
+        geometry::Mesh lids = solids::lids_of(*solid.closure);
         geometry::BodyHierarchy hierarchy(lids);
         solid.lids.emplace(SolidMesh::Lids{std::move(lids), std::move(hierarchy)});
     }
-    solid.samples = geometry::samples_of(mesh);
+    solid.samples = solids::samples_of(mesh);
     solid.shells.resize(mesh.shell_names.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         SolidMesh::Shell& part = solid.shells[static_cast<std::size_t>(mesh.triangle_shell[t])];
@@ -99,7 +99,7 @@ bool is_in_material(const Vector3& point, const SolidMesh& solid) {
     int winding = 0;
     for (const SolidMesh::Shell& shell : solid.shells) {
         if ((point.array() < shell.low.array()).any() || (point.array() > shell.high.array()).any()) continue;
-        const auto turns = geometry::winding_number(point, solid.mesh->vertices, shell.triangles);
+        const auto turns = solids::winding_number(point, solid.mesh->vertices, shell.triangles);
         if (!turns) return false;
         winding += *turns;
     }

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
-/// Are two solids disjoint, and not one inside the other? Surfaces that stay apart do not tell: a ball inside a block is far from its
-/// faces. But surfaces that never meet leave every connected part of one body on the same side of the other for all the time, so that one
-/// instant decides, exactly:
+/// Are two solids disjoint, and not one inside the other? Surfaces that stay apart do not decide this: a ball inside a block is far from
+/// its faces. But surfaces that never meet leave every connected part of one body on the same side of the other for all the time, so that
+/// one instant decides, exactly:
 ///   let x be a point of body a's surface in the world, and every point of b's surface farther than `lower` > 0 from it. Any point Z of b's
 ///   frame with |R_b Z + q_b - x| < lower (verified in interval arithmetic) is inside b's solid if and only if x is, for the way from one
-///   to the other meets no surface; and whether Z is inside is decided by exact predicates (geometry/point_in_solid.hpp).
+///   to the other meets no surface; and whether Z is inside is decided by exact predicates (solids/point_in_solid.hpp).
 /// A solid is what its shells together wind round, so that a cavity (a shell turned inwards) is not material. Loose edges and points bound
 /// nothing, but may lie inside.
 ///
-/// What is not closed has no inside, yet it may have been meant to have one: a part that lies in it is not told as clear of it. Whether
+/// What is not closed has no inside, yet it may have been meant to have one: a part that lies in it is not reported as clear of it. Whether
 /// that can be excluded is decided here, for every command: nothing of the other body is within the mesh with its openings closed
-/// (geometry/closure.hpp) where the time begins, and nothing of it ever meets a lid, so that nothing comes in. The lids are out of reach
+/// (solids/closure.hpp) where the time begins, and nothing of it ever meets a lid, so that nothing comes in. The lids are out of reach
 /// where `lower` is more than any point of them is from the surface; else lid_distance.hpp looks along the path. Where bodies may be a
 /// little off the path (PairStart::charge), surfaces and lids have to stay apart by more than that: so they do on the way from one to the
-/// other, and what is outside of the path's bodies is outside of theirs. What a scene says to be a shell, wires or points (model::is_sheet)
-/// is meant to have no inside.
+/// other, and what is outside of the path's bodies is outside of theirs. A body that its scene declares a shell, wires or points
+/// (model::is_sheet) is meant to have no inside.
 #pragma once
 
 #include <optional>
@@ -23,9 +23,9 @@
 #include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/certificate/lid_distance.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/geometry/closure.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/model/model.hpp"
+#include "fettle/core/solids/closure.hpp"
 
 namespace fettle::core::certificate {
 
@@ -40,10 +40,10 @@ struct SolidMesh {
         geometry::BodyHierarchy hierarchy;
     };
     const geometry::Mesh* mesh = nullptr;  ///< must stay where it is
-    bool is_closed = false;                ///< geometry::bounds_a_solid, or no triangles: then nothing can be inside
+    bool is_closed = false;                ///< solids::bounds_a_solid, or no triangles: then nothing can be inside
     std::vector<Shell> shells;
     std::vector<int> samples;                            ///< one vertex of everything that hangs together
-    std::optional<geometry::Closure> closure;            ///< of an open mesh that may be meant as a solid
+    std::optional<solids::Closure> closure;              ///< of an open mesh that may be meant as a solid
     std::optional<Lids> lids;                            ///< the closure's
     const geometry::BodyHierarchy* hierarchy = nullptr;  ///< of the mesh, if it is at hand; must stay where it is
 };
@@ -68,7 +68,7 @@ struct PairStart {
 /// Is `path` of use for the two?
 inline bool ask_for_path(const SolidMesh& a, const SolidMesh& b) { return a.closure.has_value() || b.closure.has_value(); }
 
-/// Of the pair over all time during which its surfaces are proven to be farther apart than `lower` [m]; decided at `start`.
+/// The finding about the pair over all time during which its surfaces are proven to be farther apart than `lower` [m]; decided at `start`.
 /// `not_closed` or `unverified` where one is not closed; `unproven` if lower is 0 or within rounding, or if it is no more than the charge
 /// (and of the path itself neither is inside the other).
 Solids solids_of(const SolidMesh& a, const SolidMesh& b, const PairStart& start, double lower);

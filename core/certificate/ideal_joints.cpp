@@ -134,7 +134,7 @@ measure::Frame read_frame(const JsonNode& node) {
     if (numbers.size() == 9)
         out.axes = Eigen::Map<const Matrix3>(numbers.data());
     else
-        axes.fail(ErrorCode::inconsistent, "nine numbers are wanted");
+        axes.fail(ErrorCode::inconsistent, "nine numbers are expected");
     return out;
 }
 
@@ -180,21 +180,21 @@ base::Errors check_joints(const IdealJoints& joints, std::size_t bodies) {
     };
     each(
         "frames", joints.set.frames.size(), [&](std::size_t i) { return is_usable_frame(joints.set.frames[i], bodies); },
-        "a body of the model or -1, and finite numbers are wanted");
+        "a body of the model or -1, and finite numbers are expected");
     each(
         "measures", joints.set.measures.size(),
         [&](std::size_t i) { return is_usable_measure(joints.set.measures[i], joints.set.frames.size()); },
-        "an offset, product or angle of two of the frames is wanted");
+        "an offset, product or angle of two of the frames is expected");
     each(
         "rows", joints.rows.size(), [&](std::size_t i) { return is_usable_row(joints.rows[i], joints.set.measures.size()); },
-        "parts that are measures, finite numbers and a curve are wanted");
+        "parts that are measures, finite numbers and a curve are expected");
     for (std::size_t i = 0; i < joints.bodies.size(); ++i)
         if (!is_one_of(joints.bodies[i], bodies) || (i > 0 && joints.bodies[i] <= joints.bodies[i - 1]))
-            fault("bodies/" + std::to_string(i), "bodies of the model, increasing, are wanted");
-    if (joints.rows.size() != 6 * joints.bodies.size()) fault("rows", "six rows per body that they move are wanted");
-    if (joints.deviations.size() != joints.bodies.size()) fault("deviations", "one per body is wanted");
+            fault("bodies/" + std::to_string(i), "bodies of the model, increasing, are expected");
+    if (joints.rows.size() != 6 * joints.bodies.size()) fault("rows", "six rows per body that they move are expected");
+    if (joints.deviations.size() != joints.bodies.size()) fault("deviations", "one per body is expected");
     for (const double deviation : joints.deviations)
-        if (!(deviation >= 0 && is_usable_number(deviation))) fault("deviations", "lengths of at least 0 are wanted");
+        if (!(deviation >= 0 && is_usable_number(deviation))) fault("deviations", "lengths of at least 0 are expected");
     return errors;
 }
 

@@ -97,7 +97,7 @@ public:
     /// @param halvings  how often parts may be halved, `part` itself first
     long prove(const Region& a, const Region& b, const CoordinateBox& part, std::span<const Vector3> normals, double lower, int halvings);
 
-    /// Of two points of the bodies, at a place of the box.
+    /// Distance of two points of the bodies, at a place of the box.
     Interval distance_at(const Interval3& X_a, const Interval3& X_b, const Coordinates& at) const;
     /// How far a bound that these two points attain may be above their distance, for rounding.
     double witness_room(const Interval3& X_a, const Interval3& X_b) const;

@@ -7,10 +7,10 @@
 #include <numeric>
 #include <optional>
 
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/certificate/interval_motion.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::core::certificate {
 namespace {
@@ -268,7 +268,7 @@ private:
         for (std::size_t i = 0; i < used_.size(); ++i) {
             const Measure& m = joints_.set.measures[i];
             if (used_[i] && m.kind == MeasureKind::angle && !(speed(m.a) + speed(m.b) < largest_turn))
-                return "bodies turn too far between two nodes to tell which way";
+                return "bodies turn so far between two nodes that the direction is ambiguous";
         }
         return {};
     }
@@ -420,7 +420,7 @@ private:
         if (!over || !middle) return false;
         const auto residual = residual_over(segment, part, *over);
         if (!residual) return false;
-        DenseLu lu;
+        linear::DenseLu lu;
         lu.factorise(middles(*middle));
         const MatrixX A = lu.inverse();
         if (!A.allFinite()) return false;

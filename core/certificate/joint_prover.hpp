@@ -30,7 +30,7 @@ struct ProvenDeviations {
     std::string fault;            ///< where it could not be proven, and why
 };
 
-/// Of bodies that rows connect, more rows than this are not dealt with.
+/// Bodies that more rows than this connect are not dealt with.
 inline constexpr int most_rows = 300;
 
 /// Contract: check_joints found nothing; the trajectory is the model's. Deviations claimed are not looked at.

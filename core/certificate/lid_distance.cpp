@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "fettle/core/base/limits.hpp"
-#include "fettle/core/geometry/self_intersection.hpp"
+#include "fettle/core/solids/self_intersection.hpp"
 
 namespace fettle::core::certificate {
 namespace {
@@ -169,7 +169,7 @@ private:
             lid[k] = middle(times(here.a, exactly(cell.lid.corners[k])) + here.offset);
             other[k] = middle(times(here.b, exactly(cell.other.corners[k])));
         }
-        return geometry::triangles_intersect(lid, other);
+        return solids::triangles_intersect(lid, other);
     }
 
     static double apart_along(const Interval3& world, const Cell& cell, const Instant& here, const Interval3& between) {

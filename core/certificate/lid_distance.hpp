@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Do the lids of an open mesh (geometry/closure.hpp) stay away from another body over a path? Proven for pieces of both (boxes of their
+/// Do the lids of an open mesh (solids/closure.hpp) stay away from another body over a path? Proven for pieces of both (boxes of their
 /// hierarchies, triangles and their halves) by separating directions, the way between their centres or a lid's normal, in interval
 /// arithmetic: over a span of time of half length e about its middle m, with any n,
 ///   |x_a(s) - x_b(s)| >= (|n.(c_a(m) - c_b(m))| - h_a - h_b) / |n| - e (|q_a' - q_b'| + |w_a| |X_a| + |w_b| |X_b|),

@@ -40,11 +40,11 @@ base::Errors check_linkage(const Linkage& linkage, std::size_t bodies) {
     const auto fault = [](const char* list, std::size_t k, const char* message) {
         return base::Errors{{ErrorCode::inconsistent, std::string("/") + list + "/" + std::to_string(k), message}};
     };
-    if (linkage.bodies.size() != bodies) return {{ErrorCode::inconsistent, "/links", "one entry per body of the model is wanted"}};
+    if (linkage.bodies.size() != bodies) return {{ErrorCode::inconsistent, "/links", "one entry per body of the model is expected"}};
     for (std::size_t k = 0; k < linkage.coordinates.size(); ++k) {
         const LinkageCoordinate& c = linkage.coordinates[k];
         const bool usable = base::is_usable_number(c.low) && base::is_usable_number(c.high);
-        if (!usable || !(c.low <= c.start && c.start <= c.high)) return fault("coordinates", k, "low <= start <= high is wanted");
+        if (!usable || !(c.low <= c.start && c.start <= c.high)) return fault("coordinates", k, "low <= start <= high is expected");
     }
     const auto count = static_cast<int>(linkage.coordinates.size());
     for (std::size_t k = 0; k < bodies; ++k) {

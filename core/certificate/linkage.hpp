@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// Bodies joined as trees, as data: what a certificate over ranges of joints (certificate.hpp) speaks of. Made from a model by
+/// Bodies joined as trees, as data: what a certificate over ranges of joints (certificate.hpp) is about. Made from a model by
 /// clearance/joint_ranges.hpp.
 ///
-/// A configuration is a value u_k of each coordinate in its range [low, high]. Each body hangs on its parent, or on the world, by screws;
-/// the one next to the parent comes first. A screw, d = u_k - start_k, takes a point y, where everything is as at the start, to
+/// A configuration is a value u_k of each coordinate in its range [low, high]. Each body is attached to its parent, or to the world, by
+/// screws; the one next to the parent comes first. A screw, d = u_k - start_k, takes a point y, where everything is as at the start, to
 ///   S(y) = p + exp([turn d z]) (y - p) + slide d z,
 /// p and z in the world at the start, so that the body's pose is S_1 S_2 ... S_m (its pose at the start), over its ancestors' screws first.
 /// z is about as long as 1; the formula takes it as it is, so that a configuration is defined exactly.
@@ -65,7 +65,7 @@ struct CoordinateBox {
     Coordinates low{}, high{};
 };
 
-/// Two bodies of a linkage: what moves one against the other. Screws that both hang on, and what they move together, is left out.
+/// Two bodies of a linkage: what moves one against the other. Screws that carry both bodies, and what they move together, is left out.
 struct LinkedPair {
     std::vector<Screw> a, b;       ///< Screw::coordinate is a place in `coordinates`; outermost first
     std::vector<int> coordinates;  ///< of the linkage, increasing

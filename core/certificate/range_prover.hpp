@@ -9,7 +9,7 @@
 /// mixed derivatives are. So, with L the longest n_i,
 ///   min over the corners of n_i.d  -  sum e_k  >=  lower L   proves   dist >= g/|n| >= lower.
 /// As d2n/du_k2 = 0, |d2g| <= 2 |dn/du_k||dd/du_k| + |n.d2d|, and |dn/du_k| is at most the largest difference of two corners' vectors along
-/// k over 2 w_k. Of a point, with the screws j of coordinate k and r_j its distance from the screw's axis as the screws after it have put
+/// k over 2 w_k. For a point, with the screws j of coordinate k and r_j its distance from the screw's axis as the screws after it have put
 /// it,
 ///   |dx| <= sum |turn_j| r_j + |slide_j|,
 ///   |n.d2x| <= sum turn_j^2 r_j |n x z_j(u)|  +  2 sum over i before j of L |turn_i| (|turn_j| r_j + |slide_j|),

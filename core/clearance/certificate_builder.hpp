@@ -16,7 +16,7 @@ namespace fettle::core::clearance {
 certificate::Certificate start_certificate(const model::Model& model, const stepper::Trajectory& trajectory,
                                            const std::vector<const PieceTree*>& trees, bool motion, std::size_t pairs);
 
-/// Of an element, as ElementPairDistance names it.
+/// A feature of an element, as ElementPairDistance names it.
 struct ElementFeature {
     Primitive kind = Primitive::vertex;
     int corner = 0;
@@ -28,7 +28,7 @@ certificate::CertifiedPoint certified_witness(const PieceTree& tree, int element
 /// Bounds and witness from `found`; the proofs are there already, and are dropped where there is nothing to prove (lower 0).
 void complete_certificate(const PairMotion& pair, const SearchResult& found, certificate::PairCertificate& certificate);
 
-/// Of what could not be measured there is nothing to certify.
+/// Drops pairs that could not be measured: nothing is certified of them.
 void drop_unmeasured(certificate::Certificate& certificate);
 
 /// The bodies as the certificate cuts them; empty ones for those of no pair.

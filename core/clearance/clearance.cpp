@@ -100,7 +100,7 @@ const char* words(Solids solids) {
 const char* why_not_apart(Solids solids) {
     if (solids == Solids::unverified)
         return "whether one lies inside the other cannot be verified: a mesh is not closed, and the other is within what would close it, "
-               "or may come there; close the mesh, or say \"mass_per\": \"area\" of what is meant as a sheet";
+               "or may come there; close the mesh, or say \"mass_per\": \"area\" if it is meant as a sheet";
     return "whether one lies inside the other is a matter of rounding";
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Certified clearance: proven bounds of the least distance of pairs of bodies, over the continuous curved path.
 ///   lower <= min over the time range of dist(A(t), B(t)) <= upper,   rounding error charged to `lower`.
-/// A theorem about the meshes as stored and the path as stored (docs/method.md section 8), not about samples.
+/// A theorem about the meshes as stored and the path as stored (docs/method/clearance.md), not about samples.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ ProvenClearances certify_clearance_with_proof(const model::Model& model, const s
                                               const std::vector<PairRequest>& pairs, const ClearanceOptions& options);
 
 struct NearClearances {
-    /// Of pairs that may collide, each over a part of the path throughout which they may be nearer than the reach: in the order of the
+    /// Pairs that may collide, each over a part of the path throughout which they may be nearer than the reach: in the order of the
     /// pairs, then of time. A pair can have several parts.
     std::vector<PairClearance> windows;
     bool everything = false;  ///< of every pair that may collide the whole path was searched
@@ -35,7 +35,7 @@ NearClearances certify_near(const model::Model& model, const stepper::Trajectory
 struct StepRange {
     int first = 0, last = 0;
 };
-/// The same over some of the steps alone; `options.motion` is of no matter. Contract: 0 <= first < last <= the trajectory's steps.
+/// The same over some of the steps alone; `options.motion` is irrelevant. Contract: 0 <= first < last <= the trajectory's steps.
 NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, StepRange steps, double reach,
                             ClearanceOptions options);
 

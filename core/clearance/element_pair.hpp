@@ -30,7 +30,7 @@ struct ElementPairDistance {
 
 /// `a`, `b` in one frame. Degenerate triangles are the segments or points that they are.
 /// @param before  of the same elements elsewhere, or null: its features are looked at first, and where the plane across them keeps the
-///                elements apart, they alone. Of features that tie, those are told that were looked at first.
+///                elements apart, they alone. If features tie, the ones examined first are returned.
 ElementPairDistance element_pair_distance(const Corners& a, const Corners& b, const ElementPairDistance* before = nullptr);
 
 }  // namespace fettle::core::clearance

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Pairs that stay so far apart that nobody needs their least distance (PairRequest::far): proven by boxes round whole bodies that hold
-/// them for a while (near_windows.hpp), and where these do not tell by a search that ends as soon as it is known either way. The cost is
+/// them for a while (near_windows.hpp), and where these do not suffice by a search that ends as soon as it is known either way. The cost is
 /// in proportion to the pairs that come near, not to all pairs.
 #pragma once
 
@@ -13,7 +13,7 @@
 namespace fettle::core::clearance {
 
 /// For each request: its answer, if the bodies are proven to stay `far` apart and neither lies inside the other; nothing where they are
-/// not, where that is not known (numbers of no use, budget, stop), and where `far` is infinite. `lower` is then at least `far`.
+/// not, where that is not known (unusable numbers, budget, stop), and where `far` is infinite. `lower` is then at least `far`.
 /// @param shapes  of all bodies of the requests.
 std::vector<std::optional<PairClearance>> far_pairs(const model::Model& model, const stepper::Trajectory& trajectory,
                                                     const std::vector<PathPlace>& places, const std::vector<PairRequest>& pairs,

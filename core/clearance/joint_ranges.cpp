@@ -87,23 +87,25 @@ private:
     void check_joints() {
         for (const Joint* joint : joints_) {
             if (joint->kind == JointKind::ball || joint->kind == JointKind::planar)
-                fail(ErrorCode::unsupported, joint->name,
-                     std::string("a ") + (joint->kind == JointKind::ball ? "ball" : "planar") +
-                         " joint has no limits on its three coordinates: ranges are of fixed, revolute, prismatic, cylindrical and screw "
-                         "joints");
+                fail(
+                    ErrorCode::unsupported, joint->name,
+                    std::string("a ") + (joint->kind == JointKind::ball ? "ball" : "planar") +
+                        " joint has no limits on its three coordinates: ranges work with fixed, revolute, prismatic, cylindrical and screw "
+                        "joints");
             for (const int body : {joint->a, joint->b}) {
                 if (is_world(body)) continue;
                 const model::Body& b = model_.bodies[static_cast<std::size_t>(body)];
                 bool free = b.type == scene::BodyType::dynamic_body;
                 for (int k = 0; k < 6; ++k) free = free && model::is_free(b, k);
                 if (!free)
-                    fail(ErrorCode::unsupported, joint->name,
-                         "coordinates of `" + b.name + "` are prescribed beside its joints: ranges are of what joints alone hold");
+                    fail(
+                        ErrorCode::unsupported, joint->name,
+                        "coordinates of `" + b.name + "` are prescribed beside its joints: ranges work with bodies that joints alone hold");
             }
         }
     }
 
-    // Trees from the world, then from the first body of what hangs on nothing.
+    // Trees from the world, then from the first body of each part that is not attached to the world.
     void hang_bodies() {
         std::vector<bool> reached(model_.bodies.size(), false);
         std::vector<bool> used(joints_.size(), false);
@@ -161,7 +163,8 @@ private:
         for (const Joint* each : line) names += ", `" + each->name + "`";
         fail(ErrorCode::unsupported, joint.name,
              "closes a loop (" + names +
-                 "), whose positions depend on one another: ranges are of trees. A loop that a motor drives: --kinematic or --motion");
+                 "), whose positions depend on one another: ranges work with trees. For a loop that a motor drives use --kinematic or "
+                 "--motion");
     }
 
     void hang(const Joint& joint, int parent, int body) {

@@ -4,9 +4,9 @@
 ///   gear, rack                   couple coordinates, which then count once: the first joint's, within the limits of all of them
 ///   ranges                       the limits of the joint and of springs on it; a joint that only turns has a whole turn without (the
 ///                                joints of a gear as many as bring all of them back to where they were)
-///   world                        static bodies; everything that hangs on no joint stays where it starts, and so does, of bodies that are
+///   world                        static bodies; everything without a joint stays where it starts, and so does, of bodies that are
 ///                                joined to one another but not to the world, the first: `held` names them
-/// Motors, springs and loads say where joints are, not where they can be: they count for nothing here.
+/// Motors, springs and loads say where joints are, not where they can be: they have no effect here.
 #pragma once
 
 #include <string>

@@ -93,7 +93,7 @@ PairClearance undecided(PairClearance pair, const std::string& reason) {
     return pair;
 }
 
-const char* const between_nodes = "joints part between the nodes of the path by too much to tell: shorter steps tell";
+const char* const between_nodes = "joints part too far between the nodes of the path for a proof; use shorter steps";
 
 // From bounds along the path, judged with a minimum raised by the charge.
 PairClearance charged(PairClearance pair, double minimum, double charge) {
@@ -199,9 +199,9 @@ bool is_unproven(const JointedPath& path, int a, int b) {
 void judge_jointed(const std::vector<PairRequest>& pairs, const JointedPath& path, std::vector<PairClearance>& results) {
     for (std::size_t i = 0; i < results.size(); ++i) {
         if (is_unproven(path, pairs[i].a, pairs[i].b)) {
-            results[i] =
-                unbounded(std::move(results[i]), required_gap(pairs[i]),
-                          "where joints met at all times have the bodies between the nodes of the path is not proven: " + path.refusal);
+            results[i] = unbounded(
+                std::move(results[i]), required_gap(pairs[i]),
+                "where the bodies are between the nodes of the path, if joints are met at all times, is not proven: " + path.refusal);
         } else {
             results[i] = charged(std::move(results[i]), required_gap(pairs[i]), charge_of(path, pairs[i]));
         }

@@ -14,8 +14,8 @@
 
 namespace fettle::core::clearance {
 
-/// Of everything but what is held: as data, without deviations. Errors: a body that joints move has prescribed coordinates besides, or they
-/// do not determine it.
+/// The joints of everything that is not held: as data, without deviations. Errors: a body that joints move has prescribed coordinates
+/// besides, or they do not determine it.
 base::Result<certificate::IdealJoints> ideal_joints(const model::Model& model, const std::vector<std::string>& held);
 
 /// Bodies that the joints have somewhere, which need not be where a path has them between its nodes: those of a row that are not held, and

@@ -29,7 +29,7 @@ struct NearWindows {
 /// Same result for any number of threads. Contract: reach >= 0; infinity is allowed.
 NearWindows near_windows(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
                          double reach, const PairFilter& wanted);
-/// Of pairs that may collide.
+/// The windows of pairs that may collide.
 NearWindows near_windows(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places,
                          double reach);
 

@@ -21,7 +21,7 @@ double most_slack(const PairMotion& pair) {
 }
 
 // Is the distance something that arithmetic can tell? Else a search would halve for ever: numbers so large that rounding moves bodies by
-// more than a thousandth of what is to be told apart, or a million radians in one segment.
+// more than a thousandth of what is to be distinguished, or a million radians in one segment.
 bool is_measurable(const PairMotion& pair) {
     return std::all_of(pair.segments.begin(), pair.segments.end(), [&](const PairSegment& segment) {
         const double apart = (segment.a->poses[0].position - segment.b->poses[0].position).norm();
@@ -325,14 +325,14 @@ void judge(PairClearance& pair, const PairRequest& request, double contact_dista
         pair.status = pair.complete || pair.lower >= contact_distance ? PairStatus::clear : PairStatus::undecided;
     }
     if (pair.status != PairStatus::undecided) return;
-    pair.reason =
-        pair.touch       ? "they touch: neither a gap nor a clash"
-        : !pair.complete ? "the search was cut short, by a stop or its budget"
-        : request.may_touch && !(pair.lower > 0)
-            ? "they may touch, but it is not proven that they are nowhere deeper in each other than that"
-        : !(pair.lower > 0) ? "the surfaces come within rounding of each other: neither that they cross nor that they stay apart is proven"
-        : !told             ? why_not_apart(pair.solids)
-                : "the minimum lies between the bounds, as near to the distance as rounding or the budget of the search lets it be told";
+    pair.reason = pair.touch       ? "they touch: neither a gap nor a clash"
+                  : !pair.complete ? "the search was cut short, by a stop or its budget"
+                  : request.may_touch && !(pair.lower > 0)
+                      ? "they may touch, but it is not proven that they are nowhere deeper in each other than that"
+                  : !(pair.lower > 0)
+                      ? "the surfaces come within rounding of each other: neither that they cross nor that they stay apart is proven"
+                  : !told ? why_not_apart(pair.solids)
+                          : "the minimum lies between the bounds, which rounding or the budget of the search keeps from coming closer";
 }
 
 PairClearance unmeasured(const PairRequest& request, const std::string& reason) {

@@ -15,7 +15,7 @@
 
 namespace fettle::core::clearance {
 
-/// Of one pair, in the making.
+/// The proof of one pair, in the making.
 struct PairRecord {
     certificate::PairCertificate& certificate;
     const certificate::CertifiedBody &a, &b;

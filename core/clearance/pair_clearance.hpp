@@ -30,7 +30,7 @@ const char* to_string(PairStatus status);
 /// What is known of the two solids, for people: "disjoint solids".
 const char* words(Solids solids);
 
-/// Of solids that are not certificate::are_apart, though their surfaces are: why not, and what helps.
+/// Why solids are not certificate::are_apart, though their surfaces are, and what helps.
 const char* why_not_apart(Solids solids);
 
 /// Which two primitives are closest, when, and where. Edge against edge or vertex against triangle; of codimensional parts also vertex
@@ -61,14 +61,14 @@ struct MarginInterval {
 struct PairRequest {
     int a = 0, b = 0;    ///< bodies
     double minimum = 0;  ///< required clearance [m]
-    /// A pair that is proven to stay at least so far apart is left at that, unmeasured: PairClearance::is_far. Contract: > 0, >= minimum
+    /// A pair that is proven to stay at least so far apart is not measured: PairClearance::is_far. Contract: > 0, >= minimum
     /// [m]
     double far = std::numeric_limits<double>::infinity();
     bool may_touch = false;  ///< that they touch (Touch) is accepted, and so is every gap: the minimum does not count
     /// How deep they may be in each other and still touch [m]; 0: a hundred-thousandth of the larger body's size (touching.hpp)
     double touch_depth = 0;
     /// How far the two may be from the path, together, where joints have them [m]. Bounds are of the path and do not contain it; that one
-    /// is not inside the other is told for wherever they are within that (certificate::PairStart)
+    /// is not inside the other holds wherever they are within that (certificate::PairStart)
     double charge = 0;
 };
 
@@ -95,7 +95,7 @@ struct ClearanceOptions {
     int max_witnesses = 64;                         ///< at most so many, the nearest; faces that slide along each other have no end of them
     bool measure_overlap = true;                    ///< fill PairClearance::overlap of a clash, ::touch: a fraction of a second each
     bool sample_nodes = true;                       ///< fill PairClearance::sampled, to a hundredth of the tolerance
-    double enough = std::numeric_limits<double>::infinity();  ///< a pair proven so far apart is left at that, whatever the gap [m]
+    double enough = std::numeric_limits<double>::infinity();  ///< the search stops at a pair proven so far apart, whatever the gap [m]
     std::function<bool()> should_stop;  ///< optional, asked often, on any thread: true ends the search with true bounds
     // Over ranges of joints, which are asked for nothing else than the tolerance and the two functions:
     double coarse = 0;            ///< tolerance of pairs that more than two coordinates move, as a share of the bodies' radii; 0: as others

@@ -6,7 +6,7 @@
 /// aside (within the tolerance of the upper bound, or at the limit of rounding) bounds the distance from below at any moment, so the
 /// search may stop at any time. Entries are halved in time where the motion loosens their bound more than the size of the boxes does.
 /// All segments share one queue and one upper bound. Many segments are searched at once first, unless a proof is to be
-/// recorded, which is told segment by segment; then each one is, and costs at least one entry. Whole bodies have
+/// recorded, which goes segment by segment; then each one is, and costs at least one entry. Whole bodies have
 /// bounds by their convex hulls, too (hull_direction.hpp), for those that lie beside each other.
 #pragma once
 

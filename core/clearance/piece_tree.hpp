@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// What the search for clearances splits a body into: boxes in the body's frame, halved down to single elements. The order of elements
-/// and the upper boxes are those of the body's hierarchy (contact/body_hierarchy.hpp), whose leaves hold several elements.
+/// and the upper boxes are those of the body's hierarchy (geometry/body_hierarchy.hpp), whose leaves hold several elements.
 #pragma once
 
 #include <array>

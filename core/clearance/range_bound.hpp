@@ -5,8 +5,8 @@
 /// each coordinate, d = x_a - x_b. Then dist >= g(u) = n(u).d(u), and what interpolates g between the corners is off by at most
 ///   sum over k of e_k,   e_k = 1/2 w_k^2 max |d2g/du_k2| <= 1/2 w_k^2 (2 |dn/du_k||dd/du_k| + |n.d2d/du_k2|),
 /// so that dist >= min over the corners of n_i.d - sum e_k, and the least value over two convex pieces is a difference of support
-/// functions: second order in the box, mixed derivatives count for nothing, and what moves across n costs nothing at all (layers of a flat
-/// mechanism). Of a point, with the screws j of coordinate k (certificate/linkage.hpp) and r_j its greatest distance from screw j's axis
+/// functions: second order in the box, mixed derivatives have no effect, and what moves across n costs nothing at all (layers of a flat
+/// mechanism). For a point, with the screws j of coordinate k (certificate/linkage.hpp) and r_j its greatest distance from screw j's axis
 /// over the box,
 ///   |dx| <= sum |turn_j| r_j + |slide_j|,   |n.d2x| <= sum turn_j^2 r_j min(1, |n x z_j| + tilt_j)
 ///                                                      + 2 sum over i before j of |turn_i| (|turn_j| r_j + |slide_j|);
@@ -84,7 +84,7 @@ public:
 
     /// Along one vector. Elements by their corners, of boxes these are null. Contract: |n| <= 1.
     RangeBound along(const Vector3& n, const Piece& a, const Piece& b, const Corners* element_a, const Corners* element_b) const;
-    /// Of two elements, along one vector per corner.
+    /// The bound of two elements, along one vector per corner.
     RangeBound along(const std::vector<Vector3>& normals, const Corners& element_a, const Corners& element_b) const;
 
 private:

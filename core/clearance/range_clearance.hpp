@@ -2,7 +2,7 @@
 /// Certified clearance over all positions of the joints: for pairs of bodies,
 ///   lower <= min over every combination of the coordinates in their ranges of dist(A(u), B(u)) <= upper,
 /// rounding charged to `lower`. A theorem about the meshes as stored and the joints as the linkage has them, not about samples.
-/// docs/method.md section 8.
+/// docs/method/clearance.md#ranges-of-joints.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@
 namespace fettle::core::clearance {
 
 /// Bounds for each pair asked for, in their order; judged as over a path, by the same function. The witness attains `upper`, in the world,
-/// with what moves both bodies at its start; its step is -1. PairRequest::far counts for nothing, and nothing is told of overlap, touch,
+/// with what moves both bodies at its start; its step is -1. PairRequest::far has no effect, and nothing is reported about overlap, touch,
 /// times, nodes and margins: these are of a path.
 std::vector<PairClearance> certify_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
                                           const ClearanceOptions& options);

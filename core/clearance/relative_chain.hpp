@@ -43,16 +43,16 @@ public:
     const double* entry(int i) const { return row(i); }
     /// An entry of 2 X(1/2) - (X(0) + X(1))/2 of the segments: the middle coefficient of the parabola through three poses.
     const double* middle(int i) const { return row(entries + i); }
-    /// Of the segments, each beside its chord, with what its end and the next one's start differ by; 0 beyond the last.
+    /// The rests of the segments, each beside its chord, with what its end and the next one's start differ by; 0 beyond the last.
     const double* rest_turns() const { return row(2 * entries); }
     const double* rest_shifts() const { return row(2 * entries + 1); }
     /// The same beside its parabola.
     const double* parabola_rest_turns() const { return row(2 * entries + 2); }
     const double* parabola_rest_shifts() const { return row(2 * entries + 3); }
-    /// Of segments first .. last - 1, beside the chord of all of them.
+    /// The rest of segments first .. last - 1, beside the chord of all of them.
     Rest rest_of_span(int first, int last) const;
 
-    /// Of points of both bodies, whatever the segment: how far rounding of the poses may move them [m].
+    /// For points of both bodies, whatever the segment: how far rounding of the poses may move them [m].
     double rounding() const { return rounding_; }
     /// >= the norm of any stored base of body b's; >= 1.
     double base_norm() const { return base_norm_; }

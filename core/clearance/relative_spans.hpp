@@ -73,7 +73,7 @@ struct SpanGroup {
     SegmentEnd end_at(int j) const { return {std::min(place_of(j), segments - 1), place_of(j) == segments}; }
 };
 
-/// Of the spans of a group of single segments.
+/// Middles of the spans of a group of single segments.
 struct SpanMiddles {
     std::array<Lanes, 9> rotation;  ///< R_m by rows
     std::array<Lanes, 3> offset;    ///< p_m
@@ -120,7 +120,7 @@ public:
     SpanBounds of_elements(const SpanGroup& group, const TurningPlane& plane, const Piece& a, std::span<const PieceElement> elements_a,
                            std::span<const PieceElement> elements_b, std::uint32_t wanted = all_nodes) const;
 
-    /// Of the whole bodies.
+    /// Bounds of the whole bodies.
     SpanBounds of_planes(const SpanGroup& group, const NodePlanes& planes) const;
 
 private:

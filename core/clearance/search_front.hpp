@@ -131,7 +131,7 @@ public:
         if (strict_) put_in_order();
     }
     Key pop() {
-        // Of those made since the last one was given back, the most promising one comes first.
+        // The most promising of those made since the last one was given back comes first.
         std::sort(last_made_.begin() + static_cast<std::ptrdiff_t>(sorted_), last_made_.end(), BestFirst::Later{});
         const Key key = next();
         sorted_ = last_made_.size();
@@ -147,7 +147,7 @@ public:
         return std::max(next, 0.0) >= std::max(cutoff(), sampling_cutoff());
     }
 
-    /// Of everything searched, however far the search has come.
+    /// The bound of everything searched, however far the search has come.
     double lower_bound() {
         put_in_order();
         return std::max(0.0, std::min({aside_, queue_.least(), result.upper}));

@@ -11,8 +11,8 @@
 #include "fettle/core/certificate/disjoint_solids.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/self_intersection.hpp"
-#include "fettle/core/geometry/shells.hpp"
+#include "fettle/core/solids/self_intersection.hpp"
+#include "fettle/core/solids/shells.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -41,12 +41,11 @@ Vector3 common_direction(const std::vector<Vector3>& normals) {
 // Do its shells wind round nothing twice: none crosses another or itself, and those within others are cavities, or parts in these? Else
 // a surface may lie in the middle of the material.
 bool winds_once(const geometry::Mesh& mesh) {
-    if (!geometry::self_intersections(mesh, 1).empty()) return false;
-    const std::vector<geometry::Shell> shells = geometry::shells_of(mesh);
+    if (!solids::self_intersections(mesh, 1).empty()) return false;
+    const std::vector<solids::Shell> shells = solids::shells_of(mesh);
     const auto are_turned = [&](int outwards) {
-        return std::all_of(shells.begin(), shells.end(), [&](const geometry::Shell& shell) {
-            return shell.volume_sign == (shell.depth % 2 == 0 ? outwards : -outwards);
-        });
+        return std::all_of(shells.begin(), shells.end(),
+                           [&](const solids::Shell& shell) { return shell.volume_sign == (shell.depth % 2 == 0 ? outwards : -outwards); });
     };
     return are_turned(1) || are_turned(-1);
 }

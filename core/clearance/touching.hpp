@@ -29,7 +29,7 @@ struct TouchingArea {
     double area = 0;       ///< [m^2]
     bool is_whole = true;  ///< false: faces were left that were not looked at, of too many
 };
-/// Of the faces that lie on each other with their fronts, to within `depth` [m], at s of a segment.
+/// The area of the faces that lie on each other with their fronts, to within `depth` [m], at s of a segment.
 TouchingArea touching_area(const PairMotion& pair, int segment, double s, double depth);
 
 }  // namespace fettle::core::clearance

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Puts bodies where their joints are met, moved least: the poses P nearest to P0,
 ///   minimise 1/2 sum tr((P - P0) M (P - P0)^T)   subject to   row_i(P) = target_i,
-/// by Newton's method on the Lagrangian. docs/method.md section 9.
+/// by Newton's method on the Lagrangian. docs/method/joints.md#assembly-the-start.
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Which rows follow from others (two hinges on one axis)? Those that are sums of others where lengths are measured by mass
-/// (linear/dependent_columns.hpp). docs/method.md section 9.
+/// (linear/dependent_columns.hpp). docs/method/joints.md#the-step-under-rows.
 #pragma once
 
 #include <vector>

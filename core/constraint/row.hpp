@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Rows: equations sum_i factor_i m_i = curve(t) over measures (measure/measure.hpp). Joints, motors and gears are lists of them.
-/// docs/method.md section 9.
+/// docs/method/joints.md#rows.
 #pragma once
 
 #include <vector>
@@ -30,7 +30,8 @@ struct Row {
 /// What a row's parts are to come to.
 double target_at(const Row& row, double time);
 
-/// Angles of measures with their turns, per measure; of other measures 0. What was before tells the turns: less than half a turn a step.
+/// Angles of measures with their turns, per measure; 0 for other measures. Turns are counted from the value before: less than half a turn a
+/// step.
 /// @param before  empty: angles in (-pi, pi].
 std::vector<double> angles_at(const measure::MeasureSet& set, const std::vector<kinematics::Pose>& poses,
                               const std::vector<double>& before);

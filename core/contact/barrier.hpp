@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The barrier in squared distances, and the mollifier of nearly parallel edges. docs/method.md section 4.
+/// The barrier in squared distances, and the mollifier of nearly parallel edges. docs/method/contact.md#barrier.
 /// Potential of one pair:  kappa / (4 (dmin + dhat)^2) * m * b(d^2 - dmin^2, 2 dmin dhat + dhat^2)  [J], so that kappa is in N/m:
 /// near d = dmin + dhat it behaves as kappa times the barrier of plain distances.
 #pragma once

@@ -34,7 +34,7 @@ void put_on_feature(const Feature& feature, ContactPair& pair) {
     if (feature[2] >= 0) return;
     geometry::ClosestPoints& c = pair.closest;
     const auto vertex = pair.vertex;
-    const PairVertices x = pair.x;
+    const geometry::PairVertices x = pair.x;
     const auto weight = c.weight;
     const auto free_weight = c.free_weight;
     pair.face = -1;
@@ -68,11 +68,11 @@ void put_on_end(int end, ContactPair& pair) {
     const std::array<int, 3> from{end, opposite(end), opposite(end) + 1};
     const Feature feature = feature_opposite(pair, end);
     const auto vertex = pair.vertex;
-    const PairVertices x = pair.x;
+    const geometry::PairVertices x = pair.x;
     geometry::ClosestPoints& c = pair.closest;
     const auto weight = c.weight;
     const auto free_weight = c.free_weight;
-    pair.type = PairType::point_triangle;
+    pair.type = geometry::PairType::point_triangle;
     for (int k = 0; k < 4; ++k) {
         const int i = from[std::min(k, 2)];
         pair.vertex[k] = vertex[i];

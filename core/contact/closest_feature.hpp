@@ -12,14 +12,14 @@ namespace fettle::core::contact {
 /// One to three vertices of a body, ascending; -1 for none.
 using Feature = std::array<int, 3>;
 
-/// Of a point_triangle pair: what of the second primitive its closest point lies in.
+/// The feature of the second primitive in which a point_triangle pair's closest point lies.
 Feature closest_feature(const ContactPair& pair);
 
 /// Makes it the same contact as one of a vertex and `feature`, closest_feature(pair): over an edge or a vertex the corners of the face
 /// coincide.
 void put_on_feature(const Feature& feature, ContactPair& pair);
 
-/// Of an edge_edge pair: which of its vertices, 0 to 3, closest points are, if any are: one of the first edge before one of the second.
+/// Which of an edge_edge pair's vertices, 0 to 3, closest points are, if any are: one of the first edge before one of the second.
 /// Then the contact is that of this vertex with the other edge, but where the mollifier acts, which feels more than the distance.
 /// -1: none, or the mollifier acts.
 int closest_end(const ContactPair& pair);

@@ -15,7 +15,7 @@ class AreaCounter {
 public:
     AreaCounter(const model::Model& model, const std::vector<kinematics::Pose>& poses) : model_(model), poses_(poses) {}
 
-    void add(const BodyPairCandidates& list, const WorldVertices& vertices) {
+    void add(const ccd::BodyPairCandidates& list, const WorldVertices& vertices) {
         NearPairs near;
         find_near({model_, list, poses_, vertices}, near);
         std::vector<ContactPair> forward, backward;
@@ -31,9 +31,9 @@ public:
     ContactAreas take() { return std::move(out_); }
 
 private:
-    AreaShare share_of(const BodyPairCandidates& list, const WeightPart& part) {
+    AreaShare share_of(const ccd::BodyPairCandidates& list, const WeightPart& part) {
         const double factor = 0.5 * part.count;
-        if (part.type == PairType::point_triangle) return {part.of_second ? list.b : list.a, false, part.vertex[0], factor};
+        if (part.type == geometry::PairType::point_triangle) return {part.of_second ? list.b : list.a, false, part.vertex[0], factor};
         const int a = edge_of(list.a, part.vertex[0], part.vertex[1]), b = edge_of(list.b, part.vertex[2], part.vertex[3]);
         const double area_a = area_of(list.a, a), area_b = area_of(list.b, b);
         constexpr double same = 1e-9;
@@ -58,11 +58,11 @@ private:
 
 }  // namespace
 
-ContactAreas contact_areas(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses) {
+ContactAreas contact_areas(const model::Model& model, const ccd::Candidates& candidates, const std::vector<kinematics::Pose>& poses) {
     FETTLE_ASSERT(model.area_weighted, "only an area-weighted barrier has areas");
     AreaCounter counter(model, poses);
     const WorldVertices vertices(model, candidates, poses);
-    for (const BodyPairCandidates& list : candidates.pairs)
+    for (const ccd::BodyPairCandidates& list : candidates.pairs)
         if (!list.empty()) counter.add(list, vertices);
     return counter.take();
 }

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "fettle/core/contact/candidates.hpp"
+#include "fettle/core/ccd/candidates.hpp"
 #include "fettle/core/kinematics/path.hpp"
 
 namespace fettle::core::contact {
@@ -28,7 +28,7 @@ struct ContactAreas {
     std::vector<EqualAreas> equal;
 };
 
-/// Of the contacts that find_contacts finds. Contract: the model is area-weighted.
-ContactAreas contact_areas(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses);
+/// The areas of the contacts that find_contacts finds. Contract: the model is area-weighted.
+ContactAreas contact_areas(const model::Model& model, const ccd::Candidates& candidates, const std::vector<kinematics::Pose>& poses);
 
 }  // namespace fettle::core::contact

@@ -9,7 +9,9 @@
 namespace fettle::core::contact {
 namespace {
 
-int body_of(const BodyPairContacts& list, const ContactPair& pair, int i) { return i < first_count(pair.type) ? list.first : list.second; }
+int body_of(const BodyPairContacts& list, const ContactPair& pair, int i) {
+    return i < geometry::first_count(pair.type) ? list.first : list.second;
+}
 
 Eigen::Vector4d material_point(const model::Model& model, const BodyPairContacts& list, const ContactPair& pair, int i) {
     return model.bodies[body_of(list, pair, i)].mesh.vertices.col(pair.vertex[i]).homogeneous();
@@ -70,7 +72,7 @@ double contact_damping_potential(const DampedContacts& damped) {
     const ContactSet& set = damped.contacts;
     const ContactDamping& damping = damped.damping;
     std::vector<double> values(set.pairs.size());
-    base::parallel_for(static_cast<int>(set.pairs.size()), pairs_at_once(set.pairs.size(), static_cast<std::size_t>(set.count)),
+    base::parallel_for(static_cast<int>(set.pairs.size()), geometry::pairs_at_once(set.pairs.size(), static_cast<std::size_t>(set.count)),
                        [&](int k) {
                            const BodyPairContacts& list = set.pairs[k];
                            for (const ContactPair& contact : list.contacts) {

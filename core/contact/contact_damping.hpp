@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Damping of contacts along their gaps: what a pair loses by being pressed together or let go. docs/method.md section 4.
+/// Damping of contacts along their gaps: what a pair loses by being pressed together or let go. docs/method/contact.md#damping-in-contact.
 /// A pair's closeness is its barrier potential without stiffness and area, a number: 0 from the activation distance on, unbounded at dmin,
 ///   phi = m b(g) / g_hat^2,   g = d^2 - dmin^2,   C2 at the activation distance (barrier.hpp), so that damping sets in gently.
 /// The pair's barrier potential is kappa w g_hat^2 / (4 activation^2) phi [J]; T times that, the damping time T [s], makes the coefficient
@@ -57,7 +57,7 @@ struct DampedContacts {
 double contact_damping_potential(const DampedContacts& damped);
 
 /// Adds first and second derivatives (Gauss-Newton part of the Hessian), as add_barrier_derivatives does.
-/// @param kind  projected: positive semi-definite pair by pair. Of a pair that closes, by its parts, that of phi as the barrier's; of one
+/// @param kind  projected: positive semi-definite pair by pair. For a pair that closes, by its parts, that of phi as the barrier's; for one
 ///              that opens phi's part is negative, and the eigenvalues of the whole are cut off at 0.
 void add_contact_damping_derivatives(const DampedContacts& damped, const std::vector<kinematics::Pose>& poses, HessianKind kind,
                                      std::vector<kinematics::PoseGradient>& gradients, kinematics::BlockHessian& hessian);

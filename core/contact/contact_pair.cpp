@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/base/four.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::core::contact {
 namespace {
@@ -13,7 +13,7 @@ using geometry::ClosestPoints;
 
 // m and its derivatives for a pair (1 unless nearly parallel edges).
 ScalarDerivatives mollifier_of(const ContactPair& pair) {
-    if (pair.type == PairType::point_triangle) return {1, 0, 0};
+    if (pair.type == geometry::PairType::point_triangle) return {1, 0, 0};
     return edge_mollifier(edge_cross_squared(pair.x), pair.mollifier_eps);
 }
 
@@ -27,7 +27,7 @@ struct FreeDirections {
     Matrix2 l;                 // Cholesky factor of K (free_count 1: only (0,0))
 };
 
-FreeDirections free_directions(const ClosestPoints& c, const PairVertices& x) {
+FreeDirections free_directions(const ClosestPoints& c, const geometry::PairVertices& x) {
     FreeDirections d;
     for (int a = 0; a < c.free_count; ++a) {
         d.r[a].setZero();
@@ -86,7 +86,7 @@ struct Arms {
 Arms arms_of(const ContactPair& pair, const Vector3& first_position, const Vector3& second_position) {
     const auto& w = pair.closest.weight;
     Arms a{Vector3::Zero(), Vector3::Zero()};
-    const int n = first_count(pair.type);
+    const int n = geometry::first_count(pair.type);
     for (int i = 0; i < n; ++i) a.first += w[i] * (pair.x[i] - first_position);
     for (int i = n; i < 4; ++i) a.second -= w[i] * (pair.x[i] - second_position);
     return a;
@@ -94,7 +94,7 @@ Arms arms_of(const ContactPair& pair, const Vector3& first_position, const Vecto
 
 // Does interior parameter a belong to the first body?
 bool on_first(const ContactPair& pair, int a) {
-    return pair.closest.free_weight[a][0] != 0 || (pair.type == PairType::edge_edge && pair.closest.free_weight[a][1] != 0);
+    return pair.closest.free_weight[a][0] != 0 || (pair.type == geometry::PairType::edge_edge && pair.closest.free_weight[a][1] != 0);
 }
 
 // How the interior parameters follow: what slides (w (x) r_a) and what turns (w'_a (x) n), both times L^-1.
@@ -197,7 +197,7 @@ struct EdgeCross {
     Matrix3 c11, c12, c22;   // second derivatives
 };
 
-EdgeCross edge_cross(const PairVertices& x) {
+EdgeCross edge_cross(const geometry::PairVertices& x) {
     EdgeCross k;
     k.e1 = x[1] - x[0];
     k.e2 = x[3] - x[2];
@@ -294,7 +294,7 @@ void add_outer_product(PairMatrix& hessian, double factor, const PairVector& v) 
 }
 
 PairMatrix positive_part(const PairMatrix& lower) {
-    const SymmetricEigen<9> eigen = symmetric_eigen<9>(lower);
+    const linear::SymmetricEigen<9> eigen = linear::symmetric_eigen<9>(lower);
     if (eigen.values[0] >= 0) return lower;
     const PairVector positive = eigen.values.cwiseMax(0.0);
     return eigen.vectors * positive.asDiagonal() * eigen.vectors.transpose();
@@ -390,7 +390,7 @@ std::array<Vector3, 4> pair_hessian_product(const ContactPair& pair, const Barri
 void add_pair_derivatives(const ContactPair& pair, const BarrierParameters& p, HessianKind kind, const Vector3& first_position,
                           const Vector3& second_position, BodyPairSum& sum) {
     const Arms arms = arms_of(pair, first_position, second_position);
-    if (pair.type == PairType::edge_edge && edge_cross_squared(pair.x) < pair.mollifier_eps) {
+    if (pair.type == geometry::PairType::edge_edge && edge_cross_squared(pair.x) < pair.mollifier_eps) {
         add_mollified(pair, arms, p, kind, sum);
         return;
     }

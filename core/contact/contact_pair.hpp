@@ -14,8 +14,8 @@
 
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/contact/barrier.hpp"
-#include "fettle/core/contact/primitive_pair.hpp"
 #include "fettle/core/geometry/distance.hpp"
+#include "fettle/core/geometry/primitive_pair.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
 
 namespace fettle::core::contact {
@@ -28,8 +28,8 @@ enum class HessianKind {
 
 /// One pair closer than the activation distance, in world coordinates.
 struct ContactPair {
-    PairType type = PairType::point_triangle;
-    PairVertices x;               ///< world [m]; the first primitive's vertices are on body `first`
+    geometry::PairType type = geometry::PairType::point_triangle;
+    geometry::PairVertices x;     ///< world [m]; the first primitive's vertices are on body `first`
     std::array<int, 4> vertex{};  ///< indices into the bodies' meshes
     int face = -1;                ///< point_triangle: index into BodyHierarchy::faces; -1: an edge or a vertex, corners coincide
     geometry::ClosestPoints closest;
@@ -38,16 +38,13 @@ struct ContactPair {
                         ///< the edges' (they cannot share more). Times how often it counts (counted_contacts.hpp), which can be negative
 };
 
-/// How many of the four vertices lie on the first body.
-inline int first_count(PairType type) { return type == PairType::point_triangle ? 1 : 2; }
-
-inline geometry::ClosestPoints closest_points(PairType type, const PairVertices& x) {
-    return type == PairType::point_triangle ? geometry::point_triangle_closest(x[0], x[1], x[2], x[3])
-                                            : geometry::edge_edge_closest(x[0], x[1], x[2], x[3]);
+inline geometry::ClosestPoints closest_points(geometry::PairType type, const geometry::PairVertices& x) {
+    return type == geometry::PairType::point_triangle ? geometry::point_triangle_closest(x[0], x[1], x[2], x[3])
+                                                      : geometry::edge_edge_closest(x[0], x[1], x[2], x[3]);
 }
 
 /// |e1 x e2|^2 of an edge-edge pair.
-inline double edge_cross_squared(const PairVertices& x) { return (x[1] - x[0]).cross(x[3] - x[2]).squaredNorm(); }
+inline double edge_cross_squared(const geometry::PairVertices& x) { return (x[1] - x[0]).cross(x[3] - x[2]).squaredNorm(); }
 
 /// Potential [J x weight]; 0 beyond the activation distance. Contract: closest distance > dmin.
 double pair_potential(const ContactPair& pair, const BarrierParameters& parameters);

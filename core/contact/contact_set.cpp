@@ -25,7 +25,7 @@ struct Found {
 
 // Adds those of one pair of bodies; vertices on the higher body come as a list of their own.
 void add_contacts(const NearAt& at, CountingPlan* plan, Found& found) {
-    const BodyPairCandidates& list = at.list;
+    const ccd::BodyPairCandidates& list = at.list;
     if (list.empty()) return;
     static thread_local NearPairs near;
     const double least = find_near(at, near);
@@ -45,13 +45,13 @@ void append(std::vector<T>& to, std::vector<T>& from) {
 }
 
 // A plan for each pair of the candidates: those that are known, and empty ones.
-void take_over(const Candidates& candidates, ContactPlans& plans) {
-    const auto is_of = [](const ContactPlans::OfPair& of, const BodyPairCandidates& pair) { return of.a == pair.a && of.b == pair.b; };
+void take_over(const ccd::Candidates& candidates, ContactPlans& plans) {
+    const auto is_of = [](const ContactPlans::OfPair& of, const ccd::BodyPairCandidates& pair) { return of.a == pair.a && of.b == pair.b; };
     if (std::equal(plans.pairs.begin(), plans.pairs.end(), candidates.pairs.begin(), candidates.pairs.end(), is_of)) return;
     std::vector<ContactPlans::OfPair> from = std::exchange(plans.pairs, {});
     plans.pairs.reserve(candidates.pairs.size());
     auto old = from.begin();
-    for (const BodyPairCandidates& pair : candidates.pairs) {
+    for (const ccd::BodyPairCandidates& pair : candidates.pairs) {
         while (old != from.end() && std::pair(old->a, old->b) < std::pair(pair.a, pair.b)) ++old;
         if (old != from.end() && is_of(*old, pair))
             plans.pairs.push_back(std::move(*old++));
@@ -74,7 +74,8 @@ double potential_of(const BodyPairContacts& list, const BarrierParameters& param
 
 }  // namespace
 
-ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses, ContactPlans* plans) {
+ContactSet find_contacts(const model::Model& model, const ccd::Candidates& candidates, const std::vector<Pose>& poses,
+                         ContactPlans* plans) {
     const int count = static_cast<int>(candidates.pairs.size());
     if (plans != nullptr) take_over(candidates, *plans);
     const WorldVertices vertices(model, candidates, poses);
@@ -98,7 +99,7 @@ ContactSet find_contacts(const model::Model& model, const Candidates& candidates
 
 double barrier_potential(const ContactSet& set, const BarrierParameters& parameters) {
     std::vector<double> values(set.pairs.size());
-    base::parallel_for(static_cast<int>(set.pairs.size()), pairs_at_once(set.pairs.size(), static_cast<std::size_t>(set.count)),
+    base::parallel_for(static_cast<int>(set.pairs.size()), geometry::pairs_at_once(set.pairs.size(), static_cast<std::size_t>(set.count)),
                        [&](int k) { values[k] = potential_of(set.pairs[k], parameters); });
     double sum = 0;
     for (const double value : values) sum += value;
@@ -123,7 +124,7 @@ void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, std::size_t co
         Matrix6 of_first, of_second, cross;  // cross: of the lower body's rows
     };
     const auto made = std::make_unique_for_overwrite<Made[]>(bodies.size());
-    base::parallel_for(static_cast<int>(bodies.size()), pairs_at_once(bodies.size(), contacts), [&](int k) {
+    base::parallel_for(static_cast<int>(bodies.size()), geometry::pairs_at_once(bodies.size(), contacts), [&](int k) {
         BodyPairSum sum;
         make(k, sum);
         made[k].first = sum.first;

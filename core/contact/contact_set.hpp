@@ -7,8 +7,8 @@
 #include <functional>
 #include <vector>
 
+#include "fettle/core/ccd/candidates.hpp"
 #include "fettle/core/contact/barrier.hpp"
-#include "fettle/core/contact/candidates.hpp"
 #include "fettle/core/contact/contact_pair.hpp"
 #include "fettle/core/contact/counted_contacts.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
@@ -21,16 +21,9 @@ struct BodyPairContacts {
     std::vector<ContactPair> contacts;
 };
 
-/// Least distance of two bodies, a < b, that have contacts, computed, not proven: of all their primitives, but for flat edges, which are
-/// nearer by no more than the heights of the bodies' flat features (geometry/flat_features.hpp).
-struct BodyDistance {
-    int a = 0, b = 0;
-    double distance = 0;  ///< [m], finite
-};
-
 struct ContactSet {
-    std::vector<BodyPairContacts> pairs;  ///< in the candidates' order; vertices on the higher body come as a pair of their own
-    std::vector<BodyDistance> distances;  ///< in the candidates' order
+    std::vector<BodyPairContacts> pairs;       ///< in the candidates' order; vertices on the higher body come as a pair of their own
+    std::vector<ccd::BodyDistance> distances;  ///< in the candidates' order
     int count = 0;
     double minimum_distance = 0;  ///< of the contacts [m], computed, not proven; infinity if there are none, not finite where a pose is not
 };
@@ -47,7 +40,7 @@ struct ContactPlans {
 /// Contacts among the candidates at `poses`, plane faces counted once (counted_contacts.hpp). Pairs at or below dmin are contacts too, of
 /// no finite potential. Contract: candidates cover `poses`.
 /// @param plans  of the same model before; they save time, and change no bit
-ContactSet find_contacts(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses,
+ContactSet find_contacts(const model::Model& model, const ccd::Candidates& candidates, const std::vector<kinematics::Pose>& poses,
                          ContactPlans* plans = nullptr);
 
 /// Sum of the barrier potential over the contacts; infinity where a pair is at or below dmin, or its distance is not finite.

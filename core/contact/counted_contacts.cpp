@@ -160,7 +160,7 @@ private:
         for (const ContactPair& pair : pairs) {
             const auto& v = pair.vertex;
             const int index = static_cast<int>(order_.size());
-            if (pair.type == PairType::edge_edge)
+            if (pair.type == geometry::PairType::edge_edge)
                 order_.push_back({two(v[0], v[1]), two(v[2], v[3]), index});
             else
                 order_.push_back({two(v[0], 0), two(pair.face, 0), index});
@@ -325,9 +325,9 @@ private:
     static WeightPart part_of(const Entry& entry, Kind kind, const NearPairs& near) {
         const auto index = static_cast<std::size_t>(entry.pair);
         const int count = entry.weight < 0 ? -1 : 1;
-        if (kind == Kind::of_edges || entry.end >= 0) return {PairType::edge_edge, false, near.edges[index].vertex, count};
+        if (kind == Kind::of_edges || entry.end >= 0) return {geometry::PairType::edge_edge, false, near.edges[index].vertex, count};
         const bool of_first = kind == Kind::of_first && !entry.swap;
-        return {PairType::point_triangle, !of_first, (of_first ? near.on_second : near.on_first)[index].vertex, count};
+        return {geometry::PairType::point_triangle, !of_first, (of_first ? near.on_second : near.on_first)[index].vertex, count};
     }
 
     std::vector<Place> order_;

@@ -47,7 +47,7 @@ struct NearPairs {
 
 /// A pair that was near and whose weight is in a contact's, `count` times.
 struct WeightPart {
-    PairType type = PairType::point_triangle;
+    geometry::PairType type = geometry::PairType::point_triangle;
     bool of_second = false;       ///< point_triangle: the vertex is on the second body
     std::array<int, 4> vertex{};  ///< as ContactPair::vertex; point_triangle: only the first
     int count = 1;                ///< 1 or -1
@@ -81,7 +81,7 @@ public:
     std::vector<Absent> absent;
 };
 
-/// What count_contacts tells beside the contacts, each if it is asked for.
+/// What count_contacts returns beside the contacts, each on request.
 struct CountingNotes {
     WeightParts *forward_parts = nullptr,
                 *backward_parts = nullptr;  ///< both or none: what weights are made of, appended contact by contact

@@ -31,7 +31,7 @@ Slide slide_of(const FrictionContact& c, const Pose& first, const Pose& second) 
 FrictionContact lag_contact(const ContactPair& pair, const Pose& first, const Pose& second, const Matrix34& reference_first,
                             const Matrix34& reference_second) {
     const auto& w = pair.closest.weight;
-    const int n = first_count(pair.type);
+    const int n = geometry::first_count(pair.type);
     Vector3 a = Vector3::Zero(), b = Vector3::Zero();
     for (int i = 0; i < n; ++i) a += w[i] * (pair.x[i] - first.position);
     for (int i = n; i < 4; ++i) b -= w[i] * (pair.x[i] - second.position);
@@ -57,7 +57,8 @@ std::size_t contacts_of(const FrictionSet& set) {
 FrictionSet lag_friction(const model::Model& model, const ContactSet& contacts, const std::vector<Pose>& poses,
                          const BarrierParameters& parameters, const std::vector<Matrix34>& slip_reference, double slip_time) {
     std::vector<BodyPairFriction> lagged(contacts.pairs.size());
-    base::parallel_for(static_cast<int>(lagged.size()), pairs_at_once(lagged.size(), static_cast<std::size_t>(contacts.count)), [&](int k) {
+    const int at_once = geometry::pairs_at_once(lagged.size(), static_cast<std::size_t>(contacts.count));
+    base::parallel_for(static_cast<int>(lagged.size()), at_once, [&](int k) {
         const BodyPairContacts& list = contacts.pairs[k];
         BodyPairFriction& pair = lagged[k];
         pair.first = list.first;
@@ -89,7 +90,7 @@ double sliding_share(const FrictionSet& set, const std::vector<Pose>& poses) {
 
 double friction_potential(const FrictionSet& set, const std::vector<Pose>& poses) {
     std::vector<double> values(set.pairs.size());
-    base::parallel_for(static_cast<int>(values.size()), pairs_at_once(values.size(), contacts_of(set)), [&](int k) {
+    base::parallel_for(static_cast<int>(values.size()), geometry::pairs_at_once(values.size(), contacts_of(set)), [&](int k) {
         const BodyPairFriction& pair = set.pairs[k];
         for (const FrictionContact& c : pair.contacts)
             values[k] += c.load * friction_mollifier(slide_of(c, poses[pair.first], poses[pair.second]).distance, set.slip_bound).value;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Smoothed Coulomb friction with lagged normal forces and tangents. docs/method.md section 5.
+/// Smoothed Coulomb friction with lagged normal forces and tangents. docs/method/contact.md#friction.
 ///   D = sum over contacts of load * f0(|u|),   u = T^T (x_a - x_b - (slip reference of the same material points)),   load = weight mu
 ///   lambda f0(y) = y for y >= e,  -y^3/(3 e^2) + y^2/e + e/3 below;   e = eps_v * slip_time
 /// u / slip_time is the contact's sliding velocity of the integrator in use (energy/time_integration.hpp), so that the force is mu lambda

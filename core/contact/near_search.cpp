@@ -27,13 +27,14 @@ bool is_beyond(double distance_squared, double limit_squared) {
 // The pairs of one pair of bodies that are closer than the activation distance.
 class NearSearch {
 public:
-    NearSearch(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses, const WorldVertices& vertices)
+    NearSearch(const model::Model& model, const ccd::BodyPairCandidates& list, const std::vector<Pose>& poses,
+               const WorldVertices& vertices)
         : model_(model),
           list_(list),
           a_{model.bodies[list.a], vertices.of(list.a)},
           b_{model.bodies[list.b], vertices.of(list.b)},
           activation_(model.dmin + model.dhat) {
-        reach_ = activation_ + motion_since(model, list, poses);
+        reach_ = activation_ + ccd::motion_since(model, list, poses);
     }
 
     /// @return the least squared distance
@@ -58,7 +59,7 @@ private:
     };
 
     // Most candidates within reach are near: they are worked out in the place where they stay, as copying takes as long as the arithmetic.
-    static ContactPair& begin(PairType type, std::vector<ContactPair>& out) {
+    static ContactPair& begin(geometry::PairType type, std::vector<ContactPair>& out) {
         ContactPair& pair = out.emplace_back();
         pair.type = type;
         return pair;
@@ -79,7 +80,7 @@ private:
 
     void add_vertex(const Side& point, int v, const Side& face, int t, std::vector<ContactPair>& out) {
         const geometry::Triangle& corners = face.body.hierarchy->faces()[t];
-        ContactPair& pair = begin(PairType::point_triangle, out);
+        ContactPair& pair = begin(geometry::PairType::point_triangle, out);
         pair.x[0] = point.vertex(v);
         for (std::size_t k = 0; k < 3; ++k) pair.x[k + 1] = face.vertex(corners[k]);
         if (!work_out(out)) return;
@@ -96,7 +97,7 @@ private:
             if (distance > reach_) break;
             if ((flat_a && flat_a->is_flat_edge(ea)) || (flat_b && flat_b->is_flat_edge(eb))) continue;
             const geometry::Edge &va = a.mesh.edges[ea], &vb = b.mesh.edges[eb];
-            ContactPair& pair = begin(PairType::edge_edge, out);
+            ContactPair& pair = begin(geometry::PairType::edge_edge, out);
             for (std::size_t k = 0; k < 2; ++k) {
                 pair.x[k] = a_.vertex(va[k]);
                 pair.x[k + 2] = b_.vertex(vb[k]);
@@ -109,7 +110,7 @@ private:
     }
 
     const model::Model& model_;
-    const BodyPairCandidates& list_;
+    const ccd::BodyPairCandidates& list_;
     Side a_, b_;
     double activation_, reach_ = 0;
     double least_ = std::numeric_limits<double>::infinity();
@@ -117,13 +118,13 @@ private:
 
 }  // namespace
 
-WorldVertices::WorldVertices(const model::Model& model, const Candidates& candidates, const std::vector<Pose>& poses)
+WorldVertices::WorldVertices(const model::Model& model, const ccd::Candidates& candidates, const std::vector<Pose>& poses)
     : model_(model), poses_(poses), begin_(model.bodies.size(), -1) {
     constexpr Eigen::Index small = 64;
     constexpr int bodies_a_piece = 64;
     int count = 0;
     std::vector<int> placed;
-    for (const BodyPairCandidates& list : candidates.pairs) {
+    for (const ccd::BodyPairCandidates& list : candidates.pairs) {
         if (list.empty()) continue;
         for (const int body : {list.a, list.b}) {
             int& begin = begin_[static_cast<std::size_t>(body)];
@@ -145,7 +146,7 @@ WorldVertices::WorldVertices(const model::Model& model, const Candidates& candid
 
 double find_near(const NearAt& at, NearPairs& near) { return NearSearch(at.model, at.list, at.poses, at.vertices).find(near); }
 
-CountedSides counted_sides(const model::Model& model, const BodyPairCandidates& list, const std::vector<Pose>& poses) {
+CountedSides counted_sides(const model::Model& model, const ccd::BodyPairCandidates& list, const std::vector<Pose>& poses) {
     const auto side = [&](int body) { return ContactSide{model.bodies[body], poses[body], flat_features_of(model, model.bodies[body])}; };
     const bool by_element = model.contact_damping_time > 0;  // it feels more than the distance at one time
     return {side(list.a), side(list.b), model.dmin + model.dhat, by_element};

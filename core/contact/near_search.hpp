@@ -6,15 +6,15 @@
 #include <cmath>
 #include <vector>
 
-#include "fettle/core/contact/candidates.hpp"
+#include "fettle/core/ccd/candidates.hpp"
 #include "fettle/core/contact/counted_contacts.hpp"
 
 namespace fettle::core::contact {
 
-/// Vertices of bodies in space. Of small meshes all are placed beforehand: contacts ask for each several times.
+/// Vertices of bodies in space. Those of small meshes are all placed beforehand: contacts ask for each several times.
 class WorldVertices {
 public:
-    WorldVertices(const model::Model& model, const Candidates& candidates, const std::vector<kinematics::Pose>& poses);
+    WorldVertices(const model::Model& model, const ccd::Candidates& candidates, const std::vector<kinematics::Pose>& poses);
 
     /// Those of one body.
     class OfBody {
@@ -47,7 +47,7 @@ inline double least_of(double a, double b) { return a <= b || std::isnan(a) ? a 
 /// Where two bodies are.
 struct NearAt {
     const model::Model& model;
-    const BodyPairCandidates& list;
+    const ccd::BodyPairCandidates& list;
     const std::vector<kinematics::Pose>& poses;
     const WorldVertices& vertices;
 };
@@ -57,6 +57,6 @@ struct NearAt {
 double find_near(const NearAt& at, NearPairs& near);
 
 /// What count_contacts wants to know of them.
-CountedSides counted_sides(const model::Model& model, const BodyPairCandidates& list, const std::vector<kinematics::Pose>& poses);
+CountedSides counted_sides(const model::Model& model, const ccd::BodyPairCandidates& list, const std::vector<kinematics::Pose>& poses);
 
 }  // namespace fettle::core::contact

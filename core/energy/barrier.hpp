@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The barrier between bodies (contact/contact_set.hpp) as a term of the incremental potential. Reports the energy and the forces that it
-/// puts between bodies. docs/method.md section 4.
+/// puts between bodies. docs/method/contact.md.
 #pragma once
 
 #include "fettle/core/energy/term.hpp"

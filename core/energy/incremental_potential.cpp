@@ -5,7 +5,6 @@
 #include <array>
 #include <utility>
 
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/energy/barrier.hpp"
 #include "fettle/core/energy/contact_damping.hpp"
@@ -14,6 +13,7 @@
 #include "fettle/core/energy/inertia.hpp"
 #include "fettle/core/energy/loads.hpp"
 #include "fettle/core/energy/measure_terms.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::core::energy {
 namespace {
@@ -28,7 +28,7 @@ constexpr int values_a_piece = 32;   // the same, of values alone
 Matrix6 positive_part(const Matrix6& h) {
     const Eigen::LLT<Matrix6> cholesky(h);
     if (cholesky.info() == Eigen::Success) return h;
-    const SymmetricEigen<6> eigen = symmetric_eigen<6>(h);
+    const linear::SymmetricEigen<6> eigen = linear::symmetric_eigen<6>(h);
     const Vector6 positive = eigen.values.cwiseMax(0.0);
     return eigen.vectors * positive.asDiagonal() * eigen.vectors.transpose();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The function that one time step minimises over all bodies' poses: the sum of its terms (term.hpp), potentials times the integrator's
-/// weight. docs/method.md sections 3 and 6.
+/// weight. docs/method/energy.md and docs/method/solver.md.
 ///   E(y) = sum E_d(P) - weight sum (f . (q - q_t0) + tau . theta) + damping + barrier + contact damping
 ///          + friction + springs, dampers, stops, forces along measures
 /// Coordinates: each body's (q, theta) in the chart of the step, R = exp([theta]) R_t0 (step_problem.hpp).
@@ -33,7 +33,7 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
                                    const std::vector<kinematics::Pose>& poses, const contact::ContactSet& contacts,
                                    contact::HessianKind kind);
 
-/// What all terms have to tell of a solved step.
+/// What all terms report about a solved step.
 TermReport term_report(const SolvedStep& step);
 
 }  // namespace fettle::core::energy

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Constant forces and torques as a term of the incremental potential:  - weight (f . (q - q_t0) + tau . theta). docs/method.md section 3.
+/// Constant forces and torques as a term of the incremental potential:  - weight (f . (q - q_t0) + tau . theta). docs/method/energy.md.
 /// tau is the constant gradient in the chart's theta that acts as the body's torque (time_integration.hpp). Gravity is in the inertia's
-/// P_hat, but its energy is reported here, with that of the forces. Of a quasi-static step it is a load, and its potential stands here:
+/// P_hat, but its energy is reported here, with that of the forces. In a quasi-static step it is a load, and its potential stands here:
 ///   - weight a . ((P - P_t0) M e4).
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Energies of one measure m: springs, dampers, forces, stops, friction of joints. docs/method.md section 9.
+/// Energies of one measure m: springs, dampers, forces, stops, friction of joints. docs/method/joints.md#springs-dampers-stops-friction.
 ///   spring    1/2 c (m - reference)^2
 ///   damper    1/2 c (m - m_slip)^2 / slip_time                              nothing in a quasi-static step
 ///   force     -f m, f the curve at the step's end

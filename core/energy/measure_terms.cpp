@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/energy/measure_terms.hpp"
 
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::core::energy {
 namespace {
@@ -23,7 +23,7 @@ double measures_value(const ValueAt& at) {
 }
 
 Matrix12 positive_part_of(const Matrix12& h) {
-    const SymmetricEigen<12> eigen = symmetric_eigen<12>(h);
+    const linear::SymmetricEigen<12> eigen = linear::symmetric_eigen<12>(h);
     return eigen.vectors * eigen.values.cwiseMax(0.0).asDiagonal() * eigen.vectors.transpose();
 }
 

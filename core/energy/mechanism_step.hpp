@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// What a step holds constant of joints, springs and motors: turns counted so far, what dampers and joint friction measure rates from,
-/// what rows are to come to. docs/method.md section 9.
+/// what rows are to come to. docs/method/joints.md#rows.
 #pragma once
 
 #include <vector>

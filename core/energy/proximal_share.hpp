@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// What a quasi-static step's proximal term carries, against the loads: whether bodies are held by what the scene has, or by nothing.
-/// docs/method.md section 3.
+/// docs/method/energy.md#quasi-static-steps.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the terms of the incremental potential have to tell of a step that is solved: energies, momenta, forces between bodies.
+/// What the terms of the incremental potential report about a step that is solved: energies, momenta, forces between bodies.
 #pragma once
 
 #include <vector>

@@ -2,12 +2,12 @@
 #include "fettle/core/energy/time_integration.hpp"
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/energy/damping_moments.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
 #include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::core::energy {
 namespace {
@@ -45,7 +45,7 @@ Vector6 rigid_acceleration(const model::Body& body, const Matrix3& R, const Vect
         h(k, k) = 1;
         rhs[k] = held[k];
     }
-    return SymmetricFactor(h).solve(rhs);
+    return linear::SymmetricFactor(h).solve(rhs);
 }
 
 Matrix34 pose_acceleration(const Matrix3& R, const Vector3& omega, const Vector6& a) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Time integration as choices of P_hat and of the potentials' weight. docs/method.md section 3.
+/// Time integration as choices of P_hat and of the potentials' weight. docs/method/energy.md#integrators.
 /// A step minimises 1/2 tr((P - P_hat) M (P - P_hat)^T) + weight (potentials); contact slides at V = (P - P_slip) / slip_time, which is the
 /// end velocity too but for Newmark's.
 ///   implicit Euler  P_hat = P0 + h V0 + h^2 a                weight h^2        P_slip = P0                slip_time = h
@@ -10,7 +10,7 @@
 ///   quasi-static    P_hat = P0                               weight W          P_slip = P0                slip_time = h
 ///                   gravity is a load of its own; W = h^2/eps, Model::proximal_weight: then the first term over W is the proximal one,
 ///                   1/2 (eps/h^2) |P - P0|^2_M, and what is minimised is W times the equilibrium's energy
-/// with a the acceleration of gravity. A quasi-static step knows no velocities: they stay 0, and damping has no effect. Bodies that are
+/// with a the acceleration of gravity. A quasi-static step has no velocities: they stay 0, and damping has no effect. Bodies that are
 /// prescribed altogether have V = (P - P0) / h. Orders of accuracy: 1, 2, 2. The first two damp what they cannot resolve; Newmark keeps
 /// energy, and rings in stiff contact. A free spin omega about a principal axis: implicit Euler brakes it by a share h omega^2 per unit of
 /// time (after a turn of phi = h omega comes one of phi - phi^3), so that omega(t) = omega_0 / sqrt(1 + 2 h omega_0^2 t); with BDF2 and

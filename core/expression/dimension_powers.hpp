@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Dimensions as powers of length, mass, time and angle, so that they can be multiplied: a length times a length is an area. Of products
-/// and powers in an expression (formula.hpp); those that have units of their own are base::Dimension.
+/// Dimensions as powers of length, mass, time and angle, so that they can be multiplied: a length times a length is an area. They are used
+/// for products and powers in an expression (formula.hpp); those that have units of their own are base::Dimension.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct DimensionPowers {
 
 DimensionPowers powers_of(Dimension dimension);
 bool same(const DimensionPowers& a, const DimensionPowers& b);
-/// Of x y^n.
+/// The dimension of x y^n.
 DimensionPowers product(const DimensionPowers& x, const DimensionPowers& y, double n = 1);
 
 /// The dimension of that name; none for lengths to the fourth, and so on. Torque, not energy, of the two that are one.

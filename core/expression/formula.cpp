@@ -61,12 +61,27 @@ private:
 
 }  // namespace
 
+Formula formula_of(Nodes nodes, const std::vector<std::string>& names, const DimensionPowers& dimension) {
+    Formula out{std::move(nodes), {}, dimension, {}};
+    for (Node& node : out.nodes) {
+        if (node.operation != Operation::input) continue;
+        out.inputs.push_back(names.at(static_cast<std::size_t>(node.operands[0])));
+        node.operands[0] = static_cast<int>(out.inputs.size()) - 1;
+    }
+    return out;
+}
+
 Formula constant_formula(double si, const DimensionPowers& dimension) {
     return {{{Operation::constant, {0, 0, 0}, si}}, {}, dimension, {}};
 }
 
 Formula input_formula(const std::string& name, const DimensionPowers& dimension) {
     return {{{Operation::input, {0, 0, 0}, 0}}, {name}, dimension, {}};
+}
+
+Formula recorded_formula(const Number& x, const std::vector<std::string>& names, const DimensionPowers& dimension) {
+    if (x.is_constant()) return constant_formula(x.value, dimension);
+    return formula_of(needed_for(x.tape->nodes(), x.node), names, dimension);
 }
 
 ValueAndGradient differentiated(const Formula& formula, std::span<const double> inputs) {
@@ -90,14 +105,8 @@ std::vector<int> positions_of(const Formula& formula, std::span<const std::strin
 Formula substituted(const Formula& formula, const std::map<std::string, Formula>& replacements) {
     Assembler assembler(replacements);
     const int value = assembler.add(formula, true);
-    Formula out{std::move(assembler.nodes), std::move(assembler.inputs), formula.dimension, formula.text};
-    if (value + 1 == static_cast<int>(out.nodes.size())) return out;
-    // The value is last: of a formula that is one of its inputs it may stand further up.
-    const Node value_node = out.nodes[static_cast<std::size_t>(value)];
-    if (operand_count(value_node.operation) == 0)
-        out.nodes.push_back(value_node);
-    else
-        out.nodes.resize(static_cast<std::size_t>(value) + 1);
+    Formula out = formula_of(needed_for(assembler.nodes, value), assembler.inputs, formula.dimension);
+    out.text = formula.text;
     return out;
 }
 

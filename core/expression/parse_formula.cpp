@@ -6,6 +6,7 @@
 #include <charconv>
 #include <map>
 #include <numbers>
+#include <set>
 #include <tuple>
 
 #include "fettle/core/base/limits.hpp"
@@ -56,7 +57,7 @@ constexpr std::array functions{Function{"min", Operation::minimum, Kind::keeps, 
                                Function{"exp", Operation::exponential, Kind::of_number, 1, 1},
                                Function{"log", Operation::logarithm, Kind::of_number, 1, 1}};
 
-// What part of a text stands for.
+// The meaning of a part of a text.
 struct Term {
     int node = 0;
     std::optional<DimensionPowers> dimension;  // none: of something that is wrong already
@@ -72,7 +73,7 @@ public:
         try {
             take('=');
             const Term term = sum();
-            if (!at_end()) stop("an operator is wanted" + before_rest());
+            if (!at_end()) stop("an operator is expected" + before_rest());
             if (errors_.empty()) return formula_of(term);
         } catch (const Stop&) {
         }
@@ -94,7 +95,7 @@ private:
         if (at_end()) return ", but the formula ends";
         const bool comparison = text_[at_] == '<' || text_[at_] == '>' || text_[at_] == '=';
         return " before " + in_quotes(text_.substr(at_, 20)) +
-               (comparison ? "; comparisons stand in `if(a < b, x, y)`; what a relation is compared with, in `lower` and `upper`" : "");
+               (comparison ? "; write comparisons as `if(a < b, x, y)`, and bounds of a relation in `lower` and `upper`" : "");
     }
 
     bool at_end() {
@@ -107,14 +108,14 @@ private:
         return true;
     }
     void want(char c) {
-        if (!take(c)) stop(in_quotes(std::string(1, c)) + " is wanted" + before_rest());
+        if (!take(c)) stop(in_quotes(std::string(1, c)) + " is expected" + before_rest());
     }
 
-    // Of what no input changes the value is known while it is read.
+    // A value that no input changes is known while it is read.
     bool is_constant(int node) const { return nodes_[static_cast<std::size_t>(node)].operation == Operation::constant; }
     double number_at(int node) const { return nodes_[static_cast<std::size_t>(node)].number; }
     int constant(double value) { return add({Operation::constant, {0, 0, 0}, value}); }
-    // What has been computed already is not computed again: variables that use one another would grow without end.
+    // Nothing is computed twice: variables that use one another would grow without end.
     int add(const Node& node) {
         const auto key = std::tuple(node.operation, node.operands, std::bit_cast<std::uint64_t>(node.number));
         const auto [known, is_new] = known_nodes_.emplace(key, static_cast<int>(nodes_.size()));
@@ -127,30 +128,8 @@ private:
         return add({operation, {a, std::max(b, 0), std::max(c, 0)}, 0});
     }
 
-    // Only what the value needs, in the order in which it was read.
     Formula formula_of(const Term& term) const {
-        std::vector<bool> is_used(nodes_.size(), false);
-        is_used[static_cast<std::size_t>(term.node)] = true;
-        for (std::size_t k = static_cast<std::size_t>(term.node) + 1; k-- > 0;)
-            for (int i = 0; is_used[k] && i < operand_count(nodes_[k].operation); ++i)
-                is_used[static_cast<std::size_t>(nodes_[k].operands[static_cast<std::size_t>(i)])] = true;
-        Formula out;
-        std::vector<int> moved(nodes_.size(), 0);
-        for (std::size_t k = 0; k <= static_cast<std::size_t>(term.node); ++k) {
-            if (!is_used[k]) continue;
-            Node node = nodes_[k];
-            if (node.operation == Operation::input) {
-                out.inputs.push_back(inputs_[static_cast<std::size_t>(node.operands[0])]);
-                node.operands[0] = static_cast<int>(out.inputs.size()) - 1;
-            }
-            for (int i = 0; i < operand_count(node.operation); ++i) {
-                int& operand = node.operands[static_cast<std::size_t>(i)];
-                operand = moved[static_cast<std::size_t>(operand)];
-            }
-            moved[k] = static_cast<int>(out.nodes.size());
-            out.nodes.push_back(node);
-        }
-        if (term.dimension) out.dimension = *term.dimension;
+        Formula out = expression::formula_of(needed_for(nodes_, term.node), inputs_, *term.dimension);
         out.text = text_;
         return out;
     }
@@ -168,7 +147,7 @@ private:
         }
     }
 
-    // A number without a unit takes the unit of what it stands beside.
+    // A number without a unit takes the unit of the quantity beside it.
     std::optional<DimensionPowers> one_dimension(Term& a, Term& b, std::size_t at, const std::string& done) {
         if (!a.dimension || !b.dimension || same(*a.dimension, *b.dimension)) return a.dimension ? a.dimension : b.dimension;
         if (takes_unit(a, *b.dimension) || takes_unit(b, *a.dimension)) return a.dimension;
@@ -179,12 +158,12 @@ private:
         return std::nullopt;
     }
 
-    bool takes_unit(Term& term, const DimensionPowers& wanted) {
+    bool takes_unit(Term& term, const DimensionPowers& expected) {
         if (!term.dimension->is_number() || !is_constant(term.node)) return false;
-        const auto dimension = named_dimension(wanted);
+        const auto dimension = named_dimension(expected);
         const double unit = !dimension ? 0 : scope_.plain_unit ? scope_.plain_unit(*dimension) : 1;
         if (!(unit > 0)) return false;
-        term = {constant(number_at(term.node) * unit), wanted};
+        term = {constant(number_at(term.node) * unit), expected};
         return true;
     }
 
@@ -233,7 +212,7 @@ private:
     }
 
     Term primary() {
-        if (at_end()) stop("a number, a " + scope_.what + " or `(` is wanted, but the formula ends");
+        if (at_end()) stop("a number, a " + scope_.what + " or `(` is expected, but the formula ends");
         const char c = text_[at_];
         if (take('(')) {
             const Term term = sum();
@@ -243,13 +222,13 @@ private:
         if (is_digit(c) || c == '.') return number();
         if (c == '\'') return quoted_name();
         if (starts_word(c)) return word();
-        stop("a number, a " + scope_.what + " or `(` is wanted" + before_rest());
+        stop("a number, a " + scope_.what + " or `(` is expected" + before_rest());
     }
 
     Term number() {
         double value = 0;
         const auto [end, code] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-        if (code != std::errc() || !base::is_usable_number(value)) stop("this is no number that can be used" + before_rest());
+        if (code != std::errc() || !base::is_usable_number(value)) stop("this number cannot be used" + before_rest());
         at_ = static_cast<std::size_t>(end - text_.data());
         const base::Unit* unit = nullptr;
         if (!at_end() && starts_word(text_[at_])) {
@@ -297,8 +276,8 @@ private:
         for (const Scope::Name& other : scope_.names) known.emplace_back(other.name);
         fail(ErrorCode::out_of_range, at,
              "there is no " + scope_.what + " " + in_quotes(name) +
-                 (known.empty() ? std::string("; there is none at all") : "; " + files::did_you_mean(name, known, '`')));
-        return {constant(1), std::nullopt};  // stands in until the faults are told
+                 (known.empty() ? std::string("; there are none here") : "; " + files::did_you_mean(name, known, '`')));
+        return {constant(1), std::nullopt};  // stands in until the faults are reported
     }
 
     int input(const std::string& name) {
@@ -356,7 +335,8 @@ private:
         want(')');
         if (term.dimension && !term.dimension->is_number())
             fail(ErrorCode::wrong_type, at, "`floor` is of a number, not of " + described(*term.dimension));
-        if (!is_constant(term.node)) fail(ErrorCode::wrong_type, at, "`floor` jumps, so it is of what no " + scope_.what + " changes");
+        if (!is_constant(term.node))
+            fail(ErrorCode::wrong_type, at, "`floor` jumps, so its value must be one that no " + scope_.what + " changes");
         return {constant(std::floor(is_constant(term.node) ? number_at(term.node) : 0)), DimensionPowers{}};
     }
 
@@ -414,7 +394,76 @@ private:
     base::Errors errors_;
 };
 
+class Definer {
+public:
+    Definer(const std::map<std::string, std::string>& texts, Scope& scope,
+            const std::function<Scope::Name(const std::string&, Formula)>& define)
+        : texts_(texts), scope_(scope), define_(define) {}
+
+    base::Errors run() {
+        for (const auto& [name, text] : texts_) add(name);
+        return std::move(errors_);
+    }
+
+private:
+    // After those that it names.
+    void add(const std::string& name) {
+        if (!done_.insert(name).second) return;
+        constexpr std::size_t deepest_chain = 200;
+        if (open_.size() > deepest_chain) return fail(name, "variables follow from one another more than 200 deep");
+        const std::string& text = texts_.at(name);
+        open_.push_back(name);
+        for (const std::string& other : names_in(text)) {
+            if (std::find(open_.begin(), open_.end(), other) != open_.end()) {
+                open_.pop_back();
+                return fail(name, "the variable `" + other + "` follows from itself");
+            }
+            if (texts_.count(other) != 0) add(other);
+        }
+        open_.pop_back();
+        base::Result<Formula> formula = parse_formula(text, scope_);
+        for (const base::Error& error : formula.errors()) fail(name, error.message, error.code);
+        if (formula) scope_.names.push_back(define_(name, std::move(formula).value()));
+    }
+
+    void fail(const std::string& name, const std::string& message, ErrorCode code = ErrorCode::inconsistent) {
+        errors_.push_back({code, name, message});
+        if (scope_.find(name) == nullptr) scope_.names.push_back({name, {}, constant_formula(1)});
+    }
+
+    const std::map<std::string, std::string>& texts_;
+    Scope& scope_;
+    const std::function<Scope::Name(const std::string&, Formula)>& define_;
+    std::set<std::string> done_;
+    std::vector<std::string> open_;
+    base::Errors errors_;
+};
+
 }  // namespace
+
+base::Errors define_variables(const std::map<std::string, std::string>& texts, Scope& scope,
+                              const std::function<Scope::Name(const std::string&, Formula)>& define) {
+    return Definer(texts, scope, define).run();
+}
+
+std::function<double(Dimension)> plain_units(double length_unit, double mass_unit) {
+    return [=](Dimension dimension) {
+        switch (dimension) {
+            case Dimension::length:
+            case Dimension::speed:
+                return length_unit;
+            case Dimension::area:
+                return length_unit * length_unit;
+            case Dimension::mass:
+                return mass_unit;
+            case Dimension::angle:
+            case Dimension::angular_speed:
+                return std::numbers::pi / 180;
+            default:
+                return 1.0;
+        }
+    };
+}
 
 const Scope::Name* Scope::find(std::string_view name) const {
     const auto found = std::find_if(names.begin(), names.end(), [&](const Name& other) { return other.name == name; });
@@ -438,7 +487,28 @@ base::Result<Formula> parse_formula_of(std::string_view text, const Scope& scope
     const std::string remedy =
         formula->dimension.is_number() && unit != nullptr ? "; multiply it by a unit, such as `1 " + std::string(unit->name) + "`" : "";
     return base::Error{ErrorCode::wrong_type, where,
-                       "this is " + described(formula->dimension) + ", " + described(powers_of(dimension)) + " is wanted" + remedy};
+                       "this is " + described(formula->dimension) + ", " + described(powers_of(dimension)) + " is expected" + remedy};
+}
+
+std::vector<std::string> names_in(std::string_view text) {
+    std::vector<std::string> out;
+    std::size_t at = 0;
+    while (at < text.size()) {
+        const std::size_t begin = at;
+        if (text[at] == '\'') {
+            const std::size_t end = std::min(text.find('\'', at + 1), text.size());
+            out.emplace_back(text.substr(at + 1, end - at - 1));
+            at = end + 1;
+        } else if (starts_word(text[at])) {
+            while (at < text.size() && is_of_word(text[at])) ++at;
+            out.emplace_back(text.substr(begin, at - begin));
+        } else if (is_digit(text[at])) {  // with the unit behind it
+            while (at < text.size() && (is_of_word(text[at]) || is_space(text[at]))) ++at;
+        } else {
+            ++at;
+        }
+    }
+    return out;
 }
 
 std::string quoted_if_needed(std::string_view name) {

@@ -60,6 +60,26 @@ Number Tape::record(Operation operation, const Number& a, const Number& b, const
     return {value, tape, static_cast<int>(tape->nodes_.size()) - 1};
 }
 
+Nodes needed_for(const Nodes& nodes, int last) {
+    const auto end = static_cast<std::size_t>(last) + 1;
+    std::vector<bool> is_needed(end, false);
+    is_needed[end - 1] = true;
+    for (std::size_t k = end; k-- > 0;)
+        for (int i = 0; is_needed[k] && i < operand_count(nodes[k].operation); ++i)
+            is_needed[static_cast<std::size_t>(nodes[k].operands[static_cast<std::size_t>(i)])] = true;
+    Nodes out;
+    std::vector<int> moved(end, 0);
+    for (std::size_t k = 0; k < end; ++k) {
+        if (!is_needed[k]) continue;
+        Node node = nodes[k];
+        for (std::size_t i = 0; i < static_cast<std::size_t>(operand_count(node.operation)); ++i)
+            node.operands[i] = moved[static_cast<std::size_t>(node.operands[i])];
+        moved[k] = static_cast<int>(out.size());
+        out.push_back(node);
+    }
+    return out;
+}
+
 MatrixX gradients(const Nodes& nodes, std::span<const double> at, int input_count) {
     MatrixX out = MatrixX::Zero(input_count, static_cast<Eigen::Index>(nodes.size()));
     const std::vector<bool> varies = varying(nodes);

@@ -89,6 +89,10 @@ inline Number minimum(const Number& a, const Number& b) { return Tape::record(Op
 inline Number maximum(const Number& a, const Number& b) { return Tape::record(Operation::maximum, a, b); }
 inline Number choose(const Number& a, const Number& b, const Number& c) { return Tape::record(Operation::choose, a, b, c); }
 
+/// The nodes that node `last` needs, and itself, alone and in their order; their operands count through the new list.
+/// Contract: every input has one node.
+Nodes needed_for(const Nodes& nodes, int last);
+
 /// The value of every node, on numbers of type T (operation.hpp). @param inputs  One for each input of the list.
 template <class T>
 std::vector<T> values(const Nodes& nodes, std::span<const T> inputs) {
@@ -109,7 +113,7 @@ std::vector<T> values(const Nodes& nodes, std::span<const T> inputs) {
 }
 
 /// d(node)/d(input), inputs x nodes, exact up to rounding: one sweep forwards.
-/// @param at  values(nodes, inputs) where the derivative is wanted.
+/// @param at  values(nodes, inputs) where the derivative is taken.
 MatrixX gradients(const Nodes& nodes, std::span<const double> at, int input_count);
 
 /// sum_k weights[k] d(node k)/d(input), one sweep backwards. @param weights  One per node.

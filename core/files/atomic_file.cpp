@@ -305,7 +305,7 @@ Errors write_file_atomically(const fs::path& path, std::string_view contents) {
 Result<std::string> read_file(const fs::path& path) {
     std::error_code code;
     if (!fs::exists(path, code)) return Error{ErrorCode::file_not_found, path.string(), "no such file"};
-    if (fs::is_directory(path, code)) return Error{ErrorCode::file_unreadable, path.string(), "is a folder, a file is wanted"};
+    if (fs::is_directory(path, code)) return Error{ErrorCode::file_unreadable, path.string(), "is a folder, a file is expected"};
     if (is_endless(path)) return Error{ErrorCode::file_unreadable, path.string(), "is a device, not a regular file: it has no end"};
     const bool has_size = fs::is_regular_file(path, code);
     std::ifstream stream(path, std::ios::binary);
@@ -316,7 +316,7 @@ Result<std::string> read_file(const fs::path& path) {
         stream.read(block.data(), static_cast<std::streamsize>(block.size()));
         contents.append(block.data(), static_cast<std::size_t>(stream.gcount()));
         if (!has_size && contents.size() > longest_stream)
-            return Error{ErrorCode::file_unreadable, path.string(), "gives more than 1 GiB; what is that long is read from a regular file"};
+            return Error{ErrorCode::file_unreadable, path.string(), "gives more than 1 GiB; longer input is read only from a regular file"};
     } while (stream);
     if (!stream.is_open() || stream.bad()) return Error{ErrorCode::file_unreadable, path.string(), "the file cannot be read"};
     return contents;

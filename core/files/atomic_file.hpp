@@ -90,7 +90,8 @@ private:
 /// One file. @return nothing, or why not (file_unwritable); then `path` is as it was.
 [[nodiscard]] base::Errors write_file_atomically(const std::filesystem::path& path, std::string_view contents);
 
-/// Of pipes no more than 1 GiB. Errors: file_not_found, file_unreadable (a folder, no permission, a device that has no end).
+/// The contents of a file; from pipes no more than 1 GiB. Errors: file_not_found, file_unreadable (a folder, no permission, a device that
+/// has no end).
 base::Result<std::string> read_file(const std::filesystem::path& path);
 
 }  // namespace fettle::core::files

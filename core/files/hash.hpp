@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The one hash of the project: FNV-1a with 64 bits, over bytes. It tells whether files and meshes are still the same; it does not
+/// The one hash of the project: FNV-1a with 64 bits, over bytes. It shows whether files and meshes are still the same; it does not
 /// withstand someone who wants two to collide.
 #pragma once
 
@@ -33,7 +33,7 @@ private:
 /// 16 hexadecimal digits.
 std::string hexadecimal(std::uint64_t hash);
 
-/// Of a text, as 16 hexadecimal digits.
+/// The hash of a text, as 16 hexadecimal digits.
 std::string hash_of(std::string_view text);
 
 }  // namespace fettle::core::files

@@ -17,7 +17,7 @@ std::vector<std::array<int, columns>> index_rows(const JsonNode& node, int limit
         const auto entries = row.elements();
         if (entries.size() != columns) {
             row.fail(base::ErrorCode::wrong_type,
-                     "a list of " + std::to_string(columns) + " vertex indices is wanted, found " + row.shown());
+                     "a list of " + std::to_string(columns) + " vertex indices is expected, found " + row.shown());
             continue;
         }
         std::array<int, columns> indices{};

@@ -25,6 +25,8 @@ struct JsonNode::Context {  // NOLINT(bugprone-exception-escape): the tree moves
     json tree;
     base::Errors errors;
     std::vector<Warning> warnings;
+    FormulaReader formulas;
+    std::vector<std::pair<std::string, std::string>> replaced;  // pointers, and where what stands there now comes from
 };
 
 namespace {
@@ -45,6 +47,33 @@ void append_escaped(std::string_view key, std::string& to) {
         else
             to += c;
     }
+}
+
+std::string unescaped(std::string_view coded) {
+    std::string out;
+    for (std::size_t k = 0; k < coded.size(); ++k) {
+        const bool escape = coded[k] == '~' && k + 1 < coded.size();
+        out += escape ? (coded[++k] == '1' ? '/' : '~') : coded[k];
+    }
+    return out;
+}
+
+// By number, or by `name`.
+std::optional<std::size_t> element_named(const json& array, const std::string& word) {
+    const bool is_number = !word.empty() && word.size() < 10 && word.find_first_not_of("0123456789") == std::string::npos;
+    if (is_number) return std::stoul(word) < array.size() ? std::optional<std::size_t>(std::stoul(word)) : std::nullopt;
+    for (std::size_t k = 0; k < array.size(); ++k)
+        if (array[k].is_object() && array[k].contains("name") && array[k]["name"] == word) return k;
+    return std::nullopt;
+}
+
+// "; did you mean `pin`?"
+std::string element_names(const json& array, const std::string& word) {
+    std::vector<std::string> names;
+    for (const json& element : array)
+        if (element.is_object() && element.contains("name") && element["name"].is_string())
+            names.push_back(element["name"].get<std::string>());
+    return names.empty() ? std::string() : "; " + did_you_mean(word, {names.begin(), names.end()}, '`');
 }
 
 std::string shortest(double number) {
@@ -90,7 +119,7 @@ bool spells_not_finite(std::string word) {
 }
 
 Error not_finite_error(const std::string& where, const std::string& found) {
-    return {ErrorCode::not_finite, where, "not finite: " + found + "; a finite number is wanted"};
+    return {ErrorCode::not_finite, where, "not finite: " + found + "; a finite number is expected"};
 }
 
 bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
@@ -107,7 +136,7 @@ std::string plain_words(const std::string& text, std::size_t offset, const std::
     if (is_literal && here == '\'') return "text is in double quotes, not in single ones";
     if (is_literal && (here == '/' || here == '#')) return "JSON has no comments";
     if (has(said, "expected end of input")) return "more text follows behind the end";
-    if (is_literal && has(said, "object key")) return "a key is wanted, which is text in double quotes";
+    if (is_literal && has(said, "object key")) return "a key is expected, which is text in double quotes";
     if (word == "True" || word == "False" || word == "None" || word == "Null") return "JSON writes true, false and null, not " + word;
     if (word.size() > 1 && word[0] == '0' && std::isdigit(static_cast<unsigned char>(word[1]))) return "a number begins with a 0 too many";
     if (has(said, "parsing object separator - unexpected")) return "a colon is missing behind a key";
@@ -230,7 +259,14 @@ bool JsonNode::is_string() const { return value_ && value_of(value_).is_string()
 bool JsonNode::is_array() const { return value_ && value_of(value_).is_array(); }
 bool JsonNode::is_object() const { return value_ && value_of(value_).is_object(); }
 
-std::string JsonNode::where() const { return context_->path + "#" + pointer_; }
+std::string JsonNode::where() const {
+    for (const auto& [pointer, source] : context_->replaced) {
+        if (!pointer_.starts_with(pointer)) continue;
+        const std::string_view rest = std::string_view(pointer_).substr(pointer.size());
+        if (rest.empty() || rest.front() == '/') return source + std::string(rest);
+    }
+    return context_->path + "#" + pointer_;
+}
 
 std::string JsonNode::shown() const {
     if (!exists()) return "nothing";
@@ -257,7 +293,7 @@ JsonNode JsonNode::child(const void* value, std::string_view key) const {
 void JsonNode::fail_as_no_object() const {
     const base::Errors& errors = context_->errors;
     if (!errors.empty() && errors.back().code == ErrorCode::wrong_type && errors.back().where == where()) return;
-    fail(ErrorCode::wrong_type, "an object is wanted, found " + shown());
+    fail(ErrorCode::wrong_type, "an object is expected, found " + shown());
 }
 
 JsonNode JsonNode::operator[](std::string_view key) const {
@@ -284,7 +320,7 @@ std::vector<JsonNode> JsonNode::elements() const {
     std::vector<JsonNode> out;
     if (!exists()) return out;
     if (!is_array()) {
-        fail(ErrorCode::wrong_type, "a list is wanted, found " + shown());
+        fail(ErrorCode::wrong_type, "a list is expected, found " + shown());
         return out;
     }
     const json& array = value_of(value_);
@@ -374,13 +410,27 @@ bool JsonNode::check_range(double number, const NumberRange& range, std::string_
     return false;
 }
 
+bool JsonNode::is_formula() const { return is_string() && value_of(value_).get_ref<const std::string&>().starts_with('='); }
+
+std::optional<double> JsonNode::formula(base::Dimension dimension, double si_per_number, const NumberRange& range) const {
+    const std::string& text = value_of(value_).get_ref<const std::string&>();
+    if (!context_->formulas) {
+        fail(ErrorCode::wrong_type, "a number is expected; formulas such as " + shown() + " are not read here");
+        return std::nullopt;
+    }
+    const auto value = context_->formulas(*this, text, dimension, si_per_number);
+    if (!value || !check_range(*value, range, " " + std::string(base::si_unit(dimension)))) return std::nullopt;
+    return value;
+}
+
 std::optional<double> JsonNode::number(const NumberRange& range) const {
     if (!exists()) return std::nullopt;
+    if (is_formula()) return formula(base::Dimension::number, 1, range);
     if (!is_number()) {
         if (is_string() && spells_not_finite(value_of(value_).get<std::string>())) {
             context_->errors.push_back(not_finite_error(where(), shown()));
         } else {
-            fail(ErrorCode::wrong_type, "a number is wanted, found " + shown());
+            fail(ErrorCode::wrong_type, "a number is expected, found " + shown());
         }
         return std::nullopt;
     }
@@ -393,7 +443,7 @@ std::optional<int> JsonNode::integer(int low, int high) const {
     const auto found = number();
     if (!found) return std::nullopt;
     if (*found != std::floor(*found)) {
-        fail(ErrorCode::wrong_type, "a whole number is wanted, found " + shown());
+        fail(ErrorCode::wrong_type, "a whole number is expected, found " + shown());
         return std::nullopt;
     }
     if (!check_range(*found, {static_cast<double>(low), static_cast<double>(high)}, "")) return std::nullopt;
@@ -403,14 +453,14 @@ std::optional<int> JsonNode::integer(int low, int high) const {
 std::optional<bool> JsonNode::boolean() const {
     if (!exists()) return std::nullopt;
     if (is_bool()) return value_of(value_).get<bool>();
-    fail(ErrorCode::wrong_type, "true or false is wanted, found " + shown());
+    fail(ErrorCode::wrong_type, "true or false is expected, found " + shown());
     return std::nullopt;
 }
 
 std::optional<std::string> JsonNode::string() const {
     if (!exists()) return std::nullopt;
     if (is_string()) return value_of(value_).get<std::string>();
-    fail(ErrorCode::wrong_type, "a string is wanted, found " + shown());
+    fail(ErrorCode::wrong_type, "a string is expected, found " + shown());
     return std::nullopt;
 }
 
@@ -428,6 +478,7 @@ std::optional<double> JsonNode::length(double unit, const NumberRange& range) co
 
 std::optional<double> JsonNode::quantity(base::Dimension dimension, double si_per_number, const NumberRange& range) const {
     if (!exists()) return std::nullopt;
+    if (is_formula()) return formula(dimension, si_per_number, range);
     const std::string unit = " " + std::string(base::si_unit(dimension));
     if (is_string() && !spells_not_finite(value_of(value_).get<std::string>())) {
         const auto parsed = base::parse_quantity(value_of(value_).get<std::string>(), dimension, where());
@@ -447,7 +498,7 @@ template <class Read>
 std::optional<Vector3> JsonNode::three(const Read& read, std::string_view what) const {
     if (!exists()) return std::nullopt;
     if (!is_array() || value_of(value_).size() != 3) {
-        fail(ErrorCode::wrong_type, "a list of three " + std::string(what) + " is wanted, found " + shown());
+        fail(ErrorCode::wrong_type, "a list of three " + std::string(what) + " is expected, found " + shown());
         return std::nullopt;
     }
     Vector3 out;
@@ -470,10 +521,14 @@ std::optional<Vector3> JsonNode::length3(double unit) const {
     return three([unit](const JsonNode& node) { return node.length(unit); }, "lengths");
 }
 
+std::optional<Vector3> JsonNode::quantity3(base::Dimension dimension, double si_per_number) const {
+    return three([=](const JsonNode& node) { return node.quantity(dimension, si_per_number); }, "numbers");
+}
+
 std::optional<std::vector<double>> JsonNode::numbers() const {
     if (!exists()) return std::nullopt;
     if (!is_array()) {
-        fail(ErrorCode::wrong_type, "a list of numbers is wanted, found " + shown());
+        fail(ErrorCode::wrong_type, "a list of numbers is expected, found " + shown());
         return std::nullopt;
     }
     std::vector<double> out;
@@ -506,7 +561,7 @@ base::Result<JsonDocument> JsonDocument::parse(const std::string& text, const st
     JsonDocument document;
     document.context_->path = name;
     if (text.find_first_not_of(" \t\r\n") == std::string::npos)
-        return Error{ErrorCode::parse, name, "is empty; JSON is wanted, which begins with {"};
+        return Error{ErrorCode::parse, name, "is empty; JSON is expected, which begins with {"};
     if (const std::size_t nul = text.find('\0'); nul != std::string::npos)
         return Error{ErrorCode::parse, at(name, place_of(text, nul)), "not valid JSON: here stands a NUL; is the file damaged?"};
     TreeBuilder builder(text, name, document.context_->tree);
@@ -516,7 +571,40 @@ base::Result<JsonDocument> JsonDocument::parse(const std::string& text, const st
 }
 
 const std::string& JsonDocument::path() const { return context_->path; }
+
+void JsonDocument::read_formulas(FormulaReader reader) { context_->formulas = std::move(reader); }
+
+std::string JsonDocument::replace(std::string_view pointer, const JsonNode& value) {
+    json* at = &context_->tree;
+    std::string resolved;
+    std::string_view rest = pointer;
+    if (!rest.starts_with('/')) return "a place is expected, such as /bodies/pin/density";
+    while (!rest.empty()) {
+        rest.remove_prefix(1);
+        const std::string_view coded = rest.substr(0, rest.find('/'));
+        rest.remove_prefix(coded.size());
+        const std::string word = unescaped(coded);
+        const bool is_last = rest.empty();
+        if (at->is_array()) {
+            const auto index = element_named(*at, word);
+            if (!index) return "`" + resolved + "` has no element `" + word + "`" + element_names(*at, word);
+            resolved += "/" + std::to_string(*index);
+            at = &(*at)[*index];
+        } else if (at->is_object()) {
+            if (!is_last && !at->contains(word))
+                return "there is no `" + word + "` " + (resolved.empty() ? "in the file" : "in `" + resolved + "`");
+            append_escaped(word, resolved += '/');
+            at = &(*at)[word];
+        } else {
+            return "`" + resolved + "` is neither a list nor an object, so that there is no `" + word + "` in it";
+        }
+    }
+    *at = value_of(value.value_);
+    context_->replaced.insert(context_->replaced.begin(), {resolved, value.where()});
+    return {};
+}
 JsonNode JsonDocument::root() { return {context_.get(), &context_->tree, ""}; }
+void JsonDocument::forget_errors() { context_->errors.clear(); }
 const base::Errors& JsonDocument::errors() const { return context_->errors; }
 std::vector<std::string> JsonDocument::warnings() const { return grouped_warnings(context_->path, context_->warnings); }
 

@@ -38,6 +38,13 @@ inline constexpr NumberRange any_number{};
 inline constexpr NumberRange positive{0, std::numeric_limits<double>::infinity(), true};
 inline constexpr NumberRange not_negative{0, std::numeric_limits<double>::infinity(), false};
 
+class JsonNode;
+
+/// Reads a number that is written as a formula, a text that begins with "=". @param si_per_number  What a number without a unit counts.
+/// @return its value in SI; nothing if it has faults, which the reader has given to the node.
+using FormulaReader =
+    std::function<std::optional<double>(const JsonNode& node, const std::string& text, base::Dimension dimension, double si_per_number)>;
+
 /// A value of a document, or the place where one could be. Cheap to copy; lives no longer than its document.
 /// Reading functions: nullopt if the value is absent, or if it is wrong (then the fault has been added to the document's errors).
 class JsonNode {
@@ -52,14 +59,16 @@ public:
 
     /// File and JSON pointer: "a.scene.json#/bodies/3/density".
     std::string where() const;
+    /// The JSON pointer alone: "/bodies/3/density".
+    const std::string& pointer() const { return pointer_; }
     /// What stands there, cut short, for messages: `-5`, `"abc"`, `an object`.
     std::string shown() const;
 
     void fail(base::ErrorCode code, std::string message) const;
     void warn(const std::string& message) const;
 
-    /// Member of an object; absent if there is none. On something that is not an object: wrong_type, told once for all calls that follow
-    /// one another.
+    /// Member of an object; absent if there is none. On something that is not an object: wrong_type, reported once for all calls that
+    /// follow one another.
     JsonNode operator[](std::string_view key) const;
     /// The same, but absence is a missing_key error.
     JsonNode require(std::string_view key) const;
@@ -94,6 +103,7 @@ public:
     /// Three numbers; three lengths [m].
     std::optional<Vector3> vector3() const;
     std::optional<Vector3> length3(double unit) const;
+    std::optional<Vector3> quantity3(base::Dimension dimension, double si_per_number) const;
     std::optional<std::vector<double>> numbers() const;
 
 private:
@@ -103,6 +113,8 @@ private:
     void fail_as_no_object() const;
     JsonNode child(const void* value, std::string_view key) const;
     std::vector<std::string> other_keys(const std::vector<std::string_view>& known) const;
+    bool is_formula() const;
+    std::optional<double> formula(base::Dimension dimension, double si_per_number, const NumberRange& range) const;
     bool check_range(double number, const NumberRange& range, std::string_view unit) const;
     template <class Read>
     std::optional<Vector3> three(const Read& read, std::string_view what) const;
@@ -122,7 +134,14 @@ public:
     JsonDocument& operator=(JsonDocument&&) noexcept;
 
     const std::string& path() const;
+    /// What reads numbers that are formulas; without one they are faults.
+    void read_formulas(FormulaReader reader);
+    /// Puts a copy of `value`, of any document, at a place of this one, before it is read. Elements of lists may be named by their `name`
+    /// in place of their number: "/bodies/pin/density". Faults there are reported with the place that `value` has in its own document.
+    /// @return what is wrong with the pointer: no such element, nothing that could have such a member. Empty: done.
+    std::string replace(std::string_view pointer, const JsonNode& value);
     JsonNode root();
+    void forget_errors();                       ///< of a first look, which a whole reading follows
     const base::Errors& errors() const;         ///< found so far by reading nodes, in the order of reading
     std::vector<std::string> warnings() const;  ///< those that say the same of several elements of a list as one (warning_groups.hpp)
 

@@ -21,8 +21,8 @@ std::string_view top_level_key(const std::filesystem::path& path, std::span<cons
 /// Is there this one?
 bool has_top_level_key(const std::filesystem::path& path, std::string_view key);
 
-/// Of an object that has none of the keys that say a format: "; did you mean `fettle_scene`, where `fetle_scene` stands?". Empty: none of
-/// its keys is near to one.
+/// A remark on an object that has none of the keys that say a format: "; did you mean `fettle_scene`, where `fetle_scene` stands?". Empty:
+/// none of its keys is near to one.
 std::string misspelt_key(const JsonNode& object, const std::vector<std::string_view>& formats);
 
 /// Is the value of such a key the version that is read here? Otherwise the node fails, with what is.

@@ -24,7 +24,7 @@ public:
     void number(double x);
     /// Quoted and escaped.
     void string(std::string_view value);
-    /// Of the object that `text` is in: a comma and a new line unless it is its first, then `"name": `.
+    /// Begins a member of the object that `text` is in: a comma and a new line unless it is its first, then `"name": `.
     void key(std::string_view name);
     /// "[", one item after the other as `write(i)` puts them, "]".
     template <class Write>

@@ -16,7 +16,7 @@ public:
     /// False at the end of the text. The words are valid as long as the text is.
     bool next(std::vector<std::string_view>& words);
 
-    /// Of the line read last (where it began), from 1.
+    /// Number of the line read last (where it began), from 1.
     int line_number() const { return line_number_; }
 
 private:
@@ -34,7 +34,7 @@ public:
     std::string_view next();
     /// What is left of the line that the last word stands on, without blanks round it; behind it the next line begins.
     std::string_view rest_of_line();
-    /// Of the word read last, from 1.
+    /// Number of the line of the word read last, from 1.
     int line_number() const { return line_number_; }
     std::size_t bytes_left() const { return text_.size() - at_; }
 

@@ -25,8 +25,8 @@ private:
     std::map<std::string, int> last_;  // number that a name was given
 };
 
-/// The same as every file system takes it: letters, digits, blanks, - _ + and, but for the first, dots; _ for all else but UTF-8. Of a long
-/// one the beginning: equal ones are for UniqueNames to tell apart.
+/// The same as every file system takes it: letters, digits, blanks, - _ + and, but for the first, dots; _ for all else but UTF-8. A long
+/// one is cut; UniqueNames distinguishes equal ones.
 std::string file_stem(std::string name);
 
 }  // namespace fettle::core::files

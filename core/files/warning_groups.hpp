@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Warnings that say the same of several elements of one list, told once: seven cards of a house that are shells each give
+/// Joins warnings that say the same of several elements of one list: seven cards of a house that are shells each give
 ///     a.json#/bodies/[1-5, 7, 8]: the mesh is open: it is a shell, and its density is per square metre
 #pragma once
 

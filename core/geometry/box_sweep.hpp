@@ -23,7 +23,7 @@ class BoxSweep {
 public:
     using Pairs = std::vector<std::pair<int, int>>;
 
-    /// Of these of the boxes. Contract: no end is a NaN.
+    /// A sweep over these of the boxes. Contract: no end is a NaN.
     BoxSweep(const std::vector<Box>& boxes, std::vector<int> some);
 
     /// Adds the pairs (i, j), i < j, of boxes whose gap along no axis is at least `reach`, as far as they are found from those that are

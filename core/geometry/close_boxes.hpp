@@ -50,7 +50,7 @@ private:
     };
 
     std::vector<Group> sorted_groups(const std::vector<Box>& boxes);
-    /// Of the groups 4 g to 4 g + 3.
+    /// The box of the groups 4 g to 4 g + 3.
     static Group joined(const std::vector<Group>& below, int g);
     void add_levels();
     void cut_tasks();

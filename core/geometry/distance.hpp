@@ -5,16 +5,16 @@
 /// Accuracy: with L the largest distance of two of the four vertices, 1e-40 <= L <= 1e40, and u = 2^-53,
 ///   |sqrt(distance_squared) - true distance| <= 64 u L,
 /// whatever the pair: parallel, collinear, coplanar, slivers, of no length or area. The worst of the tests' campaigns is 4 u L. The bound
-/// is relative to L, not to the distance: what is computed is no proven bound of anything (contact/separating_plane.hpp has those).
+/// is relative to L, not to the distance: what is computed is no proven bound of anything (ccd/separating_plane.hpp has those).
 ///
 /// Why, with a and b the two directions of the pair's plane, theta their angle and h the distance of their lines (or of point and plane):
 ///  - Differences of vertices are off by u each, which moves the vertices by 3 u L in all. Convex weights of either sign sum to 1 within u,
 ///    so that |r| is that of two points of the primitives within 11 u L: it is too small by no more, and too large only where the
 ///    weights are not the best.
-///  - Vertex against vertex, d apart, where all edges from there lead away: told by signs of products e . d that are off by
+///  - Vertex against vertex, d apart, where all edges from there lead away: decided by the signs of products e . d that are off by
 ///    4 u |e| |d|. A wrong one adds at most 4 u L for each edge: the distance is convex, and falls along it by no more than 4 u of the way.
-///  - Vertex against edge: the weights put the point off its best place by 4 u L. Of the edges round the plane's inside only those are
-///    looked at that part it from the optimum over the whole plane, where that is sure (sin theta >= 1e-3, differences within 1e4 of one
+///  - Vertex against edge: the weights put the point off its best place by 4 u L. Only those edges round the plane's inside are
+///    examined that part it from the optimum over the whole plane, where that is sure (sin theta >= 1e-3, differences within 1e4 of one
 ///    another): the true optimum is in one of them, the others are no nearer.
 ///  - Inside, by cross products: off by at most 24 u L / sin theta within the plane (+ 3 u h / sin theta). Right-angled to r that adds its
 ///    square over the distance, less than u L if distance sin^2 theta >= 1024 u L: then it is taken as it is.

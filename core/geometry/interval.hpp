@@ -53,7 +53,7 @@ inline Interval square(const Interval& a) {
     return {std::max(0.0, lower(least * least)), upper(m * m)};
 }
 
-/// Of the part of the interval that is not negative. Contract: high >= 0.
+/// Square root of the part of the interval that is not negative. Contract: high >= 0.
 Interval sqrt(const Interval& a);
 
 inline Interval hull(const Interval& a, const Interval& b) { return {std::min(a.low, b.low), std::max(a.high, b.high)}; }

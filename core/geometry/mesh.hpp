@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A triangle mesh (possibly with loose edges and points), as plain data. Reading: scene/mesh_reader.hpp;
-/// validity: geometry/mesh_validity.hpp; mass: geometry/mass_moments.hpp.
+/// A triangle mesh (possibly with loose edges and points), as plain data. Reading: mesh_files/mesh_reader.hpp;
+/// validity: solids/mesh_validity.hpp; mass: geometry/mass_moments.hpp.
 #pragma once
 
 #include <array>

@@ -4,7 +4,7 @@
 /// integer arithmetic does otherwise. Right for every finite double, subnormal and huge ones included; needs strict IEEE arithmetic
 /// (no -ffast-math). Contract: finite coordinates (a NaN or infinity throws ContractError when the exact stage is reached).
 ///
-/// Used by mesh_validity.hpp and by tests. Distances are distance.hpp.
+/// Used by solids/ and by tests. Distances are distance.hpp.
 /// By hand: CGAL's exact kernel brings GMP and MPFR, and is the judge of these in the tests; Shewchuk's are wrong where numbers underflow
 /// or overflow.
 #pragma once

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A rigid body's 6 x 6 mass matrix in (dq, phi): what accelerations take and what the inertia's Hessian is made of. docs/method.md
-/// section 3.
+/// A rigid body's 6 x 6 mass matrix in (dq, phi): what accelerations take and what the inertia's Hessian is made of.
+/// docs/method/energy.md#integrators.
 #pragma once
 
 #include "fettle/core/base/types.hpp"

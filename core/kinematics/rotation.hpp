@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Rotation vectors: value, first and second derivatives, left Jacobian, logarithm. docs/method.md section 1.
+/// Rotation vectors: value, first and second derivatives, left Jacobian, logarithm. docs/method/kinematics.md.
 ///   R(theta) = exp([theta]) = I + sinc(x) [theta] + 1/2 sinc(x/2)^2 [theta]^2,   x = |theta|
 /// All derivatives are analytic and good to 1e-14 relative for |theta| in [0, 4 pi], near 0 and near 2 pi k too.
 #pragma once

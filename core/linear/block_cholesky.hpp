@@ -23,11 +23,11 @@ public:
     /// Bodies of which anything is free, in the order of elimination.
     const std::vector<int>& order() const { return body_of_; }
 
-    /// Of what was analysed. @return false if the free part is not positive definite to rounding, or not finite (then solve must not be
-    /// called)
+    /// Factorises what was analysed. @return false if the free part is not positive definite to rounding, or not finite (then solve must
+    /// not be called)
     bool factorise(const kinematics::BlockHessian& hessian, const FreeDofs& dofs);
 
-    /// Of the free part, one column per right-hand side: the same bits whatever stands beside it.
+    /// Solution over the free part, one column per right-hand side: the same bits whatever stands beside it.
     MatrixX solve(const MatrixX& rhs, const FreeDofs& dofs) const;
 
 private:

@@ -27,7 +27,7 @@ struct FreeDofs {
     }
 };
 
-/// Of a body's DOFs: are all six free? Then they follow one another.
+/// Are all six DOFs of a body free? Then they follow one another.
 inline bool are_all_free(const std::array<int, 6>& index) { return index[0] >= 0 && index[5] == index[0] + 5; }
 /// Is none of them?
 inline bool is_none_free(const std::array<int, 6>& index) {

@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #ifdef FETTLE_SUITESPARSE
 #include <umfpack.h>

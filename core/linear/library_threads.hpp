@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// SuiteSparse's dense work is done by a BLAS, and some of its loops by OpenMP. Both have threads of their own; fettle's are enough, and
-/// the bits of an answer are not to hang on how many there are.
+/// the bits of an answer are not to depend on how many there are.
 #pragma once
 
 #include "fettle/core/base/shared_library.hpp"

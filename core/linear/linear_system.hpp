@@ -5,7 +5,7 @@
 /// Behind it, by what there is to solve and by the graph of what is coupled alone, so that no bit depends on the number of threads:
 ///   without rows   blocks of 6 x 6 (block_cholesky.hpp); above `supernodal_operations` CHOLMOD (supernodal_cholesky.hpp), where it is
 ///   there with rows      L D L^T (quasi_definite_factor.hpp) indefinite     L U (indefinite_factor.hpp), for derivatives alone
-/// docs/method.md section 9.
+/// docs/method/joints.md#the-step-under-rows.
 #pragma once
 
 #include <memory>

@@ -14,7 +14,7 @@ namespace fettle::core::linear {
 using kinematics::BlockHessian;
 using kinematics::OffDiagonalBlock;
 
-/// Of one row in one body.
+/// The gradient of one row in one body.
 struct RowGradient {
     int body = 0;
     Vector6 gradient = Vector6::Zero();

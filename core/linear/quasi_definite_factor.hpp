@@ -5,7 +5,7 @@
 /// over the free degrees of freedom; delta is small, and refinement takes it out (linear_system.hpp).
 /// Order: bodies by least fill in the graph that contacts and rows make of them, each row after the last of its bodies, so that a row's
 /// pivot is that of -C H^-1 C^T and none is small unless rows depend on one another. The work of a chain is linear in its length.
-/// docs/method.md section 9.
+/// docs/method/joints.md#the-step-under-rows.
 #pragma once
 
 #include <memory>

@@ -27,10 +27,11 @@ public:
     /// The symbolic factor. @param order  of elimination of the bodies of which anything is free, which takes `operations`
     void analyse(const BlockHessian& hessian, const FreeDofs& dofs, const std::vector<int>& order, double operations);
 
-    /// Of a matrix with the blocks that were analysed. @return false if the free part is not positive definite to rounding, or not finite
+    /// Factorises a matrix with the blocks that were analysed. @return false if the free part is not positive definite to rounding, or not
+    /// finite
     bool factorise(const BlockHessian& hessian, const FreeDofs& dofs);
 
-    /// Of the free part, one column per right-hand side.
+    /// Solution over the free part, one column per right-hand side.
     MatrixX solve(const MatrixX& rhs) const;
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Frames fixed in bodies or in the world: what measures (measure.hpp) are taken between. docs/method.md section 9.
+/// Frames fixed in bodies or in the world: what measures (measure.hpp) are taken between. docs/method/joints.md#measures.
 #pragma once
 
 #include <vector>

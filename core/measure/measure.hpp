@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Scalar functions m(P_a, P_b) of two frames, with derivatives in both bodies' poses and in the frames' placement. Springs, joints, motors
-/// and loads know geometry through these alone. docs/method.md section 9.
+/// and loads know geometry through these alone. docs/method/joints.md#measures.
 ///   offset    n . (x_b - x_a), n an axis of a, of b or of the world [m]
 ///   product   u . v, u an axis of a, v of b [1]
 ///   distance  |x_b - x_a| [m]; contract: > 0 where derivatives are taken

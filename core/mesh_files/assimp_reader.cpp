@@ -110,10 +110,10 @@ std::string reason_of(std::string_view written) {
 
 /// What assimp says most often of damaged files and of other ones; the rest stays as it is.
 std::string in_plain_words(const std::string& reason) {
-    for (const auto& [said, words] : {std::pair{"No suitable reader found", "what is in it is not of the kind that its name says"},
-                                      {"3DS file is either empty or corrupt", "it is damaged, or no 3DS file"},
+    for (const auto& [said, words] : {std::pair{"No suitable reader found", "its contents are not of the kind that its name says"},
+                                      {"3DS file is either empty or corrupt", "it is damaged or not a 3DS file"},
                                       {"StreamReader: File is empty or EOF", "it ends too early"},
-                                      {"Unable to read file, malformed XML", "it is damaged, or no XML"}})
+                                      {"Unable to read file, malformed XML", "it is damaged or not XML"}})
         if (reason.starts_with(said)) return words;
     return reason;
 }

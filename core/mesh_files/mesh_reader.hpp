@@ -10,15 +10,15 @@
 /// of time (3 s of processor time and 1 s for each MiB of the file) and memory (1 GiB and 100 times the file), so that what it makes of a
 /// damaged file is an error here. Files beyond 2 GiB are refused, and so is what places more than 10 million vertices and triangles.
 ///
-/// Axes are those of the file: what is up in a glTF file is y.
+/// Axes are those of the file: up in a glTF file is y.
 ///
 /// What is kept: positions, faces (polygons are cut into triangles), OBJ polylines and two-vertex faces as codimensional edges, vertices
 /// that nothing uses as codimensional points. What is dropped: normals, colours, texture coordinates, materials, STL attributes. All
 /// objects of a file become one mesh; shells are named after their object (`o` or `g` in OBJ, `solid` in STL, in 3MF the object's name,
-/// else "Object_<id>"): "name", or "name/0", "name/1", ... where one object has several shells. Of a 3MF all that its build places is read,
-/// except support.
+/// else "Object_<id>"): "name", or "name/0", "name/1", ... where one object has several shells. From a 3MF everything that its build places
+/// is read, except support.
 ///
-/// Validity as a solid is geometry/mesh_validity.hpp; which part of a scene the mesh is for, scene_reader.hpp.
+/// Validity as a solid is solids/mesh_validity.hpp; which part of a scene the mesh is for, scene/scene.hpp.
 #pragma once
 
 #include <functional>

@@ -2,7 +2,7 @@
 /// Meshes as files that other programs read: STL, OBJ, 3MF, lengths in millimetres. Reading: mesh_reader.hpp.
 ///
 /// Precision. OBJ and 3MF hold decimal numbers that read back to the same double where one does, else to its neighbour: what they lose is
-/// below 3e-16 of a coordinate. Binary STL holds float32 by definition: 6e-8 of a coordinate, which `stl_rounding` tells.
+/// below 3e-16 of a coordinate. Binary STL holds float32 by definition: 6e-8 of a coordinate, which `stl_rounding` returns.
 /// What a format cannot hold is left out: STL and 3MF have triangles only, so that a part without triangles is not in them.
 #pragma once
 

@@ -158,7 +158,8 @@ private:
         std::vector<std::string_view> words;
         while (errors_.empty()) {
             const std::size_t end = bytes_.find('\n', at);
-            if (end == std::string_view::npos && line == 0) return fail(ErrorCode::parse, "does not begin with `ply`: it is no PLY file");
+            if (end == std::string_view::npos && line == 0)
+                return fail(ErrorCode::parse, "does not begin with `ply`: it is not a PLY file");
             if (end == std::string_view::npos)
                 return fail(ErrorCode::parse, "ends inside its header (there is no `end_header`): the file is cut short", line + 1);
             files::TextWords in_line(bytes_.substr(at, end - at));
@@ -166,7 +167,7 @@ private:
             words.clear();
             for (std::string_view word = in_line.next(); !word.empty(); word = in_line.next()) words.push_back(word);
             if (++line == 1) {
-                if (words.size() != 1 || words[0] != "ply") fail(ErrorCode::parse, "does not begin with `ply`: it is no PLY file");
+                if (words.size() != 1 || words[0] != "ply") fail(ErrorCode::parse, "does not begin with `ply`: it is not a PLY file");
                 continue;
             }
             if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;

@@ -63,7 +63,7 @@ public:
                 words_.rest_of_line();
                 in_solid = false;
             } else {
-                fail("`" + word.substr(0, 20) + "` stands where " + (in_solid ? "`facet` or `endsolid`" : "`solid`") + " is wanted");
+                fail("`" + word.substr(0, 20) + "` stands where " + (in_solid ? "`facet` or `endsolid`" : "`solid`") + " is expected");
             }
         }
         if (in_solid && errors_.empty()) fail("ends without `endsolid`: the file is cut short; export or download it again");
@@ -114,7 +114,7 @@ private:
         if (found.empty())
             return fail("ends inside the facet that begins on line " + std::to_string(line) +
                         ": the file is cut short; export or download it again");
-        fail("`" + std::string(found.substr(0, 20)) + "` stands where " + wanted + " is wanted, in a facet");
+        fail("`" + std::string(found.substr(0, 20)) + "` stands where " + wanted + " is expected, in a facet");
     }
 
     void fail(const std::string& message) {
@@ -154,7 +154,7 @@ Result<RawMesh> parse_stl(std::string_view bytes, const std::string& where) {
         if (bytes.size() == header_size + facet_size * count) return binary_mesh(bytes, count);
     }
     if (is_text(bytes)) return TextParser(bytes, where).parse();
-    const std::string neither = "is no STL file, or a damaged one: it has no text that begins with `solid` and goes on with `facet`, and ";
+    const std::string neither = "is not an STL file, or is damaged: it has no text that begins with `solid` and goes on with `facet`, and ";
     if (bytes.size() < header_size)
         return Error{ErrorCode::parse, where,
                      neither + "its " + std::to_string(bytes.size()) + " bytes are fewer than the 84 that a binary one begins with; " +

@@ -180,7 +180,7 @@ private:
         const auto text = xml.attribute(key);
         const auto value = text ? files::parsed_number(*text) : std::nullopt;
         if (!value)
-            xml.fail(ErrorCode::parse, "the attribute `" + std::string(key) + "` of a <" + std::string(xml.name()) + "> is no number");
+            xml.fail(ErrorCode::parse, "the attribute `" + std::string(key) + "` of a <" + std::string(xml.name()) + "> is not a number");
         return value;
     }
 
@@ -195,7 +195,7 @@ private:
         constexpr std::array<std::string_view, 3> keys{"v1", "v2", "v3"};
         for (std::size_t k = 0; k < 3; ++k) {
             const int index = files::parsed_integer(xml.attribute(keys[k]).value_or("")).value_or(-1);
-            if (index < 0) xml.fail(ErrorCode::parse, "the attribute `" + std::string(keys[k]) + "` of a <triangle> is no vertex index");
+            if (index < 0) xml.fail(ErrorCode::parse, "the attribute `" + std::string(keys[k]) + "` of a <triangle> is not a vertex index");
             t[k] = std::max(index, 0);
         }
         return t;

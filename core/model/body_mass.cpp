@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::core::model {
 std::optional<Vector3> BodyMeasure::centre() const {
@@ -37,7 +37,7 @@ Matrix4 mass_moments(const Body& body, double dhat, const Matrix4& unit_moments)
     const double mass = moments(3, 3);
     const Vector3 first = moments.col(3).head<3>();
     const Matrix3 central = moments.topLeftCorner<3, 3>() - first * first.transpose() / mass;
-    const Vector3 second = symmetric_eigenvalues<3>(central);
+    const Vector3 second = linear::symmetric_eigenvalues<3>(central);
     const double radius = std::max(body.radius, dhat);
     const double lacking = least_inertia * mass * radius * radius - (second[0] + second[1]);
     if (lacking > 0) moments.topLeftCorner<3, 3>().diagonal().array() += 0.5 * lacking;

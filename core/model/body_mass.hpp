@@ -25,7 +25,7 @@ BodyMeasure measure_body(const geometry::Mesh& mesh, scene::MassKind kind);
 /// one per volume) the middle of its box. [m], in the file's frame.
 Vector3 default_reference_point(const scene::Body& body, const BodyMeasure& measure);
 
-/// Of a wire or points, about any axis, in mass times radius squared.
+/// Least inertia of a wire or points, about any axis, in mass times radius squared.
 inline constexpr double least_inertia = 1e-8;
 
 /// M of a body by its mass_kind and density, whose mesh is relative to the reference point and whose radius is known. A straight wire does

@@ -145,7 +145,7 @@ private:
         const std::optional<int> a = find_body(from_a.body, where), b = find_body(from_b.body, where);
         if (!a || !b) return std::nullopt;
         if (*a == *b) {
-            fail(ErrorCode::inconsistent, where, "two different bodies are wanted, or one and the world");
+            fail(ErrorCode::inconsistent, where, "two different bodies are expected, or one and the world");
             return std::nullopt;
         }
         if (!(from_a.axis.norm() > 0) || !(from_b.axis.norm() > 0)) {
@@ -266,7 +266,7 @@ private:
         }
         if (out_.joints[index].coordinate >= 0) return &out_.joints[index];
         fail(ErrorCode::inconsistent, where,
-             "`" + name + "` has no one coordinate: a revolute, prismatic, cylindrical or screw joint is wanted");
+             "`" + name + "` has no one coordinate: a revolute, prismatic, cylindrical or screw joint is expected");
         return nullptr;
     }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Joints, springs, motors and loads of a scene -> measures, rows and terms of a model whose bodies are known; and the start: bodies are
-/// put where their joints are met (constraint/assembly.hpp), and their velocities are made to agree. docs/method.md section 9.
+/// put where their joints are met (constraint/assembly.hpp), and their velocities are made to agree.
+/// docs/method/joints.md#assembly-the-start.
 #pragma once
 
 #include <optional>
@@ -19,7 +20,7 @@ struct TermScales {
 };
 
 /// Adds Model::mechanism; moves pose_start and velocity_start of dynamic bodies as little as their masses allow, with a warning of each
-/// body that had to. Rows that follow from others are told in a warning and left out.
+/// body that had to. Rows that follow from others are left out, with a warning.
 /// Contract: bodies, masses, dhat, kappa and diagonal of the model are set.
 /// Errors: names that are not there, joints of a body with itself, axes of length 0, motors that turn by half a turn in a time step
 /// (inconsistent, out_of_range); loops that cannot be closed, with the joints and the gaps that remain; joints that contradict one another;

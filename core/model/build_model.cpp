@@ -151,7 +151,7 @@ Errors check_areas(const Model& model) {
 // A file that is dynamic otherwise may have them; nothing of it is made up, but the user should know.
 void warn_of_unused_rates(Model& model) {
     if (model.contact_damping_time > 0)
-        model.warnings.push_back("contact.damping_time has no effect in a quasi-static simulation, which knows no velocities");
+        model.warnings.push_back("contact.damping_time has no effect in a quasi-static simulation, which has no velocities");
     for (const Body& body : model.bodies) {
         const bool moving = !body.velocity_start.isZero(0), damped = body.damping.linear > 0 || body.damping.angular > 0;
         if (!moving && !damped) continue;
@@ -159,7 +159,7 @@ void warn_of_unused_rates(Model& model) {
                                  (moving && damped ? "start velocity and damping have"
                                   : moving         ? "start velocity has"
                                                    : "damping has") +
-                                 " no effect in a quasi-static simulation, which knows no velocities");
+                                 " no effect in a quasi-static simulation, which has no velocities");
     }
 }
 
@@ -224,7 +224,7 @@ namespace {
 template <class MeshOf>
 base::Result<Model> build(const scene::Scene& scene, const BuildOptions& options, const MeshOf& mesh_of) {
     FETTLE_ASSERT(options.reference_points.empty() || options.reference_points.size() == scene.bodies.size(),
-                  "one reference point per body is wanted");
+                  "one reference point per body is expected");
     SceneCheck check = check_scene(scene, options.check_meshes);
     Errors errors = std::move(check.errors);
     if (!errors.empty()) return errors;

@@ -20,7 +20,7 @@ struct BuildOptions {
     std::optional<double> proximal_weight;  ///< of quasi-static steps, from the first design; default: choose_proximal_weight's
     TermScales term_scales;                 ///< of joints and springs, from the first design
     bool check_meshes = true;               ///< by each body's MeshPolicy (a design's trial checks its own)
-    bool check_start = true;                ///< refuse bodies that intersect at the start (a clearance report tells of them instead)
+    bool check_start = true;                ///< refuse bodies that intersect at the start (a clearance report lists them instead)
 };
 
 /// Mass of a dynamic body is by its MassKind, exactly (geometry/mass_moments.hpp); its default reference point is its centre of mass, that

@@ -12,8 +12,8 @@
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/geometry/mesh_judgement.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/solids/mesh_judgement.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 
 namespace fettle::core::model {
 namespace {
@@ -65,9 +65,9 @@ Error at_body(const Error& error, const scene::Body& body, const std::string& wh
 }
 
 Errors check_strictly(const scene::Body& body, const std::string& where) {
-    geometry::MeshRequirements requirements;
+    solids::MeshRequirements requirements;
     requirements.closed = must_be_closed(body);
-    Errors errors = geometry::validate_mesh(body.mesh, requirements);
+    Errors errors = solids::validate_mesh(body.mesh, requirements);
     for (Error& error : errors) error = at_body(error, body, where);
     return errors;
 }
@@ -160,7 +160,7 @@ Errors check_numbers(const scene::Scene& scene) {
 Errors check_mesh(const scene::Body& body, const std::string& where, std::vector<std::string>& warnings) {
     if (body.mesh_policy == MeshPolicy::lenient) return {};
     if (body.mesh_policy == MeshPolicy::strict) return check_strictly(body, where);
-    geometry::MeshFindings found = geometry::judge_mesh(body.mesh, must_be_closed(body));
+    solids::MeshFindings found = solids::judge_mesh(body.mesh, must_be_closed(body));
     for (const std::string& warning : found.warnings) warnings.push_back(where + ": body `" + body.name + "`: " + warning);
     for (Error& error : found.errors) error = at_body(error, body, where);
     return found.errors;
@@ -270,7 +270,7 @@ private:
     bool is_closed(const scene::Body& body, std::size_t shape, const BodyMeasure& measure) {
         if (body.mass_kind != MassKind::volume || body.mesh_policy != MeshPolicy::strict) return measure.closed_enough;
         const auto [entry, fresh] = closed_.try_emplace(shape, false);
-        if (fresh) entry->second = geometry::is_closed(body.mesh);
+        if (fresh) entry->second = solids::is_closed(body.mesh);
         return entry->second;
     }
 
@@ -310,7 +310,7 @@ void doubt_gravity(const scene::Scene& scene, SceneCheck& check) {
     check.warnings.push_back(
         (scene.path.empty() ? "scene" : scene.path + "#") + "/gravity: gravity is " +
         base::format_quantity(scene.gravity.norm(), "m/s^2", 4) +
-        ", which is hardly meant; is it in mm/s^2? m/s^2 are wanted, whatever the unit of lengths (9.81 on the Earth)");
+        ", which is hardly meant; is it in mm/s^2? m/s^2 are expected, whatever the unit of lengths (9.81 on the Earth)");
 }
 
 /// Contact across a good part of a body. Of the default nothing is said: it goes with the size of what moves.

@@ -17,8 +17,8 @@ struct SceneCheck {
     std::vector<std::size_t> shapes;    ///< per body the first whose mesh is the same
 };
 
-/// By each body's MeshPolicy (scene/scene.hpp): strict asks for perfect solids (geometry/mesh_validity.hpp), tolerant takes what does no
-/// harm, with warnings (geometry/mesh_judgement.hpp), lenient asks only that the mesh can be indexed and has a mass.
+/// By each body's MeshPolicy (scene/scene.hpp): strict asks for perfect solids (solids/mesh_validity.hpp), tolerant takes what does no
+/// harm, with warnings (solids/mesh_judgement.hpp), lenient asks only that the mesh can be indexed and has a mass.
 /// @param check_meshes  false: meshes are known to be sound.
 SceneCheck check_scene(const scene::Scene& scene, bool check_meshes);
 

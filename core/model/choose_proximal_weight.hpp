@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// How firmly a quasi-static step holds what nothing else does. docs/method.md section 3.
+/// How firmly a quasi-static step holds what nothing else does. docs/method/energy.md#quasi-static-steps.
 #pragma once
 
 #include "fettle/core/model/model.hpp"
 
 namespace fettle::core::model {
 
-/// Of a body [N]: m |gravity| + |force| + |torque| / r, r its radius, at least dhat. 0 for a body that is prescribed altogether.
+/// The load on a body [N]: m |gravity| + |force| + |torque| / r, r its radius, at least dhat. 0 for a body that is prescribed altogether.
 double load_magnitude(const Model& model, const Body& body);
 
 /// The loads that a body's proximal force is compared with [N]: its own, of a body without any the largest of the scene. 0: the scene has

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Joints, springs, motors and loads as the stepper works on them: measures, rows over them, terms of them. docs/method.md section 9.
+/// Joints, springs, motors and loads as the stepper works on them: measures, rows over them, terms of them. docs/method/joints.md.
 /// Made by build_mechanism.hpp.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The start of a model with joints: dependent rows told and set apart, bodies assembled, velocities made to agree. docs/method.md
-/// section 9.
+/// The start of a model with joints: dependent rows are reported and left out, bodies assembled, velocities made to agree.
+/// docs/method/joints.md#assembly-the-start.
 #pragma once
 
 #include "fettle/core/base/result.hpp"

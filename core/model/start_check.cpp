@@ -15,12 +15,12 @@
 #include "fettle/core/base/stop.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/geometry/closure.hpp"
 #include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/geometry/overlapping_boxes.hpp"
-#include "fettle/core/geometry/point_in_solid.hpp"
 #include "fettle/core/geometry/predicates.hpp"
+#include "fettle/core/solids/closure.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
+#include "fettle/core/solids/point_in_solid.hpp"
 
 namespace fettle::core::model {
 namespace {
@@ -50,7 +50,7 @@ private:
 };
 struct MeshFacts {
     Fact<bool> bounds_a_solid;
-    Fact<std::optional<geometry::Closure>> closure;
+    Fact<std::optional<solids::Closure>> closure;
     Fact<std::vector<int>> samples;
 };
 
@@ -87,24 +87,24 @@ double gap_squared(const CenteredBox& a, const CenteredBox& b) {
 }
 
 bool elements_intersect(const Corners& a, int a_count, const Corners& b, int b_count) {
-    if (a_count == 3 && b_count == 3) return geometry::triangles_intersect(a, b);
+    if (a_count == 3 && b_count == 3) return solids::triangles_intersect(a, b);
     if (a_count == 3) return geometry::segment_intersects_triangle(b[0], b[1], a);
     return geometry::segment_intersects_triangle(a[0], a[1], b);
 }
 
 bool bounds_a_solid(const PlacedBody& placed) {
-    return placed.facts->bounds_a_solid.get([&] { return geometry::bounds_a_solid(placed.body->mesh); });
+    return placed.facts->bounds_a_solid.get([&] { return solids::bounds_a_solid(placed.body->mesh); });
 }
 
 /// Of an open mesh that may be meant as a solid: what it bounds if it is closed, in the body's frame.
-const std::optional<geometry::Closure>& closure(const PlacedBody& placed) {
-    static const std::optional<geometry::Closure> none;
+const std::optional<solids::Closure>& closure(const PlacedBody& placed) {
+    static const std::optional<solids::Closure> none;
     if (is_sheet(*placed.body)) return none;
-    return placed.facts->closure.get([&] { return geometry::closure_of(placed.body->mesh); });
+    return placed.facts->closure.get([&] { return solids::closure_of(placed.body->mesh); });
 }
 
 const std::vector<int>& samples(const PlacedBody& placed) {
-    return placed.facts->samples.get([&] { return geometry::samples_of(placed.body->mesh); });
+    return placed.facts->samples.get([&] { return solids::samples_of(placed.body->mesh); });
 }
 
 struct Approach {
@@ -210,7 +210,7 @@ std::optional<Vector3> point_inside(const PlacedBody& inner, const PlacedBody& o
     for (const int v : samples(inner)) {
         const Vector3 point = inner.vertices.col(v);
         if (((point - outer.box.center).cwiseAbs() - outer.box.half).maxCoeff() > 0) continue;
-        if (geometry::point_in_solid(point, outer.vertices, outer.body->mesh.triangles)) return point;
+        if (solids::point_in_solid(point, outer.vertices, outer.body->mesh.triangles)) return point;
     }
     return std::nullopt;
 }
@@ -273,7 +273,7 @@ std::optional<std::string> containment_doubt(const PlacedBody& a, const PlacedBo
         const kinematics::Pose& pose = outer.body->pose_start;
         const auto is_within = [&](int v) {
             const Vector3 x = pose.rotation.transpose() * (inner.vertices.col(v) - pose.position);
-            return geometry::is_within(x, *closure(outer));
+            return solids::is_within(x, *closure(outer));
         };
         if (std::none_of(tried.begin(), tried.end(), is_within)) continue;
         return "whether `" + inner.body->name + "` lies inside `" + outer.body->name + "` at the start cannot be verified: the mesh of `" +

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 
 namespace fettle::core::parts {
 namespace {

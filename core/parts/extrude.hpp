@@ -4,24 +4,10 @@
 
 #include <vector>
 
-#include "fettle/core/parts/profile.hpp"
+#include "fettle/core/parts/layer.hpp"
 #include "fettle/core/parts/solid.hpp"
 
 namespace fettle::core::parts {
-
-/// How a layer ends. Over the last `height` of it the outline draws in by `inset` (holes widen; < 0: the reverse), along straight slopes.
-/// inset = height: a chamfer of 45 degrees. height = the whole layer: draft.
-struct End {
-    Number inset, height;
-};
-
-/// From z = from to z = to > from.
-struct Layer {
-    Profile profile;
-    Number from, to;
-    End lower, upper;
-    std::string feature;  ///< of its end faces
-};
 
 /// Walls stand for planes and cylinders, with chamfers for planes and cones; other curves for extruded ones.
 /// Errors: an empty profile, heights out of order ("`collar` has no height: 0 mm"), facets that cross each other (the number of segments is

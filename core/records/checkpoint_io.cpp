@@ -19,10 +19,10 @@ std::vector<Matrix34> read_rates(const files::JsonNode& node, std::size_t bodies
     std::vector<Matrix34> out(numbers.size() / 12);
     for (std::size_t i = 0; i < 12 * out.size(); ++i) out[i / 12].reshaped()[static_cast<Eigen::Index>(i % 12)] = numbers[i];
     if (numbers.size() != 12 * bodies && !(may_be_empty && numbers.empty()))
-        node.fail(ErrorCode::inconsistent, "12 numbers per body are wanted, " + std::to_string(numbers.size()) + " found");
+        node.fail(ErrorCode::inconsistent, "12 numbers per body are expected, " + std::to_string(numbers.size()) + " found");
     for (const double x : numbers) {
         if (std::abs(x) <= largest_number) continue;
-        node.fail(ErrorCode::out_of_range, "numbers beyond 1e30 are not taken");
+        node.fail(ErrorCode::out_of_range, "numbers beyond 1e30 are refused");
         break;
     }
     return out;

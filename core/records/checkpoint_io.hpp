@@ -22,8 +22,8 @@ struct StoredCheckpoint {
 
 void write_checkpoint(files::JsonWriter& out, const stepper::Checkpoint& checkpoint, const std::vector<ScenePart>& scene);
 
-/// Of this trajectory. Faults (keys, lengths of lists, a step that the trajectory does not have, the hash) are added to the document's
-/// errors.
+/// The checkpoint of this trajectory. Faults (keys, lengths of lists, a step that the trajectory does not have, the hash) are added to the
+/// document's errors.
 StoredCheckpoint read_checkpoint(const files::JsonNode& node, const stepper::Trajectory& trajectory);
 
 }  // namespace fettle::core::records

@@ -28,7 +28,7 @@ private:
     files::Fnv1a hash_;
 };
 
-/// Of the whole path.
+/// The hash of the whole path.
 std::uint64_t path_hash(const stepper::Trajectory& trajectory);
 
 }  // namespace fettle::core::records

@@ -68,7 +68,7 @@ public:
     base::Result<PosesTable> read() {
         if (!next_row())
             return base::Error{ErrorCode::parse, name_,
-                               "the file is empty; a header row is wanted, such as time,body,px[mm],py[mm],pz[mm],qw,qx,qy,qz"};
+                               "the file is empty; a header row is expected, such as time,body,px[mm],py[mm],pz[mm],qw,qx,qy,qz"};
         read_header();
         if (!errors_.empty()) return errors_;
         while (next_row() && errors_.size() < max_errors) read_row();
@@ -123,8 +123,8 @@ private:
         known_.push_back(name);
         const auto count = std::count_if(columns_.begin(), columns_.end(), named);
         if (count == 1) return static_cast<std::size_t>(std::find_if(columns_.begin(), columns_.end(), named) - columns_.begin());
-        fail(count ? ErrorCode::inconsistent : ErrorCode::missing_key,
-             "column \"" + name + "\" is " + (count ? "there twice" : "missing") + "; wanted: time,body,px[mm],py[mm],pz[mm],qw,qx,qy,qz");
+        fail(count ? ErrorCode::inconsistent : ErrorCode::missing_key, "column \"" + name + "\" is " + (count ? "there twice" : "missing") +
+                                                                           "; expected: time,body,px[mm],py[mm],pz[mm],qw,qx,qy,qz");
         return 0;
     }
 
@@ -138,7 +138,7 @@ private:
         if (given.size() != 1) {
             fail(given.empty() ? ErrorCode::missing_key : ErrorCode::inconsistent,
                  std::string(given.empty() ? "no rotation" : "more than one rotation") +
-                     "; one of qw qx qy qz, rx ry rz, r11 .. r33 is wanted");
+                     "; one of qw qx qy qz, rx ry rz, r11 .. r33 is expected");
             return;
         }
         form_ = static_cast<RotationForm>(given[0]);

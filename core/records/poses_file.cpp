@@ -34,7 +34,7 @@ void read_json_body(const JsonNode& node, std::size_t body, RotationForm form, d
     const auto rows = node.elements();
     if (node.is_array() && rows.size() != table.times.size()) {
         node.fail(ErrorCode::inconsistent,
-                  std::to_string(rows.size()) + " poses, " + std::to_string(table.times.size()) + " wanted: one per time");
+                  std::to_string(rows.size()) + " poses, " + std::to_string(table.times.size()) + " expected: one per time");
         return;
     }
     const auto count = 3 + static_cast<std::size_t>(number_count(form));
@@ -43,7 +43,7 @@ void read_json_body(const JsonNode& node, std::size_t body, RotationForm form, d
         if (!numbers) continue;
         if (numbers->size() != count) {
             rows[t].fail(ErrorCode::inconsistent, std::to_string(numbers->size()) + " numbers, " + std::to_string(count) +
-                                                      " wanted: px py pz and the rotation as a " +
+                                                      " expected: px py pz and the rotation as a " +
                                                       std::string(rotation_form_names()[static_cast<std::size_t>(form)]));
             continue;
         }
@@ -67,7 +67,7 @@ base::Result<PosesTable> read_poses_json(const std::string& path, const model::M
     PosesTable table;
     const JsonNode times = root.require("times");
     table.times = times.numbers().value_or(std::vector<double>{});
-    if (times.is_array() && table.times.empty()) times.fail(ErrorCode::inconsistent, "at least one time is wanted");
+    if (times.is_array() && table.times.empty()) times.fail(ErrorCode::inconsistent, "at least one time is expected");
     base::Errors errors;
     if (!document->errors().empty()) return document->errors();
     const double unit = base::metres_per_unit(*unit_name).value();

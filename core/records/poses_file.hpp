@@ -2,12 +2,12 @@
 /// Poses from any other program (CAD, multibody dynamics, motion capture, a spreadsheet) as a trajectory that can be certified. The scene
 /// supplies bodies and meshes; the file says where their file frames are: a point x of the mesh file is at R x + p in the world.
 ///
-/// The path between two poses of a body is straight in the chart of docs/method.md section 8: the body's reference point (model/model.hpp:
-/// its centre of mass, unless the scene names another) moves straight, and R(s) = exp(s [theta]) R_t with theta the rotation vector of
-/// R_{t+1} R_t^T: a turn at constant rate about one direction. Certificates speak of that path. What turns about an axis elsewhere, such as
-/// a crank, cuts the corner: by |dq|/2 tan(|theta|/4), which falls with the square of the number of poses (PosesFile::largest_cut). A file
-/// that is too coarse should be written with more poses; a turn of more than 170 degrees between two of them, which could have gone either
-/// way, is refused.
+/// The path between two poses of a body is straight in the chart of docs/method/kinematics.md#charts: the body's reference point
+/// (model/model.hpp: its centre of mass, unless the scene names another) moves straight, and R(s) = exp(s [theta]) R_t with theta the
+/// rotation vector of R_{t+1} R_t^T: a turn at constant rate about one direction. Certificates are about that path. What turns about an
+/// axis elsewhere, such as a crank, cuts the corner: by |dq|/2 tan(|theta|/4), which falls with the square of the number of poses
+/// (PosesFile::largest_cut). A file that is too coarse should be written with more poses; a turn of more than 170 degrees between two of
+/// them, which could have gone either way, is refused.
 ///
 /// Bodies that the file does not name stay where the scene puts them. Formats (length unit: um, mm, cm, m, in, ft; times in seconds,
 /// strictly increasing, not necessarily even; `#` begins a comment line in CSV):
@@ -55,7 +55,7 @@ base::Result<PosesFile> read_poses(const std::filesystem::path& path, const mode
 [[nodiscard]] base::Errors write_poses(const std::filesystem::path& path, const stepper::Trajectory& trajectory, const model::Model& model,
                                        const std::string& unit);
 
-/// Is this a JSON file of poses, as far as its keys tell?
+/// Is this a JSON file of poses, as far as its keys show?
 bool is_poses_file(const std::filesystem::path& path);
 
 }  // namespace fettle::core::records

@@ -30,8 +30,9 @@ std::optional<Matrix3> from_quaternion(const std::vector<double>& q, const std::
     const Eigen::Quaterniond given(q[0], q[1], q[2], q[3]);
     const double off = std::abs(given.norm() - 1);
     if (!(off <= rotation_tolerance)) {
-        errors.push_back({ErrorCode::out_of_range, where,
-                          "the quaternion qw qx qy qz has length " + shown_defect(given.norm()) + ", 1 is wanted (to 1e-4); normalise it"});
+        errors.push_back(
+            {ErrorCode::out_of_range, where,
+             "the quaternion qw qx qy qz has length " + shown_defect(given.norm()) + ", 1 is expected (to 1e-4); normalise it"});
         return std::nullopt;
     }
     table.largest_rotation_error = std::max(table.largest_rotation_error, off);
@@ -50,7 +51,7 @@ std::optional<Matrix3> from_matrix(const std::vector<double>& m, const std::stri
     }
     if (r.determinant() < 0) {
         errors.push_back({ErrorCode::out_of_range, where,
-                          "the matrix is a reflection (its determinant is -1); a rotation in a right-handed frame is wanted"});
+                          "the matrix is a reflection (its determinant is -1); a rotation in a right-handed frame is expected"});
         return std::nullopt;
     }
     table.largest_rotation_error = std::max(table.largest_rotation_error, off);

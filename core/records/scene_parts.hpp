@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What of a scene decides how its simulation goes on, part by part: a run is taken up by the scene that it was a run of, and what differs
-/// is told by name. Meshes: geometry_hash.hpp.
+/// The parts of a scene that decide how its simulation goes on. A run can be continued only with the scene that it is a run of; the parts
+/// that differ are named. Meshes: geometry_hash.hpp.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct ScenePart {
     std::string hash;  ///< FNV-1a over the bits of its numbers, hexadecimal
 };
 
-/// Of a model, in a fixed order.
+/// The parts of a model, in a fixed order.
 std::vector<ScenePart> scene_parts(const model::Model& model);
 
 }  // namespace fettle::core::records

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Per-step outputs as CSV tables with a header row, SI units, every number as the shortest decimal that reads back to the same double.
-/// Of a simulation with SimulationOptions::outputs; one that was taken up again lists the steps since its checkpoint, see joined_table.
+/// They come from a simulation with SimulationOptions::outputs; one that was resumed lists the steps since its checkpoint, see
+/// joined_table.
 #pragma once
 
 #include <string>

@@ -27,7 +27,7 @@ constexpr double rotation_defect = 1e-14;  // what a rotation of ours, made orth
 bool in_range(const std::vector<double>& numbers, const JsonNode& node) {
     for (const double x : numbers) {
         if (x >= stored_numbers.low && x <= stored_numbers.high) continue;
-        node.fail(ErrorCode::out_of_range, "numbers beyond 1e30 are not taken");
+        node.fail(ErrorCode::out_of_range, "numbers beyond 1e30 are refused");
         return false;
     }
     return true;
@@ -63,7 +63,7 @@ bool are_distinct(const std::vector<int>& list, std::size_t columns, const JsonN
 
 void read_vertices(const JsonNode& node, geometry::Mesh& mesh) {
     auto coordinates = node.numbers().value_or(std::vector<double>{});
-    if (coordinates.empty() || coordinates.size() % 3 != 0) node.fail(ErrorCode::inconsistent, "three coordinates per vertex are wanted");
+    if (coordinates.empty() || coordinates.size() % 3 != 0) node.fail(ErrorCode::inconsistent, "three coordinates per vertex are expected");
     if (coordinates.empty() || coordinates.size() % 3 != 0 || !in_range(coordinates, node)) return;
     mesh.vertices = Eigen::Map<const Matrix3X>(coordinates.data(), 3, static_cast<Eigen::Index>(coordinates.size() / 3));
 }
@@ -125,14 +125,14 @@ void read_settings(const JsonNode& root, StoredTrajectory& out) {
 bool has_entries(const std::vector<JsonNode>& list, std::size_t count, const JsonNode& node, const char* what) {
     if (list.size() == count) return true;
     if (node.is_array())
-        node.fail(ErrorCode::inconsistent, std::to_string(list.size()) + " entries, " + std::to_string(count) + " wanted: " + what);
+        node.fail(ErrorCode::inconsistent, std::to_string(list.size()) + " entries, " + std::to_string(count) + " expected: " + what);
     return false;
 }
 
 std::vector<double> read_row(const JsonNode& node, std::size_t count, const char* what) {
     const auto numbers = node.numbers();
     if (!numbers) return {};
-    if (numbers->size() != count) node.fail(ErrorCode::inconsistent, std::to_string(count) + " numbers are wanted: " + what);
+    if (numbers->size() != count) node.fail(ErrorCode::inconsistent, std::to_string(count) + " numbers are expected: " + what);
     if (numbers->size() != count || !in_range(*numbers, node)) return {};
     return *numbers;
 }

@@ -10,7 +10,7 @@
 
 namespace fettle::core::records {
 
-/// Of every number in these files.
+/// The range of every number in these files.
 inline constexpr files::NumberRange stored_numbers{-1e30, 1e30, false};
 
 /// Bodies without the parts that follow from their meshes (model::complete_geometry), and poses[0].

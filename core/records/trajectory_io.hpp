@@ -7,7 +7,7 @@
 /// angles in radians. The first line:
 ///   fettle_trajectory  2, the version of this format (version 1 was one object over many lines; it is refused)
 ///   scene              path of the scene as it was given, "" if there was none
-///   geometry_hash      FNV-1a, 64 bits, hexadecimal, over names, meshes and mass_per (geometry_hash.hpp): tells whether a scene has
+///   geometry_hash      FNV-1a, 64 bits, hexadecimal, over names, meshes and mass_per (geometry_hash.hpp): shows whether a scene has
 ///                      the meshes that this trajectory was computed with; checked against `bodies` when read
 ///   length_unit, dhat, dmin        of the scene file [m], the contact model's activation distance and minimum separation [m]
 ///   time_start, timestep
@@ -57,7 +57,7 @@ namespace fettle::core::records {
                                           const stepper::Trajectory& trajectory, const model::Model& model,
                                           const std::string& scene_path = {}, const stepper::Checkpoint* checkpoint = nullptr);
 
-/// Is this file a trajectory, as far as its keys tell? False for anything that cannot be read.
+/// Is this file a trajectory, as far as its keys show? False for anything that cannot be read.
 bool is_trajectory_file(const std::filesystem::path& path);
 
 /// Checked: version, shapes of all lists, numbers finite and at most 1e30, indices, rotations orthonormal to 1e-14, that the path is one

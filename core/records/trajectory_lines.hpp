@@ -14,7 +14,7 @@ namespace fettle::core::records {
 
 class TrajectoryLines {
 public:
-    /// Keeps references to both. Of the trajectory the start must be there; steps may follow.
+    /// Keeps references to both. The trajectory must have its start; steps may follow.
     TrajectoryLines(const stepper::Trajectory& trajectory, const model::Model& model);
 
     /// The first line. Each ends with its line feed.

@@ -24,7 +24,7 @@ using files::JsonNode;
 using kinematics::ChartPoint;
 using kinematics::Pose;
 
-// Rounding of exp and a product (contact/chord_deviation.hpp, rotated_rounding): what the end of a step's chart and the next pose, which is
+// Rounding of exp and a product (ccd/chord_deviation.hpp, rotated_rounding): what the end of a step's chart and the next pose, which is
 // made orthonormal again, may differ by. Every certified bound is charged more than twice that.
 double allowed_turn(const Vector3& theta) { return unit_roundoff * (80 + 10 * theta.norm()); }
 
@@ -121,7 +121,7 @@ private:
         step.fractions = fractions.numbers().value_or(std::vector<double>{});
         const auto& f = step.fractions;
         if (f.size() != step.nodes.size() || f.size() < 2 || f.front() != 0 || f.back() != 1 || !std::is_sorted(f.begin(), f.end()))
-            fractions.fail(ErrorCode::inconsistent, "one fraction per node is wanted, from 0 to 1, none below the one before");
+            fractions.fail(ErrorCode::inconsistent, "one fraction per node is expected, from 0 to 1, none below the one before");
         return step;
     }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "fettle/core/kinematics/tangent_system.hpp"
+
 namespace fettle::core::scene {
 namespace {
 
@@ -23,6 +25,24 @@ SineCosine sine_cosine(double degrees) {
 }  // namespace
 
 double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
+
+Matrix3 rotation_of(const Orientation& orientation) {
+    const Vector3& x = orientation.numbers;
+    if (orientation.kind == Orientation::Kind::vector) return kinematics::rotation(x);
+    using Eigen::AngleAxisd;
+    return (AngleAxisd(x[2], Vector3::UnitZ()).toRotationMatrix() * AngleAxisd(x[1], Vector3::UnitY()).toRotationMatrix()) *
+           AngleAxisd(x[0], Vector3::UnitX()).toRotationMatrix();
+}
+
+Matrix3 rotation_axes(const Orientation& orientation) {
+    const Vector3& x = orientation.numbers;
+    if (orientation.kind == Orientation::Kind::vector) return kinematics::left_jacobian(x);
+    const Matrix3 about_z = Eigen::AngleAxisd(x[2], Vector3::UnitZ()).toRotationMatrix();
+    const Matrix3 about_y = Eigen::AngleAxisd(x[1], Vector3::UnitY()).toRotationMatrix();
+    Matrix3 axes;
+    axes << about_z * about_y.col(0), about_z.col(1), Vector3::UnitZ();
+    return axes;
+}
 
 Matrix3 rotation_from_degrees(const Vector3& angles) {
     const auto [sa, ca] = sine_cosine(angles.x());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Angles in degrees, as both scene formats write them.
+/// Rotations as scene files write them: three angles, or a rotation vector.
 #pragma once
 
 #include "fettle/core/base/types.hpp"
@@ -10,5 +10,18 @@ double radians(double degrees);
 
 /// R = Rz(c) Ry(b) Rx(a) for [a, b, c] in degrees; exact for multiples of 90.
 Matrix3 rotation_from_degrees(const Vector3& angles);
+
+/// A rotation as it was written.
+struct Orientation {
+    enum class Kind {
+        angles,  ///< R = Rz(c) Ry(b) Rx(a)
+        vector   ///< R = exp([x])
+    };
+    Kind kind = Kind::angles;
+    Vector3 numbers = Vector3::Zero();  ///< [a, b, c] or x [rad]
+};
+Matrix3 rotation_of(const Orientation& orientation);
+/// dR = [W d(numbers)]x R: the axes, in the world, about which each number turns.
+Matrix3 rotation_axes(const Orientation& orientation);
 
 }  // namespace fettle::core::scene

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::core::scene {
 namespace {
@@ -23,7 +23,7 @@ std::string fault_of(const Inertial& inertial) {
     const double size = j.trace();
     if (!(size > 0) || !((j - j.transpose()).cwiseAbs().maxCoeff() <= rounding * size))
         return "the inertia is a symmetric matrix with positive moments about its axes";
-    const Vector3 moments = symmetric_eigenvalues<3>(j);
+    const Vector3 moments = linear::symmetric_eigenvalues<3>(j);
     std::ostringstream found;
     found << "; the principal moments are " << moments[0] << ", " << moments[1] << " and " << moments[2] << " kg m^2";
     if (!(moments[0] > 0)) return "the inertia is positive definite" + found.str();
@@ -35,7 +35,7 @@ std::string fault_of(const Inertial& inertial) {
 Matrix4 moments_about(const Inertial& inertial, const Vector3& c) {
     const Matrix3 symmetric = 0.5 * (inertial.inertia + inertial.inertia.transpose());
     Matrix3 spread = spread_of(symmetric);
-    const SymmetricEigen<3> eigen = symmetric_eigen<3>(spread);
+    const linear::SymmetricEigen<3> eigen = linear::symmetric_eigen<3>(spread);
     if (eigen.values[0] < 0) spread = eigen.vectors * eigen.values.cwiseMax(0).asDiagonal() * eigen.vectors.transpose();
     const Vector3 r = inertial.centre - c;
     Matrix4 moments;

@@ -14,7 +14,7 @@
 namespace fettle::core::scene {
 
 enum class JointKind { ball, revolute, prismatic, cylindrical, planar, fixed, screw, gear, rack };
-/// Of two joints, without bodies of its own?
+/// Does it couple two joints, without bodies of its own?
 inline bool couples_joints(JointKind kind) { return kind == JointKind::gear || kind == JointKind::rack; }
 
 /// One end: a point and a direction, both in the file's frame of the body; of the world in the world's.

@@ -166,6 +166,20 @@ const char* has_no_rate(const Item& item) {
     return item.body().prescribed[dof] ? nullptr : "has no motor on that coordinate; give it one in the scene, under `prescribed`";
 }
 
+template <Orientation::Kind kind>
+Numbers orientation_of(const Item& item) {
+    Orientation& orientation = item.body().orientation;
+    return orientation.kind == kind ? Numbers(&orientation.numbers) : Numbers();
+}
+template <Orientation::Kind kind>
+const char* has_no_orientation(const Item& item) {
+    const Body& body = item.body();
+    if (body.orientation.kind != kind) return kind == Orientation::Kind::angles ? "is turned by a rotation vector" : "is turned by angles";
+    constexpr double rounding = 1e-12;
+    const bool is_its_own = body.turn.isZero(0) && (rotation_of(body.orientation) - body.pose.rotation).cwiseAbs().maxCoeff() > rounding;
+    return is_its_own ? "has a rotation that was made otherwise; a `turn` can be moved" : nullptr;
+}
+
 const char* has_no_density(const Item& item) {
     return item.body().inertial ? "has a mass that is given (`inertial`), and follows no density" : nullptr;
 }
@@ -181,7 +195,7 @@ const char* has_no_coordinate(const Item& item) {
 }
 const char* has_no_spring(const Item& item) {
     if (const char* reason = has_no_coordinate(item)) return reason;
-    return item.forces().stiffness > 0 ? nullptr : "has no spring: a `stiffness` greater than 0 is wanted in the scene";
+    return item.forces().stiffness > 0 ? nullptr : "has no spring: a `stiffness` greater than 0 is expected in the scene";
 }
 const char* has_no_rest(const Item& item) {
     if (const char* reason = has_no_spring(item)) return reason;
@@ -206,7 +220,7 @@ const char* has_no_limits(const Item& item) {
 template <JointKind kind>
 const char* is_none(const Item& item) {
     if (item.joint().kind == kind) return nullptr;
-    return kind == JointKind::screw ? "is no screw" : kind == JointKind::gear ? "is no gear" : "is no rack";
+    return kind == JointKind::screw ? "is not a screw" : kind == JointKind::gear ? "is not a gear" : "is not a rack";
 }
 
 std::vector<Row> make_table() {
@@ -222,6 +236,9 @@ std::vector<Row> make_table() {
         {List::body, "shape/dimensions/*", [](const Item& i) { return i.body().shape ? Numbers(&i.body().shape->dimensions) : Numbers(); },
          is<length>},
         {List::body, "position/*", [](const Item& i) -> Numbers { return &i.body().pose.position; }, is<length>},
+        {List::body, "rotation/*", orientation_of<Orientation::Kind::angles>, is<angle>, has_no_orientation<Orientation::Kind::angles>},
+        {List::body, "rotation_vector/*", orientation_of<Orientation::Kind::vector>, is<angle>,
+         has_no_orientation<Orientation::Kind::vector>},
         {List::body, "turn/*", of_body<&Body::turn>, is<angle>},
         {List::body, "density", of_body<&Body::density>,
          [](const Item& i) { return i.body().mass_kind == MassKind::volume ? density : number; }, has_no_density},
@@ -318,7 +335,7 @@ public:
     Search(const Scene& scene, std::string_view pointer) : scene_(scene), pointer_(pointer) {}
 
     base::Result<Place> run() const {
-        if (!pointer_.starts_with('/')) return fail("a place in a scene is wanted, such as /bodies/0/position/2");
+        if (!pointer_.starts_with('/')) return fail("a place in a scene is expected, such as /bodies/0/position/2");
         std::string_view path = pointer_.substr(1);
         for (const ListName& of : list_names) {
             if (!path.starts_with(of.path) || !path.substr(of.path.size()).starts_with('/')) continue;
@@ -431,7 +448,15 @@ std::vector<Place> places_of(const Scene& scene) {
 
 int row_count() { return static_cast<int>(table().size()); }
 
-Dimension dimension_at(const Scene& scene, const Place& place) { return row_of(place).dimension(item_of(scene, place)); }
+Dimension dimension_at(const Scene& scene, const Place& place) {
+    const Item item = item_of(scene, place);
+    const Row& row = row_of(place);
+    if (row.key != "shape/dimensions/*" || !item.body().shape) return row.dimension(item);
+    const ShapeSpec& shape = *item.body().shape;
+    const std::string name = entry_name(row.numbers(item), static_cast<std::size_t>(place.entry));
+    if (std::find(shape.angles.begin(), shape.angles.end(), name) != shape.angles.end()) return Dimension::angle;
+    return std::find(shape.numbers.begin(), shape.numbers.end(), name) != shape.numbers.end() ? Dimension::number : Dimension::length;
+}
 
 double& at(Scene& scene, const Place& place) {
     return entry_of(numbers_of(item_of(scene, place), place), static_cast<std::size_t>(place.entry));
@@ -466,6 +491,11 @@ base::Errors faults_at(const Scene& scene, const Place& place) {
             return unless(item.load().force.norm() > 0, "its force must be greater than 0 for a derivative");
     }
     return {};
+}
+
+void settle_rotation(Body& body) {
+    body.pose.rotation = rotation_of(body.orientation);
+    if (!body.turn.isZero(0)) body.pose.rotation = kinematics::rotation(body.turn) * body.pose.rotation;
 }
 
 void clear_numbers(Scene& scene) {

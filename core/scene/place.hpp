@@ -7,7 +7,8 @@
 ///     /bodies/1/position/0                /bodies/1/density                  /bodies/1/shape/dimensions/radius
 ///     /bodies/1/prescribed/rz/rate        /joints/0/point_a/2                /joints/0/limits/1
 ///     /springs/0/stiffness                /motors/0/angle/values/3           /loads/0/force/0
-/// A body's `turn` has no key in a file: a rotation vector, world axes, that turns the body as written (scene.hpp). Counts, names,
+/// A body's pose follows from its `rotation` or `rotation_vector`, and its `turn`, which has no key in a file: a rotation vector, world
+/// axes, that turns the body as written. Who sets one of them makes the pose's rotation anew (settle_rotation). Counts, names,
 /// tolerances of solvers, dhat and kappa have no place.
 #pragma once
 
@@ -30,7 +31,7 @@ struct Place {
 /// name: "/bodies/pin/density". (A file's dampers stand after its springs in Mechanism::springs, which /springs counts through; a damper is
 /// a spring without stiffness and limits.) A motor's curve is `angle`, `travel`, `torque` or `force`, as in its file, or just `curve`.
 /// Errors, `where` the pointer: a row that is not there, with the nearest; nothing of that name or number; what the scene has no such
-/// number for ("`hinge` is no screw").
+/// number for ("`hinge` is not a screw").
 base::Result<Place> find_place(const Scene& scene, std::string_view pointer);
 /// As the scene's file has it, with numbers.
 std::string pointer_to(const Scene& scene, const Place& place);
@@ -53,6 +54,9 @@ double value_at(const Scene& scene, const Place& place);
 /// Why the scene cannot be differentiated by the number as it is, or makes no sense with it: springs, dampers and coefficients of friction
 /// of 0 or less (at 0 there is none), loads without force, limits out of order. Empty: nothing of the kind.
 base::Errors faults_at(const Scene& scene, const Place& place);
+
+/// The rotation of a body's pose from its orientation and turn.
+void settle_rotation(Body& body);
 
 /// Sets all numbers of the table to 0.
 void clear_numbers(Scene& scene);

@@ -3,10 +3,15 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/expression/formula.hpp"
+#include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/scene.hpp"
 
 namespace fettle::core::scene {
@@ -14,10 +19,31 @@ namespace fettle::core::scene {
 /// Makes the mesh of a `shape` body [m]. Errors: their `where` is replaced by the body's place in the file.
 using ShapeGenerator = std::function<base::Result<geometry::Mesh>(const ShapeSpec&)>;
 
+/// Which dimensions the part of a shape has, by name, and what quantity each is. Errors: as for ShapeGenerator.
+using PartDimensions = std::function<base::Result<std::map<std::string, base::Dimension>>(const ShapeSpec&)>;
+
+/// A name that formulas of the file may use as if it were one of its variables: a design's parameter. Takes the place of the variable of
+/// its name.
+struct FormulaInput {
+    std::string name;
+    expression::DimensionPowers dimension;
+    double value = 0;                                 ///< SI
+    std::optional<expression::Formula> meaning = {};  ///< over other inputs; none: an input itself, with this value
+};
+
+/// A value that replaces something in the file (files/json_document.hpp, replace).
+struct Replacement {
+    std::string pointer;
+    files::JsonNode value;
+};
+
 struct ReadOptions {
     std::vector<std::string> mesh_dirs;      ///< also looked in for meshes; see find_mesh_file in mesh_files/find_mesh_file.hpp
     ShapeGenerator shape_generator;          ///< empty: a body with `shape` is an error that says so
+    PartDimensions part_dimensions = {};     ///< of parts that are files; goes with shape_generator
     std::function<bool()> should_stop = {};  ///< optional, asked on any thread while a mesh is read that may take long: true ends it
+    std::vector<FormulaInput> inputs = {};
+    std::vector<Replacement> replacements = {};  ///< their document outlives the reading
     bool strict_meshes = false;  ///< meshes of our own format: MeshPolicy::strict, and nothing is repaired (geometry/mesh_repair.hpp)
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Plain description of a scene, SI units, meshes resolved: what a file said, before anything is computed from it.
-/// Readers: scene_reader.hpp (*.scene.json), fixture_reader.hpp (the source paper's files). Next stage: model/build_model.hpp.
+/// Readers: scene_files/scene_reader.hpp (*.scene.json), paper_scenes/fixture_reader.hpp (the source paper's files). Next stage:
+/// model/build_model.hpp.
 #pragma once
 
 #include <array>
@@ -9,8 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "fettle/core/expression/formula.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/kinematics/path.hpp"
+#include "fettle/core/scene/angles.hpp"
 #include "fettle/core/scene/inertial.hpp"
 #include "fettle/core/scene/mechanism.hpp"
 
@@ -67,8 +70,8 @@ struct Friction {
     int pair_of(const std::string& material_a, const std::string& material_b) const;
 };
 
-/// How a step follows from those before it (docs/method.md section 3). Dynamics: first order and dissipative; second order; second order
-/// and energy keeping. Quasi-static: each step is an equilibrium, without velocities.
+/// How a step follows from those before it (docs/method/energy.md#integrators). Dynamics: first order and dissipative; second order; second
+/// order and energy keeping. Quasi-static: each step is an equilibrium, without velocities.
 enum class Integrator { implicit_euler, bdf2, newmark, quasi_static };
 
 /// Resistance to a body's motion in proportion to its mass: force - linear m v at its centre of mass, torque - angular I omega about it.
@@ -94,12 +97,16 @@ struct MeshProgram {
     bool operator==(const MeshProgram&) const = default;
 };
 
-/// A part that a generator or a program makes (design/shapes/); core knows and runs none of them, see ReadOptions in scene_reader.hpp.
+/// A part that a generator or a program makes (design/shapes/); core knows and runs none of them, see read_options.hpp.
 struct ShapeSpec {
-    std::string generator;                     ///< its name; empty: a program makes the part
-    std::map<std::string, double> dimensions;  ///< lengths [m]
+    std::string generator;                     ///< its name; empty: a part's file or a program makes the part
+    std::map<std::string, double> dimensions;  ///< lengths [m], but for those that are listed below
     std::map<std::string, int> counts;         ///< numbers of teeth, holes, facets
     std::optional<MeshProgram> program = {};
+    std::string part = {};                 ///< of the library, or a file; then `generator` is empty
+    double chord = 0;                      ///< of a part: largest distance of a facet from what it stands for [m]; 0: not by this
+    std::vector<std::string> angles = {};  ///< dimensions of a part that are no lengths: angles [rad], plain numbers
+    std::vector<std::string> numbers = {};
     bool operator==(const ShapeSpec&) const = default;
 };
 
@@ -118,6 +125,7 @@ struct Body {
     std::string material;                        ///< for friction; empty: none named
     std::optional<double> mu;                    ///< its own friction coefficient
     kinematics::Pose pose;                       ///< of the file's frame at the start: world = rotation * x + position
+    Orientation orientation;                     ///< that `pose` has its rotation from, as written
     Vector3 linear_velocity = Vector3::Zero();   ///< of the reference point (model/model.hpp) at the start [m/s]
     Vector3 angular_velocity = Vector3::Zero();  ///< world axes [rad/s]
     PrescribedMotion prescribed;                 ///< static: all held; kinematic: all prescribed; dynamic: fixed DOFs and motors
@@ -131,6 +139,19 @@ struct Body {
     Vector3 turn = Vector3::Zero();
 };
 
+/// A named number of a file. What follows from others has a formula of them; the rest is constant, and a design can move it by its name.
+struct Variable {
+    std::string name;
+    expression::Formula formula = expression::constant_formula(0);  ///< over the variables that are constant
+    double value = 0;                                               ///< SI
+};
+
+/// A number that follows from variables; in a scene it has their values already.
+struct BoundNumber {
+    std::string place;  ///< place.hpp
+    expression::Formula formula = expression::constant_formula(0);
+};
+
 struct Scene {
     std::string path;        ///< of the file; empty when made in memory
     double length_unit = 1;  ///< of the file [m]; for reports only, everything here is SI
@@ -140,14 +161,16 @@ struct Scene {
     std::optional<double> end_time;     ///< [s]
     std::optional<double> dhat;         ///< activation distance [m]; default 1e-3 of moving_diagonal
     double dmin = 0;                    ///< minimum separation [m]
-    std::optional<double> kappa;        ///< barrier stiffness [N/m]; default: choose_kappa's, varied from step to step (docs/method.md 4)
-    bool area_weighted = false;         ///< barrier per vertex and edge area: pressure does not depend on the mesh; kappa in [N/m^3]
-    double contact_damping_time = 0;    ///< of contacts against kappa [s] (docs/method.md section 4); 0: none
+    std::optional<double> kappa;  ///< barrier stiffness [N/m]; default: choose_kappa's, varied from step to step (docs/method/contact.md)
+    bool area_weighted = false;   ///< barrier per vertex and edge area: pressure does not depend on the mesh; kappa in [N/m^3]
+    double contact_damping_time = 0;  ///< of contacts against kappa [s] (docs/method/contact.md); 0: none
     Friction friction;
     Mechanism mechanism;  ///< joints, springs, motors, loads at points
     Integrator integrator = Integrator::implicit_euler;
     std::optional<double> velocity_tolerance;  ///< Newton stops below this speed of any point [m/s]; default 1e-2 moving_diagonal / s
     int max_newton_iterations = 3000;
+    std::vector<Variable> variables;
+    std::vector<BoundNumber> numbers;   ///< that follow from variables, or from inputs that the reader was given; one for a place
     std::vector<std::string> warnings;  ///< what a lenient reader accepted
 };
 

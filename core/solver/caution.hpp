@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// Levenberg's shift of the Hessian, for solves whose inertia is too small to make it definite (quasi-statics): how much of the inertia is
 /// added for the next iteration. It begins at a given value, rises where steps had to be cut, and falls as they do what they promise, so
-/// that the way is that of a heavily damped motion, and the last steps are Newton's. docs/method.md section 6.
+/// that the way is that of a heavily damped motion, and the last steps are Newton's. docs/method/solver.md#when-a-solve-has-converged.
 #pragma once
 
 namespace fettle::core::solver {
 
-/// Of the inertia, which is in the Hessian whole: what a step with it misses is no more than this share of it.
+/// In units of the inertia, which is in the Hessian whole: a step with this shift misses no more than this share of its length.
 inline constexpr double negligible_shift = 1e-2;
 
 class Caution {
@@ -25,7 +25,7 @@ public:
         double gain_share = 0;  ///< change of the value over the slope; of a quadratic and a whole Newton step 1/2
         bool arrived = true;    ///< nothing that is prescribed remains
     };
-    /// Cut below a quarter: the curvature over the fraction, at least fourfold. Whole: 1/100 where the value fell as foretold or by more,
+    /// Cut below a quarter: the curvature over the fraction, at least fourfold. Whole: 1/100 where the value fell as predicted or by more,
     /// 1/10 or 1/2 where less so; below negligible_shift 0. Until what is prescribed has arrived, the initial one: what is pushed must not
     /// be heavy.
     void adapt(const Outcome& outcome);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// What to tell about a step that could not be solved: which body is held, by what, how close, and what stiffness would do.
+/// The message about a step that could not be solved: which body is held, by what, how close, and what stiffness would do.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/ccd/safe_step.hpp"
 #include "fettle/core/energy/incremental_potential.hpp"
 #include "fettle/core/solver/row_system.hpp"
 
@@ -15,7 +15,7 @@ struct FailedStep {
     const energy::StepProblem& problem;
     const contact::ContactSet& contacts;    ///< where the solver gave up
     const std::vector<Vector6>& remaining;  ///< of the prescribed coordinates, per body
-    const contact::SafeStep& limiting;      ///< of the last search
+    const ccd::SafeStep& limiting;          ///< of the last search
     double residual = 0;                    ///< NewtonResult::residual
     const std::string& cause;
     const RowSystem* rows = nullptr;                              ///< of a model with joints; then the next two as well

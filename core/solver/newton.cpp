@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/ccd/safe_step.hpp"
 #include "fettle/core/solver/caution.hpp"
 #include "fettle/core/solver/coasting.hpp"
 #include "fettle/core/solver/failure.hpp"
@@ -31,7 +31,7 @@ constexpr double short_step = 0.1;
 constexpr int careful_iterations = 4;
 constexpr int patient_shifts = 8;              // of the exact Hessian, where nothing is driven
 constexpr double relaxed_motion = 0.25;        // of dhat: pushed bodies that move no more have given way
-constexpr double prescribed_tolerance = 1e-9;  // of the scene's size (docs/method.md section 9)
+constexpr double prescribed_tolerance = 1e-9;  // of the scene's size (docs/method/joints.md#prescribed-coordinates)
 constexpr int stagnant_iterations = 12;        // without a smaller residual, when rounding is all that is left
 constexpr double saddle_growth = 10;           // of the residual over its least: more than rounding makes it waver
 constexpr double telling_shift = 1;            // of the inertia: up to it a step is at least half of the one under inertia alone
@@ -127,7 +127,7 @@ private:
 
     void cover(const std::vector<PathSegment>& segments) {
         const auto span = workspace_.clock.charge(SolvePhase::broad_phase);
-        contact::cover(model_, segments, candidate_allowance(model_), workspace_.candidates);
+        ccd::cover(model_, segments, candidate_allowance(model_), workspace_.candidates);
     }
 
     // Normal forces and tangents of where we are.
@@ -137,13 +137,13 @@ private:
         ++result_.friction_rounds;
     }
 
-    // The first are those of the step's start, also where this solve begins on the step's way: so the end does not hang on that way. With
-    // caution the first are of no matter.
+    // The first are those of the step's start, also where this solve begins on the step's way: so the end does not depend on that way. With
+    // caution the first are irrelevant.
     void lag_friction_of_round() {
         const bool begins_on_the_way = result_.friction_rounds == 0 && !options_.start.empty() && !(options_.caution > 0);
         if (!begins_on_the_way) return lag_friction();
         const std::vector<Pose>& start = problem_.poses_t0;
-        lag_friction(contact::find_contacts(model_, contact::find_candidates(model_, start, 0), start), start);
+        lag_friction(contact::find_contacts(model_, ccd::find_candidates(model_, start, 0), start), start);
     }
 
     static bool mostly_slides(const contact::FrictionSet& friction, const std::vector<Pose>& poses) {
@@ -179,7 +179,7 @@ private:
         const std::vector<PathSegment> segments = segments_to(ahead.points);
         cover(segments);
         const auto span = workspace_.clock.charge(SolvePhase::ccd);
-        return contact::longest_safe_step(model_, workspace_.candidates, segments, &at_.contacts).fraction == 1;
+        return ccd::longest_safe_step(model_, workspace_.candidates, segments, &at_.contacts.distances).fraction == 1;
     }
 
     // On the way to an equilibrium that may be far: with the normal forces of where it begins a block would be off its incline before
@@ -281,7 +281,7 @@ private:
         if (options_.should_stop && options_.should_stop())
             return stop(NewtonStatus::interrupted, "stopped on request; the steps before it are whole");
         const std::optional<Direction> direction = find_direction();
-        if (!direction) return stop(NewtonStatus::not_converged, "forces or their derivatives are too large, or no numbers");
+        if (!direction) return stop(NewtonStatus::not_converged, "forces or their derivatives are too large, or not numbers");
         result_.residual = direction->residual;
         result_.shift = std::max(result_.shift, direction->shift);
         const bool solved = has_moved() && has_arrived(*direction) && is_slow(*direction);
@@ -470,11 +470,11 @@ private:
     }
 
     // How far all bodies may go.
-    contact::SafeStep safe_step(const Direction& direction) {
+    ccd::SafeStep safe_step(const Direction& direction) {
         const std::vector<PathSegment> segments = segments_along(direction);
         cover(segments);
         const auto span = workspace_.clock.charge(SolvePhase::ccd);
-        return contact::longest_safe_step(model_, workspace_.candidates, segments, &at_.contacts);
+        return ccd::longest_safe_step(model_, workspace_.candidates, segments, &at_.contacts.distances);
     }
 
     // From the straight step onto the rows, and whether the way there is clear too.
@@ -558,7 +558,7 @@ private:
     Caution caution_;
     bool joints_rub_ = false, joints_stop_ = false;                     // terms of the mechanism
     double smallest_radius_ = std::numeric_limits<double>::infinity();  // of what is solved for
-    contact::SafeStep limiting_;
+    ccd::SafeStep limiting_;
     int first_of_round_ = 0;  // iterations before this round of friction
     std::vector<std::vector<ChartPoint>> ends_of_rounds_;
     int projected_iterations_ = 0;

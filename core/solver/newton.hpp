@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Projected Newton for one time step, with curved CCD in its line search: every accepted point, and the path to it, is free of
-/// intersections. docs/method.md section 6.
+/// intersections. docs/method/solver.md.
 ///
 /// Prescribed coordinates are equality constraints y_k = target, met exactly at the solution, or to 1e-9 of the scene's size where
 /// contact leaves no more (they stall, or what remains is all the gap there is). Each iteration moves them by what remains, and the free
@@ -11,12 +11,12 @@
 ///
 /// A step's error must be the integrator's, not the solver's: what is left after each solve is a velocity that adds up over the steps, and
 /// a force that no one exerts. So `accuracy` asks that no more than a small share of the forces on each body is left unbalanced
-/// (Direction::unbalanced), where the solve stands, or foretold for the end of the next whole Newton step: Newton's error is squared, in
+/// (Direction::unbalanced), where the solve stands, or predicted for the end of the next whole Newton step: Newton's error is squared, in
 /// units of the least gap, of the slip that friction sticks by, or of the body.
 ///
 /// Friction is solved in rounds: normal forces and tangents of the start, then of the round before (model::Friction::rounds). With
 /// friction in play, of contacts or of joints, velocities are resolved to a tenth of eps_v whatever the scene's tolerance: it is eps_v that
-/// tells sticking from sliding. A step of bodies that slide begins where they coast to (coasting.hpp).
+/// distinguishes sticking from sliding. A step of bodies that slide begins where they coast to (coasting.hpp).
 #pragma once
 
 #include <functional>

@@ -46,7 +46,7 @@ struct HessianChoice {
 ///                 shifted by
 ///                   shift * (inertia of each body + 1e-10 |diagonal|),   shift = 1e-2, 1, 100, ...
 ///                 until it is. With one: exact + shift * (the same), the shift growing tenfold from the one asked for, then the projected
-///                 one likewise. (Without inertia to speak of, the projected one is far too stiff along what slides: quasi-statics.)
+///                 one likewise. (Where inertia is negligible, the projected one is far too stiff along what slides: quasi-statics.)
 /// @param targets  as for minimise.
 /// @param drive    share of what remains of the prescribed coordinates to take, in [0, 1].
 /// @return nullopt if gradient, Hessian or what follows from them are not finite: nothing else stops it.

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "fettle/core/base/phase_clock.hpp"
-#include "fettle/core/contact/candidates.hpp"
+#include "fettle/core/ccd/candidates.hpp"
 #include "fettle/core/contact/contact_set.hpp"
 #include "fettle/core/linear/linear_system.hpp"
 #include "fettle/core/solver/row_system.hpp"
@@ -33,7 +33,7 @@ struct KnownContacts {
 /// What is worth keeping from one solve to the next; what a solve comes to depends on it by no more than its tolerance.
 struct NewtonWorkspace {
     linear::LinearSystem system;          ///< its symbolic factor
-    contact::Candidates candidates;       ///< near where the last solve ended
+    ccd::Candidates candidates;           ///< near where the last solve ended
     contact::ContactPlans contact_plans;  ///< how their contacts were counted last
     KnownContacts contacts;               ///< where the last step ended
     std::optional<RowSystem> rows;        ///< of a model with joints or motors; the last multipliers
@@ -52,7 +52,8 @@ struct NewtonWorkspace {
         if (rows) rows->forget_multipliers();
     }
 
-    /// Of the Hessian, or of the saddle-point system that the rows make of it. @return false: it is not positive definite (on the rows)
+    /// Factorises the Hessian, or the saddle-point system that the rows make of it. @return false: it is not positive definite (on the
+    /// rows)
     bool factorise(const kinematics::BlockHessian& hessian) {
         return rows ? system.factorise(hessian, rows->jacobian()) : system.factorise(hessian);
     }

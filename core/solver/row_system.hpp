@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Rows (joints, motors) in Newton's method (newton.hpp): their linearisation where an iteration stands, the step under them, and the way
-/// back onto the rows from where a step has led. docs/method.md section 9.
+/// back onto the rows from where a step has led. docs/method/joints.md#the-step-under-rows.
 #pragma once
 
 #include <vector>
@@ -33,7 +33,7 @@ public:
     void solve_for_step(const linear::LinearSystem& system, const kinematics::BlockHessian& hessian, const VectorX& r, double drive,
                         std::vector<Vector6>& step);
 
-    /// Of the last solve; carried from step to step, where they make the first Hessian's curvature.
+    /// The multipliers of the last solve; carried from step to step, where they make the first Hessian's curvature.
     const VectorX& multipliers() const { return multipliers_; }
     void forget_multipliers() { multipliers_.resize(0); }
 

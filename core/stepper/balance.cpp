@@ -67,7 +67,7 @@ double largest_work(const model::Model& model) {
 
 std::string balance_warning(const model::Model& model, const Balance& balance) {
     constexpr double gain = 0.01, angular = 0.05;
-    if (!std::isfinite(balance.energy_error)) return "energies are no finite numbers";
+    if (!std::isfinite(balance.energy_error)) return "energies are not finite numbers";
     if (balance.energy_error > gain * balance.energy_scale + balance.energy_rounding)
         return "the motion has gained energy from nowhere, " + base::percent(balance.energy_error / balance.energy_scale) +
                " of what it has at most: a shorter `timestep` makes it less" +

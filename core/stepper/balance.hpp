@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Do energy and momentum balance over a simulation? What they changed by against what forces did: what is left is the error of the time
-/// integration and of the solver together. docs/method.md section 3.
+/// integration and of the solver together. docs/method/energy.md#integrators.
 #pragma once
 
 #include <string>
@@ -49,10 +49,10 @@ private:
     Balance sum_;
 };
 
-/// Of the bodies that are solved for: (weight + force) times the scene's size, and torques [J].
+/// The largest work on the bodies that are solved for: (weight + force) times the scene's size, and torques [J].
 double largest_work(const model::Model& model);
 
-/// What a user should know of it, with a remedy; empty: nothing. Energy that comes from nowhere is told from 1% of the scale on, angular
+/// A warning for the user, with a remedy; empty: none. Energy that comes from nowhere is reported from 1% of the scale on, angular
 /// momentum from 5% on, and nothing that is within rounding or less than is known of it. Energy that is lost is not: implicit Euler and
 /// BDF2 stop what collides by losing it.
 std::string balance_warning(const model::Model& model, const Balance& balance);

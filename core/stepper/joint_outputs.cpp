@@ -9,7 +9,7 @@ namespace {
 using model::Joint;
 using model::Mechanism;
 
-// B1 of docs/method.md section 7, of a point fixed in the body.
+// B1 of docs/method/collision.md, of a point fixed in the body.
 double deviation(const kinematics::Pose& base, const kinematics::ChartPoint& from, const kinematics::ChartPoint& to, const Vector3& X) {
     const Vector3 w = to.rotation_vector - from.rotation_vector, Y = base.rotation * X;
     const double bound = w.cross(Y).norm() + from.rotation_vector.cross(w).norm() * Y.norm() / 3;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What joints and motors carried in a step, and how well they hold along its path. docs/method.md section 9.
+/// What joints and motors carried in a step, and how well they hold along its path. docs/method/joints.md.
 #pragma once
 
 #include <vector>
@@ -9,15 +9,15 @@
 
 namespace fettle::core::stepper {
 
-/// Of one joint, motor or gear (model::Mechanism::joints, by number).
+/// What one joint, motor or gear carries (model::Mechanism::joints, by number).
 struct JointForce {
     int joint = 0;
     Vector3 force = Vector3::Zero();   ///< on body b (of a joint with the world alone: on that body), world [N]
     Vector3 torque = Vector3::Zero();  ///< on it, about the joint's point in b [N m]
-    /// Of a motor: along its joint's coordinate, so that effort times speed is its power. Of a gear or rack: what it pushes its second
-    /// joint's coordinate with; it pushes the first one's with -ratio times that. [N], [N m]; 0 of others.
+    /// For a motor: along its joint's coordinate, so that effort times speed is its power. For a gear or rack: what it pushes its second
+    /// joint's coordinate with; it pushes the first one's with -ratio times that. [N], [N m]; 0 for others.
     double effort = 0;
-    /// Of a joint's own forces, along its coordinate, positive where they push it up: [N] of a slide, [N m] of an angle. They act between
+    /// The joint's own forces, along its coordinate, positive where they push it up: [N] for a slide, [N m] for an angle. They act between
     /// the two bodies as well, and are not in `force` and `torque`, which are what it takes to keep the joint together.
     double spring = 0, damping = 0, friction = 0, stop = 0;
 };
@@ -29,7 +29,7 @@ std::vector<JointForce> joint_forces(const energy::StepProblem& problem, const s
                                      const VectorX& multipliers, const std::vector<double>& measure_forces);
 
 /// Bound on how far a joint's two points part (or leave the line or plane that they are to keep to) between the nodes of a step's path: the
-/// deviations B1 of both points from their chords (docs/method.md section 7), the largest over the path's segments and the joints that
+/// deviations B1 of both points from their chords (docs/method/collision.md), the largest over the path's segments and the joints that
 /// hold a point [m].
 double path_gap_bound(const model::Model& model, const std::vector<kinematics::Pose>& poses_t0, const TrajectoryStep& path);
 

@@ -143,7 +143,7 @@ private:
             if (!is_steady(row.curve)) c.is_driven = true;
             break;
         }
-        // What hangs on a body that a script moves is driven by it.
+        // What is attached to a body that a script moves is driven by it.
         for (const int body : bodies_of_row(model_, row)) {
             const model::Body& b = model_.bodies[static_cast<std::size_t>(body)];
             if (!is_scripted(b) || b.type == scene::BodyType::static_body) continue;

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "fettle/core/base/text.hpp"
+#include "fettle/core/ccd/chord_deviation.hpp"
 #include "fettle/core/constraint/assembly.hpp"
-#include "fettle/core/contact/chord_deviation.hpp"
 
 namespace fettle::core::stepper {
 namespace {
@@ -31,7 +31,7 @@ PathGap segment_gap(const model::Model& model, const std::vector<Pose>& poses_t0
             const measure::Frame& frame = model.mechanism.set.frames[static_cast<std::size_t>(f)];
             if (frame.body == measure::world) continue;
             const auto body = static_cast<std::size_t>(frame.body);
-            gap += contact::chord_deviation(path_between(poses_t0[body].rotation, from[body], to[body]), frame.point);
+            gap += ccd::chord_deviation(path_between(poses_t0[body].rotation, from[body], to[body]), frame.point);
         }
         if (out.joint < 0 || gap > out.gap) {
             out.gap = gap;

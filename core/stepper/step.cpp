@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "fettle/core/base/text.hpp"
-#include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/ccd/safe_step.hpp"
 #include "fettle/core/energy/proximal_share.hpp"
 #include "fettle/core/energy/start_history.hpp"
 #include "fettle/core/model/choose_proximal_weight.hpp"
@@ -42,7 +42,7 @@ bool is_clear(const model::Model& model, const std::vector<PathSegment>& segment
         cover(model, segments, solver::candidate_allowance(model), workspace.candidates);
     }
     const auto span = workspace.clock.charge(solver::SolvePhase::ccd);
-    const bool clear = contact::is_path_clear(model, workspace.candidates, segments);
+    const bool clear = ccd::is_path_clear(model, workspace.candidates, segments);
     settle(end_poses(segments), workspace.candidates);
     return clear;
 }

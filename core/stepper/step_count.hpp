@@ -4,7 +4,7 @@
 
 namespace fettle::core::stepper {
 
-/// Of a scene that does not say how long.
+/// Steps of a scene that does not say how long.
 inline constexpr int default_step_count = 1000;
 
 /// The least number of steps that cover `duration` [s]: 1 s takes four steps of 0.3 s. What exceeds a whole number by 1e-9 or less is that

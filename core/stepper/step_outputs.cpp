@@ -157,7 +157,7 @@ void add_momentum_defects(const energy::StepProblem& problem, const solver::Newt
 energy::TermReport start_report(const model::Model& model, const StepState& state) {
     const energy::StepProblem problem = energy::step_problem(model, state.history, state.kappa);
     const std::vector<Pose>& poses = state.history.poses;
-    const contact::ContactSet contacts = contact::find_contacts(model, contact::find_candidates(model, poses, 0), poses);
+    const contact::ContactSet contacts = contact::find_contacts(model, ccd::find_candidates(model, poses, 0), poses);
     energy::TermReport report = energy::term_report({problem, poses, contacts, state.history});
     report.contacts.clear();
     report.measure_forces.clear();

@@ -31,7 +31,7 @@ GrowingTables::GrowingTables(const std::filesystem::path& folder, const core::mo
 }
 
 void GrowingTables::go_on_with(const std::filesystem::path& trajectory, double until) {
-    if (trajectory.filename() != "trajectory.json") return;  // tables take their names together with it: they speak of no other one
+    if (trajectory.filename() != "trajectory.json") return;  // tables take their names together with it: they are about no other one
     for (Table& table : tables_) {
         const Result<std::string> before = core::files::read_file(trajectory.parent_path() / table.name);
         if (before) table.waiting = core::records::joined_table(*before, table.waiting, until);

@@ -16,7 +16,7 @@ namespace fettle::design::answers {
 /// In the folder of a run that is not whole.
 inline constexpr const char* running_file = "trajectory.running.json";
 
-/// Of a folder: the running file where there is one, else trajectory.json; any other path as it is.
+/// For a folder the running file where there is one, else trajectory.json; any other path as it is.
 std::string run_to_continue(const std::string& path);
 
 class GrowingTrajectory {
@@ -31,7 +31,7 @@ public:
     GrowingTrajectory& operator=(const GrowingTrajectory&) = delete;
 
     /// Writes what the simulation has and the file has not. Contract: always of the same simulation, which stays where it is.
-    /// @return why it cannot be written, told once: nothing is written from then on; empty: it is
+    /// @return why it cannot be written, reported once: nothing is written from then on; empty: it is
     std::string write(const core::stepper::Simulation& so_far);
 
     /// Once the whole run is in a file of its own: takes the running file away.

@@ -31,7 +31,7 @@ struct Cost {
     double per_unit;  ///< in the objective; > 0: a lower bound that is raised costs, < 0: an upper one that is lowered
 };
 
-/// Of the requirements whose hundredth of a unit is worth a tenth of what counts; the dearest first.
+/// The costs of the requirements whose hundredth of a unit is worth a tenth of what counts; the dearest first.
 std::vector<Cost> costs_of(const description::Design& design, const optimisers::Optimality& o);
 
 /// "the objective", or the constraint most of whose noise is in it.

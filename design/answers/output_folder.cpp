@@ -57,7 +57,7 @@ Errors try_run_folder(const fs::path& folder, const std::vector<std::string>& mo
 
 Errors try_output_file(const fs::path& file) {
     std::error_code ignored;
-    if (fs::is_directory(file, ignored)) return {{ErrorCode::file_unwritable, file.string(), "is a folder, a file is wanted"}};
+    if (fs::is_directory(file, ignored)) return {{ErrorCode::file_unwritable, file.string(), "is a folder, a file is expected"}};
     if (core::files::is_written_directly(file)) {
         if (::access(file.c_str(), W_OK) == 0) return {};
         return {{ErrorCode::file_unwritable, file.string(), "cannot be written to: " + std::generic_category().message(errno)}};

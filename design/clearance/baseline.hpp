@@ -21,15 +21,15 @@ struct Before {
 /// What has become of a pair.
 struct Change {
     std::optional<Before> before;  ///< as the earlier report has it
-    std::string word;              ///< "new", "existing", "resolved"; empty: nothing to tell
+    std::string word;              ///< "new", "existing", "resolved"; empty: no change
 };
 
 class Baseline {
 public:
-    /// Of a file that `fettle clearance --json` wrote. Errors: the file is no report.
+    /// Reads a file that `fettle clearance --json` wrote. Errors: the file is no report.
     static Result<Baseline> read(const std::string& path);
 
-    /// Of a pair, named in either order, that is judged now; counts it.
+    /// The change of a pair, named in either order, that is judged now; counts it.
     Change compare(const std::string& a, const std::string& b, core::clearance::PairStatus now);
 
     /// Once all pairs have been compared.

@@ -49,8 +49,8 @@ bool moves(const core::stepper::Trajectory& trajectory, int body) {
 void doubt_bounds(const core::stepper::Trajectory& trajectory, CheckedCertificate& checked) {
     for (Claim& claim : checked.claims) claim.is_of_bodies = !moves(trajectory, claim.a) && !moves(trajectory, claim.b);
     checked.notes.emplace_back(
-        "it has no joints, and does not say that the path as stored is all that it is about: of bodies that move nothing is proven where "
-        "joints hold them; make it anew");
+        "it has no joints, and does not state that it is about the path as stored: nothing is proven about bodies that move and that "
+        "joints hold; make it anew");
 }
 
 // Is the source still that of the certificate? Nothing to tell if it is.
@@ -63,7 +63,7 @@ struct SourceCheck {
 SourceCheck check_source(const Certificate& certificate, const std::string& path, reading::InputOptions input) {
     if (certificate.source.empty()) return {};
     const std::filesystem::path source = file_of_certificate(path, certificate.source);
-    const std::string untold = ": whether its meshes have changed since cannot be told";
+    const std::string untold = ": it cannot be determined whether its meshes have changed since";
     if (!std::filesystem::exists(source)) return {false, certificate.source + ", which it was made from, is not there" + untold};
     input.check_start = false;
     const Result<reading::LoadedModel> loaded = reading::load_model(source.string(), input);
@@ -83,7 +83,7 @@ SourceCheck check_source(const Certificate& certificate, const std::string& path
     }
     if (certificate.motion && loaded->model.mechanism.rows.empty()) return {false, "", false};
     if (certificate.motion && certificate.is_of_path)
-        return {false, "its bounds are of the path as stored, between whose nodes joints may part"};
+        return {false, "its bounds hold for the path as stored, between whose nodes joints may part"};
     if (!certificate.linkage) return {};
     const auto ranges = core::clearance::joint_ranges(loaded->model);
     const bool same_start = core::records::path_hash(core::clearance::as_assembled(loaded->model)) == certificate.path_hash;

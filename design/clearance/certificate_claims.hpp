@@ -51,7 +51,7 @@ struct CheckedCertificate {
 };
 
 /// @param path    of the certificate
-/// @param stored  the path that it speaks of
+/// @param stored  the path that it is about
 CheckedCertificate check_certificate_file(const std::string& path, const core::records::StoredTrajectory& stored,
                                           const reading::InputOptions& input);
 

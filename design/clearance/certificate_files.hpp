@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Which files a certificate speaks of, and how it names them: so that they are found whatever folder one works in.
+/// Which files a certificate is about, and how it names them: so that they are found whatever folder one works in.
 #pragma once
 
 #include <filesystem>

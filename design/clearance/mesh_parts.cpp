@@ -7,9 +7,9 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/unique_names.hpp"
-#include "fettle/core/geometry/mesh_repair.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
+#include "fettle/core/solids/mesh_repair.hpp"
 
 namespace fettle::design::clearance {
 
@@ -57,7 +57,7 @@ Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& path
         } else if (!fs::exists(path, code)) {
             errors.push_back({ErrorCode::file_not_found, path, "no such file"});
         } else {
-            errors.push_back({ErrorCode::inconsistent, path, "is no mesh; several files are judged together only if all are meshes"});
+            errors.push_back({ErrorCode::inconsistent, path, "is not a mesh; several files are judged together only if all are meshes"});
         }
     }
     for (std::size_t i = 0; i < files.size(); ++i) {
@@ -89,7 +89,7 @@ core::scene::Body body_of(Mesh mesh, const std::string& path, const reading::Inp
     body.density_given = false;
     if (!input.strict) {
         body.mesh_policy = core::scene::MeshPolicy::tolerant;
-        for (const std::string& done : core::geometry::repair_mesh(mesh)) warnings.push_back("body `" + body.name + "`: " + done);
+        for (const std::string& done : core::solids::repair_mesh(mesh)) warnings.push_back("body `" + body.name + "`: " + done);
     }
     body.mesh = std::move(mesh);
     return body;

@@ -15,7 +15,7 @@ namespace fettle::design::clearance {
 /// The trajectory of a run's folder, a killed run's too; nothing where the path is none.
 std::optional<std::string> trajectory_in(const std::string& path);
 
-/// Meshes by their extension, or a folder that has no trajectory. Of a list the first decides.
+/// Meshes by their extension, or a folder that has no trajectory. In a list the first decides.
 bool are_meshes(const std::vector<std::string>& paths);
 
 struct MeshParts {
@@ -26,7 +26,7 @@ struct MeshParts {
 
 /// Bodies: one for each file, called as it without its extension; of a 3MF one for each item of its build, where the build places it,
 /// called as its object. A name that is taken gets " 2", " 3"; `:` and `,`, which lists of pairs are written with, become `_`. A folder
-/// stands for the meshes in it, in the order of their names; of those in folders below it a warning tells that they are left out. Meshes
+/// stands for the meshes in it, in the order of their names; a warning says that those in folders below it are left out. Meshes
 /// are mended and judged as those of a scene.
 /// @param unit  of files that state none: "mm"; empty: not given.
 /// Errors: of the files; missing_key (--unit is needed), out_of_range (no unit, or fewer than one part), inconsistent (a path that is

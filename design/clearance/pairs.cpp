@@ -68,7 +68,7 @@ private:
         const size_t equals = text.find('=');
         Unit group{text.substr(0, equals), {}, true};
         if (equals == std::string::npos || group.name.empty()) {
-            fail("--group", ErrorCode::parse, "\"" + text + "\" is no group; write name=a,b,c with names of bodies");
+            fail("--group", ErrorCode::parse, "\"" + text + "\" is not a group; write name=a,b,c with names of bodies");
             return;
         }
         for (const Unit& other : bodies_) {
@@ -127,7 +127,7 @@ private:
         const size_t colon = names.find(':');
         if (colon == std::string::npos || names.find(':', colon + 1) != std::string::npos) {
             fail(option, ErrorCode::parse,
-                 "\"" + text + "\" is no pair; write " + (option == std::string_view("--allow-touch") ? "A:B" : "A:B,C:D") +
+                 "\"" + text + "\" is not a pair; write " + (option == std::string_view("--allow-touch") ? "A:B" : "A:B,C:D") +
                      " with names of bodies" + (with_minimum ? ", or A:B=0.4mm" : ""));
             return token;
         }

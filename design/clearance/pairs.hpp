@@ -46,7 +46,7 @@ struct PairSpec {
 struct PairSelection {
     std::vector<PairSpec> pairs;
     std::vector<std::string> ignored;  ///< "A:B"
-    std::vector<PairSpec> left_out;    ///< neither judged by default nor named: a clash of theirs is told, nothing else
+    std::vector<PairSpec> left_out;    ///< neither judged by default nor named: only their clashes are reported
 };
 
 /// Without any minimum only distances are wanted, and no pair has one.
@@ -62,7 +62,7 @@ bool judged_by_default(const core::model::Model& model, int a, int b);
 /// "A:B" of each.
 std::vector<std::string> pair_names(const std::vector<PairSpec>& pairs);
 
-/// "A:B" of the pairs of bodies that none of the selection's pairs speaks of.
+/// "A:B" of the pairs of bodies that none of the selection's pairs is about.
 std::vector<std::string> uncovered_pairs(const core::model::Model& model, const PairSelection& selection);
 
 }  // namespace fettle::design::clearance

@@ -26,10 +26,10 @@ struct PathProof {
     int steps = 0;                ///< whose path is proven; all of them, unless the proof was stopped or some pair could not be proven
 };
 
-/// Of all pairs that may collide, over the whole path: first to about 1% of what the ends of the steps saw; where that tells the least
-/// distance badly once more, by what was found; pairs that this leaves open a hundred times closer each time.
-/// The path may be proven while it is simulated, stretch by stretch, each by the least distance that was known by then: so a run that is
-/// interrupted is proven up to there, and little is left to do at the end. Same answer to what it is told to; the same bits for the same
+/// The least distance of all pairs that may collide, over the whole path: first to about 1% of what the ends of the steps saw; where that
+/// gives the least distance badly once more, by what was found; pairs that this leaves open a hundred times closer each time. The path may
+/// be proven while it is simulated, stretch by stretch, each by the least distance that was known by then: so a run that is interrupted is
+/// proven up to there, and little is left to do at the end. The answer is the same to the accuracy asked for; the same bits for the same
 /// stretches.
 class PathProver {
 public:

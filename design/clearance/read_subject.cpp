@@ -70,14 +70,14 @@ Errors take_poses(const SubjectOptions& options, Subject& subject) {
         subject.notes.push_back("not in " + options.poses + ", so held where the scene has them: " + joined(read->still));
     if (read->largest_rotation_error > 1e-12) {
         subject.notes.push_back(
-            formatted("rotations in %s are off by up to %.2g; the nearest rotations were taken, and bounds speak of those",
+            formatted("rotations in %s are off by up to %.2g; the nearest rotations are used, and bounds hold for those",
                       options.poses.c_str(), read->largest_rotation_error));
     }
     const double cut = read->largest_cut, unit_length = subject.model.length_unit;
     if (cut > 1e-6) {
         subject.notes.push_back(
-            formatted("between two poses a body's centre of mass goes straight while the body turns (by up to %.3g degrees): of one that "
-                      "goes round an axis instead, bounds are of a path up to %.2g %s off; poses twice as often make that a quarter",
+            formatted("between two poses a body's centre of mass goes straight while the body turns (by up to %.3g degrees): for one that "
+                      "goes round an axis instead, bounds hold for a path up to %.2g %s off; poses twice as often make that a quarter",
                       read->largest_turn.value_or(0) * 180 / M_PI, cut / unit_length, answers::unit_name(unit_length).c_str()));
     }
     return {};
@@ -91,14 +91,14 @@ std::string joints_note(const Subject& subject, const core::stepper::JointedMoti
         "as stored part by at most %.2g %s",
         followed.parts, followed.joint_gap / unit, name.c_str());
     if (!subject.joints->joints)
-        return note + "; where joints met at all times would have the bodies is not proven: " + subject.joints->refusal;
+        return note + "; where the bodies are if joints are met at all times is not proven: " + subject.joints->refusal;
     const auto& deviations = subject.joints->joints->deviations;
     const auto most = std::max_element(deviations.begin(), deviations.end());
     if (most == deviations.end()) return note;
     const int body = subject.joints->joints->bodies[static_cast<size_t>(most - deviations.begin())];
     return note + formatted(
-                      "; bounds are of joints met at all times, which have the bodies within %.2g %s of that path (the most: %s): each "
-                      "bound is wider by what its two bodies are off",
+                      "; bounds hold for joints met at all times, which keep the bodies within %.2g %s of that path (farthest: %s): each "
+                      "bound is wider by the distances of its two bodies from it",
                       *most / unit, name.c_str(), subject.model.bodies[static_cast<size_t>(body)].name.c_str());
 }
 
@@ -159,15 +159,15 @@ Errors check_inputs(const SubjectOptions& options, bool meshes) {
     if ((options.steps >= 0 || options.time >= 0) && !makes_motion)
         return {
             {ErrorCode::inconsistent, options.steps >= 0 ? "--steps" : "--time",
-             "is of a motion that is made here: add --motion or --kinematic (as assembled nothing moves; a trajectory or poses are judged "
+             "needs a motion that is made here: add --motion or --kinematic (as assembled nothing moves; a trajectory or poses are judged "
              "whole)"}};
     if (options.ranges && !options.more.empty())
-        return {{ErrorCode::inconsistent, "--ranges", "is of one scene or design: meshes have no joints"}};
+        return {{ErrorCode::inconsistent, "--ranges", "needs one scene or design: meshes have no joints"}};
     if (meshes) return {};
     if (!options.more.empty())
         return {{ErrorCode::inconsistent, options.more.front(), "several files are judged together only if all are meshes"}};
     const bool is_json = std::filesystem::path(options.path).extension() == ".json";  // of what is none it is told what it is
-    if (!options.unit.empty() && is_json) return {{ErrorCode::inconsistent, "--unit", "is of meshes; this file says its own"}};
+    if (!options.unit.empty() && is_json) return {{ErrorCode::inconsistent, "--unit", "is for meshes; this file states its own unit"}};
     return {};
 }
 
@@ -227,7 +227,8 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
         subject.trajectory = core::stepper::follow_scripts(subject.model, steps);
         subject.source = SubjectSource::scripted;
         const auto held = core::stepper::held_bodies(subject.model);
-        if (!held.empty()) subject.notes.push_back("--kinematic: what would move freely is held at its start pose: " + joined(held));
+        if (!held.empty())
+            subject.notes.push_back("--kinematic: these would move freely and are held at their start pose: " + joined(held));
         mark_as_scripted(subject);
     } else if (options.motion) {
         // Only what starts apart can be simulated; a report as assembled tells of the rest.

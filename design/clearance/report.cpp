@@ -81,7 +81,7 @@ Finding finding_of(const Subject& subject, const ReportedPair& pair, bool stoppe
     if (least.status == PairStatus::clear) return Finding::clear;
     if (least.lower > 0 && core::certificate::are_apart(least.solids) && (near || least.status == PairStatus::contact))
         return pair.spec.required_by.empty() && !pushes ? Finding::clear : Finding::contact;
-    if (near || (stopped && !least.complete)) return Finding::undecided;  // told apart from a clash neither way
+    if (near || (stopped && !least.complete)) return Finding::undecided;  // distinguished from a clash neither way
     return least.status == PairStatus::violated ? Finding::below : Finding::undecided;
 }
 
@@ -140,7 +140,7 @@ std::string why_none_is_judged(const Subject& subject, const PairSelection& sele
 
 std::string why_not_judged(const Subject& subject, const PairSelection& selection, bool stopped) {
     std::string message;
-    if (stopped) message = "interrupted: what was not looked at is undecided";
+    if (stopped) message = "interrupted: pairs that were not examined are undecided";
     if (!subject.incomplete.empty())
         message += (message.empty() ? "" : "; ") + std::string("the motion is known up to there only: ") + subject.incomplete;
     if (selection.pairs.empty())

@@ -39,8 +39,8 @@ struct ReportedPair {
 struct ClearanceReport {
     std::vector<ReportedPair> pairs;  ///< worst first
     std::vector<std::string> ignored;
-    std::vector<std::string> left_out;   ///< not judged; over a path no clash was found either, and nothing else is told
-    std::vector<std::string> uncovered;  ///< pairs of bodies that no row speaks of
+    std::vector<std::string> left_out;   ///< not judged; over a path no clash was found either, and nothing else is reported
+    std::vector<std::string> uncovered;  ///< pairs of bodies that no row is about
     std::vector<std::string> notes;      ///< the subject's, and what of the question counted for nothing
     std::string message;                 ///< why nothing was judged, or not to the end; empty: it was
     std::optional<Baseline> baseline;
@@ -59,9 +59,9 @@ struct Question {
     std::function<bool()> should_stop = [] { return false; };
 };
 
-/// Judges the pairs. Of more than 100 pairs of bodies over a path, those that nobody named and that stay twice their minimum apart are
-/// proven to, and not measured. Once a stop is asked for, what the rest would have shown is not known: nothing is told as violated but what
-/// was certified before. Errors: of the pairs' options (select_pairs).
+/// Judges the pairs. If there are more than 100 pairs of bodies over a path, those that nobody named and that stay twice their minimum
+/// apart are proven to, and not measured. Once a stop is asked for, what the rest would have shown is not known: nothing is reported as
+/// violated but what was certified before. Errors: of the pairs' options (select_pairs).
 Result<ClearanceReport> judge_clearances(const Subject& subject, const Question& question);
 
 /// Marks findings as new, existing or resolved.

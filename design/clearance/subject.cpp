@@ -15,10 +15,10 @@ std::vector<std::string> notes_of_ranges(const core::model::Model& model, const 
     if (!ranges.held.empty()) notes.push_back("held at the start pose, as no joint connects them to the world: " + joined(ranges.held));
     for (const auto& coordinate : ranges.linkage.coordinates)
         if (coordinate.is_whole_turn) turns.push_back(coordinate.joints.front().joint);
-    if (!turns.empty()) notes.push_back("without limits, so over whole turns: " + joined(turns));
+    if (!turns.empty()) notes.push_back("without limits, so they turn wholly: " + joined(turns));
     for (const auto& joint : model.mechanism.joints)
         if (joint.is_motor) motors.push_back(joint.name);
-    if (!motors.empty()) notes.push_back("what motors do counts for nothing here, limits do: " + joined(motors));
+    if (!motors.empty()) notes.push_back("motors have no effect here, limits have: " + joined(motors));
     return notes;
 }
 

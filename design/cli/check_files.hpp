@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// What a command has found, for those who show it beside a project: JUnit XML (the tests of a CI), SARIF 2.1.0 (code scanning), Markdown
 /// (a job's summary), and lines that GitHub Actions puts beside the files. Their verdict is that of the exit code: undecided is no pass.
-/// Of a certificate that is accepted, exit code 0, pairs are undecided all the same whose solids it does not prove to be apart.
+/// In a certificate that is accepted, exit code 0, pairs whose solids it does not prove to be apart are undecided all the same.
 #pragma once
 
 #include <string>
@@ -29,7 +29,7 @@ struct Check {
     std::string file;     ///< that it is about; empty: none
 };
 
-/// Of a pair of bodies; "contact" is not judged.
+/// The outcome for a pair of bodies; "contact" is not judged.
 CheckOutcome to_check(core::clearance::PairStatus status);
 int exit_code(core::clearance::PairStatus status);
 

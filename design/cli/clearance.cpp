@@ -59,7 +59,7 @@ Result<AskedLengths> read_lengths(const ClearanceArguments& options) {
     return lengths;
 }
 
-// The certificate, and beside it the trajectory that it speaks of, unless that is a file already.
+// The certificate, and beside it the trajectory that it is about, unless that is a file already.
 Errors write_proof(const std::string& path, core::certificate::Certificate& certificate, const Subject& subject) {
     if (!is_finite(subject.trajectory))
         return {{ErrorCode::not_finite, path, "the path has numbers that are not finite, so that nothing can be certified of it"}};
@@ -94,7 +94,7 @@ void leave_proof(const ClearanceArguments& options, const Subject& subject, core
     if (certificate.pairs.empty()) {
         console.unwritten(take_away_proof(file, subject));
         json["certificate"] = Json();
-        text += "certificate: not written, for nothing is proven\n";
+        text += "certificate: not written, because nothing is proven\n";
         return;
     }
     const bool is_own = subject.source == SubjectSource::trajectory;
@@ -175,26 +175,25 @@ std::vector<std::string> process_names() {
 }
 
 void add_options(CommandLine& app, ClearanceArguments& options) {
-    app.option("FILE", options.files, "Scene, design (at its values), or trajectory; or meshes and folders of meshes, as they lie")
-        .required();
-    app.option("--unit", options.subject.unit, "Of meshes that state none: mm, um, cm, m, in, ft");
-    app.option("--minimum", options.minimum,
-               "Required clearance per side, with its unit: 0.3mm (none at all: distances are told, and clashes)");
+    app.option("FILE", options.files, "Scene, design (at its values), or trajectory; or meshes and folders of meshes, in place").required();
+    app.option("--unit", options.subject.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
+    app.option("--minimum", options.minimum, "Required clearance per side, with its unit: 0.3mm (without any: distances and clashes)");
     app.option("--process", options.pairs.process, "Required clearance by process and size of the parts (below)").one_of(process_names());
     app.option("--pairs", options.pairs.pairs,
-               "A:B,C:D by names of bodies or groups, `*` for any letters, A:B=0.4mm with a minimum of its own (default: every pair "
+               "Pairs A:B,C:D by names of bodies or groups, `*` for any letters, A:B=0.4mm with a minimum of its own (default: every pair "
                "as assembled, every pair that may collide over a motion)");
-    app.option("--ignore", options.pairs.ignore, "A:B,... that are not judged");
+    app.option("--ignore", options.pairs.ignore, "Pairs A:B,... that are not judged");
     Option touch = app.option("--allow-touch", options.pairs.touches,
-                              "A:B that may touch, face on face, but not be in each other; A:B=0.02mm: no deeper than that (can be given "
+                              "Pair A:B that may touch, face on face, but not intersect; A:B=0.02mm: no deeper than that (can be given "
                               "several times)")
                        .one_value_each();
     app.option("--group", options.pairs.groups, "name=a,b,c: bodies that are one rigid set (can be given several times)").one_value_each();
-    app.option("--tolerance", options.tolerance, "How far the two bounds may be apart (default: 0.001mm or 0.1% of the minimum, the less)");
+    app.option("--tolerance", options.tolerance,
+               "How far the two bounds may be apart (default: the lesser of 0.001mm and 0.1% of the minimum)");
     Option motion =
         app.flag("--motion", options.subject.motion, "Over the motion, which is simulated first (a trajectory: always); else as assembled");
     Option kinematic = app.flag("--kinematic", options.subject.kinematic,
-                                "Over the scripted motion without dynamics: what has no script stays where it is");
+                                "Over the motion of scripts and motors, without dynamics; bodies without either stay where they are");
     Option poses = app.option("--poses", options.subject.poses,
                               "Over the poses in this file (.csv or .json, of any program); FILE supplies the meshes");
     app.option("--poses-unit", options.subject.poses_unit, "Unit of lengths in a CSV that does not say px[mm]").needs(poses);
@@ -202,17 +201,17 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     poses.excludes(motion);
     Option steps = app.option("--steps", options.subject.steps, "How many steps of the motion").at_least(0);
     Option time = app.option("--time", options.subject.time, "How long, in seconds").at_least(0).excludes(steps);
-    app.option("--explain", options.explain, "Tell of the worst pairs (default 3): when, where, poses, points, what sampling would see")
+    app.option("--explain", options.explain, "Details of the worst pairs (default 3): when, where, poses, points, what sampling would see")
         .value_if_bare("3")
         .at_least(0);
     app.option("--csv", options.csv,
                "Write the margin curves: certified bounds for each pair and stretch of the path (with --ranges: a row for each pair, with "
                "the joints' positions where it is worst)");
     app.option("--certificate", options.certificate,
-               "Write the proof as data, and beside it the trajectory that it speaks of: fettle validate checks it independently");
+               "Write the proof as data, and beside it the trajectory that it is about; fettle validate checks it independently");
     app.option("--out", options.out, "Folder for result.json (the answer), trajectory.json (meshes and path) and report.html");
     app.flag("--no-report", options.no_report, "With --out: no report.html");
-    app.option("--baseline", options.baseline, "An earlier report (--json): which findings are new, existing, resolved");
+    app.option("--baseline", options.baseline, "Compare with an earlier report (--json): which findings are new, existing, resolved");
     app.flag("--ranges", options.subject.ranges, "Over all positions of the joints within their limits, in every combination")
         .excludes(motion)
         .excludes(kinematic)
@@ -225,7 +224,7 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
 }  // namespace
 
 Command add_clearance(CommandLine& program, const CommonOptions& common) {
-    CommandLine app = program.command("clearance", "Certified least distance of each pair of bodies");
+    CommandLine app = program.command("clearance", "Certifies the least distance of each pair of bodies");
     auto options = std::make_shared<ClearanceArguments>();
     add_options(app, *options);
     app.closing_words(

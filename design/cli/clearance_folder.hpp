@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The folder that `fettle clearance --out` writes: the answer, the meshes and path that it speaks of, the report.
+/// The folder that `fettle clearance --out` writes: the answer, the meshes and path that it is about, the report.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,7 +19,8 @@ struct ClearanceFolder {
     bool no_report = false;  ///< leave report.html out
 };
 
-/// Adds `out` and `report` to the answer, and the report to what is told. Errors: a path that is not finite, files that cannot be written.
+/// Adds `out` and `report` to the answer, and the report to the text for people. Errors: a path that is not finite, files that cannot be
+/// written.
 [[nodiscard]] Errors write_folder(const ClearanceFolder& folder, report::Motion motion, const CommonOptions& common, Console& console,
                                   nlohmann::ordered_json& answer, std::string& told);
 

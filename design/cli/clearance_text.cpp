@@ -329,7 +329,7 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, i
                 joined(report.left_out) + "; name them with --pairs\n";
     if (!report.ignored.empty()) text += "ignored: " + joined(report.ignored) + "\n";
     if (!report.uncovered.empty())
-        text += "not looked at: " + core::base::counted(report.uncovered.size(), "pair") +
+        text += "not examined: " + core::base::counted(report.uncovered.size(), "pair") +
                 " of bodies: " + joined(std::span(report.uncovered).first(std::min<size_t>(report.uncovered.size(), 6))) +
                 (report.uncovered.size() > 6 ? ", ...\n" : "\n");
     for (const std::string& note : report.notes) text += "note: " + note + "\n";

@@ -38,11 +38,12 @@ template <class Number>
 std::string number_fault(const std::string& text) {
     const auto number = parsed<Number>(text);
     if (number && core::base::is_usable_number(static_cast<double>(*number))) return {};
-    if (number) return text + " is out of range: a number of at most 1e30 in absolute value is wanted";
+    if (number) return text + " is out of range: a number of at most 1e30 in absolute value is expected";
     const bool digits = text.find_first_not_of("+-0123456789") == std::string::npos;
     if (std::is_integral_v<Number> && digits && parsed<double>(text))
-        return text + " is out of range: a whole number of at most " + std::to_string(std::numeric_limits<int>::max()) + " is wanted";
-    return std::string(std::is_integral_v<Number> ? "a whole number is wanted, found \"" : "a number is wanted, found \"") + text + "\"";
+        return text + " is out of range: a whole number of at most " + std::to_string(std::numeric_limits<int>::max()) + " is expected";
+    return std::string(std::is_integral_v<Number> ? "a whole number is expected, found \"" : "a number is expected, found \"") + text +
+           "\"";
 }
 
 /// @param allowed  what the message says is allowed
@@ -92,7 +93,7 @@ OptionFacts facts_of(const CLI::Option& option) {
 
 // A variable of a script that is not set must not pass for an option that was not given.
 CLI::Option* never_empty(CLI::Option* option) {
-    return option->check([](const std::string& text) { return text.empty() ? "a value is wanted, found an empty text" : std::string(); });
+    return option->check([](const std::string& text) { return text.empty() ? "a value is expected, found an empty text" : std::string(); });
 }
 
 std::string joined_names(const std::vector<const CLI::Option*>& options) {
@@ -116,7 +117,7 @@ std::string unexpected(const CLI::App& program, const CLI::App* command) {
     }
     const auto option = std::find_if(words.begin(), words.end(), [](const std::string& word) { return word.starts_with("-"); });
     if (option == words.end()) {
-        if (command == nullptr) return "\"" + words.front() + "\" is no command";
+        if (command == nullptr) return "\"" + words.front() + "\" is not a command";
         const std::string taken = places.empty() ? "no file" : joined_names(places);
         return "\"" + words.front() + "\" is one word too many: `" + command->get_name() + "` takes " + taken + " and options";
     }
@@ -144,7 +145,7 @@ std::string value_missing(const std::string& told) {
     const char* wanted = told.find("INT") != std::string::npos     ? "a whole number"
                          : told.find("FLOAT") != std::string::npos ? "a number"
                                                                    : "a value";
-    return name + ": " + wanted + " is wanted after it";
+    return name + ": " + wanted + " is expected after it";
 }
 
 // The two options of "A excludes B" and "A requires B".

@@ -41,7 +41,7 @@ private:
 
 /// What help, manual and shell completion say of an option and of a command.
 struct OptionFacts {
-    std::vector<std::string> names;  ///< "--out"; of what is told by its place "FILE"
+    std::vector<std::string> names;  ///< "--out"; for a positional argument "FILE"
     bool by_place = false;
     bool required = false;
     std::string value;               ///< "TEXT", "INT", "FLOAT"; empty: a flag
@@ -56,12 +56,12 @@ struct CommandFacts {
 
 /// An option that was given, with one of its values.
 struct GivenValue {
-    std::string option;  ///< "--out"; of what is told by its place "FILE"
+    std::string option;  ///< "--out"; for a positional argument "FILE"
     std::string value;
     bool by_place = false;
 };
 
-/// The options of the program, or of one of its commands. A copy speaks of the same.
+/// The options of the program, or of one of its commands. A copy refers to the same.
 class CommandLine {
 public:
     explicit CommandLine(CLI::App* app) : app_(app) {}
@@ -71,7 +71,7 @@ public:
     /// Under which heading of the program's help.
     void group(const std::string& name);
 
-    /// @param names  "--out", several with commas, or in capitals for what is told by its place. Numbers must be numbers, whole ones whole.
+    /// @param names  "--out", several with commas, or in capitals for a positional argument. Numbers must be numbers, whole ones whole.
     Option option(const std::string& names, std::string& value, const std::string& description);
     Option option(const std::string& names, int& value, const std::string& description);
     Option option(const std::string& names, double& value, const std::string& description);
@@ -84,7 +84,7 @@ public:
     /// What --help ends with.
     void closing_words(const std::string& text);
     const std::string& name() const;
-    /// Of this command and those below it, in the order in which they were added.
+    /// Facts about this command and those below it, in the order in which they were added.
     CommandFacts facts() const;
     /// After parsing: is it the command that was given?
     bool is_chosen() const;

@@ -87,7 +87,7 @@ std::string fish_script(const CommandFacts& program) {
 }  // namespace
 
 Command add_completion(CommandLine& program) {
-    CommandLine app = program.command("completion", "A script that completes commands and options in a shell");
+    CommandLine app = program.command("completion", "Prints a script that completes commands and options in a shell");
     auto shell = std::make_shared<std::string>();
     app.option("SHELL", *shell, "bash, zsh or fish").required().one_of({"bash", "zsh", "fish"});
     app.closing_words("Example:  source <(fettle completion bash)");

@@ -271,15 +271,15 @@ int Console::internal_error(const std::string& message) {
 }
 
 int Console::out_of_memory() {
-    const std::string doing = doing_.empty() ? "while reading the input" : "last told: " + doing_;
+    const std::string doing = doing_.empty() ? "while reading the input" : "last reported: " + doing_;
     return input_errors({{ErrorCode::out_of_memory, "memory",
-                          "what was asked for takes more memory than there is (" + doing +
+                          "the request needs more memory than there is (" + doing +
                               "); ask for less at a time (fewer steps, pairs or samples, coarser meshes), or give the program more"}});
 }
 
 int Console::stopped() {
     result({{"status", "interrupted"}},
-           "interrupted: " + (doing_.empty() ? std::string("stopped on request") : "last told: " + doing_) + "\n");
+           "interrupted: " + (doing_.empty() ? std::string("stopped on request") : "last reported: " + doing_) + "\n");
     return exit_undecided;
 }
 

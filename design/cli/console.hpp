@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// What the program says, and where: results on stdout (one JSON object with --json, else text), narration and progress bars on stderr.
 /// On a terminal progress is a bar with rate and time left; elsewhere, and in the log, a line every ten seconds. Nothing is coloured when
-/// NO_COLOR is set or stdout is no terminal. Names and paths in what is told may come from anybody: on a terminal and in the log they are
+/// NO_COLOR is set or stdout is no terminal. Names and paths in messages may come from anybody: on a terminal and in the log they are
 /// shown without control characters (core/base/text.hpp).
 #pragma once
 
@@ -31,7 +31,7 @@ struct ConsoleOptions {
     bool json = false;
     bool quiet = false;
     std::string log;            ///< file that gets narration and progress too, line by line; empty: none
-    bool holds_answer = false;  ///< until give_answer(): files are written before, and the answer tells if they cannot be
+    bool holds_answer = false;  ///< until give_answer(): files are written before, and the answer says if they cannot be
 };
 
 class Console {
@@ -54,7 +54,7 @@ public:
     /// Text alone, as that of --help.
     void print(const std::string& text);
 
-    /// Files that the answer should have left and did not: told on stderr and in the answer, which is given all the same.
+    /// Files that the command should have written and did not: named on stderr and in the answer, which is given all the same.
     void unwritten(const Errors& errors);
 
     /// What the program ends with: `verdict`, or exit_bad_input where the answer, the log or a file could not be written. A fault of ours
@@ -68,7 +68,7 @@ public:
     int internal_error(const std::string& message);
     /// The same where there is not enough memory, with what was being done. @return exit_bad_input
     int out_of_memory();
-    /// Of work that was asked to stop before it had an answer. @return exit code
+    /// Reports that work was asked to stop before it had an answer. @return exit code
     int stopped();
 
     /// What was looked at, one thing each, for the files of check_files.hpp; errors are added by themselves. `file` is kept if it is one.
@@ -99,7 +99,7 @@ private:
     std::shared_ptr<std::FILE> log_;
     Clock::time_point begun_ = Clock::now();
     Errors unwritten_;
-    std::string doing_;        ///< what was told last
+    std::string doing_;        ///< what was reported last
     std::string progress_of_;  ///< what the bar is about
     Clock::time_point progress_begun_, line_written_;
     int first_done_ = 0;

@@ -16,6 +16,7 @@
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/shown_motion.hpp"
 #include "fettle/design/exports/picture.hpp"
+#include "fettle/design/exports/png_writer.hpp"
 #include "fettle/design/exports/svg_writer.hpp"
 
 namespace fettle::design::cli {
@@ -41,7 +42,7 @@ Result<std::pair<int, int>> picture_size(const std::string& text) {
     char end = 0;
     const bool read = std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &end) == 2;
     if (!read || std::min(width, height) < 16 || std::max(width, height) > 16384)
-        return Error{ErrorCode::out_of_range, "--size", "\"" + text + "\" is no size of a picture: 1200x900, each from 16 to 16384"};
+        return Error{ErrorCode::out_of_range, "--size", "\"" + text + "\" is not a size of a picture: 1200x900, each from 16 to 16384"};
     return std::pair{width, height};
 }
 
@@ -183,8 +184,7 @@ int run_draw(const DrawArguments& options, const CommonOptions& common, Console&
     picture_options.title = !options.title.empty() ? options.title : shown->stem + (motion ? formatted(", t = %.6g s", instant.time) : "");
     if (instant.worst && !options.plain) picture_options.marker = marker_of(*instant.worst, shown->subject.model);
     const exports::Picture picture = exports::draw_picture(shown->assembly, instant.poses, picture_options);
-    const Errors errors =
-        core::files::write_file_atomically(options.out, png ? exports::png_bytes(exports::inked(picture)) : exports::svg_text(picture));
+    const Errors errors = core::files::write_file_atomically(options.out, png ? exports::png_bytes(picture) : exports::svg_text(picture));
     if (!errors.empty()) return console.input_errors(errors);
     Json json{{"status", "ok"},       {"out", options.out},     {"time", instant.time},
               {"width", size->first}, {"height", size->second}, {"worst", nullptr}};
@@ -200,15 +200,15 @@ int run_draw(const DrawArguments& options, const CommonOptions& common, Console&
 }  // namespace
 
 Command add_draw(CommandLine& program, const CommonOptions& common) {
-    CommandLine app = program.command("draw", "A picture (png, svg), the nearest points of two bodies marked");
+    CommandLine app = program.command("draw", "Draws a picture (png, svg) with the nearest points of two bodies marked");
     auto options = std::make_shared<DrawArguments>();
     add_shown_options(app, options->shown);
     app.option("--out", options->out, "Picture to write: .png or .svg").required();
     app.option("--view", options->view,
                "iso (default), front, back, left, right, top, bottom, or azimuth,elevation in degrees: where the viewer stands, from the "
                "front to the right and up");
-    Option time = app.option("--time", options->time, "Of a motion: the instant in seconds (default: its start)");
-    app.flag("--worst", options->worst, "Of a motion: the instant at which two bodies are nearest").excludes(time);
+    Option time = app.option("--time", options->time, "For a motion: the instant in seconds (default: its start)");
+    app.flag("--worst", options->worst, "For a motion: the instant at which two bodies are nearest").excludes(time);
     app.option("--size", options->size, "Pixels (default 1200x900)");
     app.option("--title", options->title, "Written on top (default: the file's name, and the time)");
     app.flag("--plain", options->plain, "Mark nothing");

@@ -113,9 +113,9 @@ Command add_explore(CommandLine& program, const CommonOptions& common) {
     line.option("--out", options->out, "File of the results, a line each; an exploration that is there goes on").required();
     line.option("--sweep", options->sweeps, "NAME=COUNT between its bounds, or NAME=LOW:HIGH:COUNT in its unit; all combinations")
         .one_value_each();
-    line.option("--samples", options->samples, "So many designs, drawn from the bounds").at_least(0);
-    line.option("--starts", options->starts, "So many runs of the optimiser").at_least(0);
-    line.option("--seed", options->seed, "Of samples and starts").at_least(0);
+    line.option("--samples", options->samples, "How many designs to draw from the bounds").at_least(0);
+    line.option("--starts", options->starts, "How many runs of the optimiser").at_least(0);
+    line.option("--seed", options->seed, "Seed of samples and starts").at_least(0);
     line.option("--workers", options->workers, "Worker processes (default: the machine's processors)").at_least(1);
     line.option("--dask", options->dask,
                 "Address of a running Dask scheduler, whose workers are used instead; it can run code here: one that you trust");

@@ -6,11 +6,12 @@
 
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
+#include "fettle/core/files/unique_names.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/records/geometry_hash.hpp"
 #include "fettle/core/records/path_hash.hpp"
 #include "fettle/core/records/poses_file.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/clearance/certificate_files.hpp"
@@ -19,7 +20,10 @@
 #include "fettle/design/cli/read_files.hpp"
 #include "fettle/design/cli/shown_motion.hpp"
 #include "fettle/design/exports/export_files.hpp"
+#include "fettle/design/exports/profile_drawing.hpp"
+#include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
+#include "fettle/design/shapes/file_part.hpp"
 #include "fettle/design/urdf/urdf_writer.hpp"
 
 namespace fettle::design::cli {
@@ -64,7 +68,8 @@ Result<std::vector<std::string>> wanted_formats(const std::string& text) {
         wanted.push_back(text.substr(at, comma - at));
         at = comma + 1;
         if (std::find(known.begin(), known.end(), wanted.back()) != known.end()) continue;
-        return Error{ErrorCode::out_of_range, "--format", "`" + wanted.back() + "` is no format; there are glb, 3mf, stl, obj, vtu, csv"};
+        return Error{ErrorCode::out_of_range, "--format",
+                     "`" + wanted.back() + "` is not a format; known are glb, 3mf, stl, obj, vtu, csv; dxf or svg alone"};
     }
     return wanted;
 }
@@ -79,7 +84,8 @@ Result<Plan> plan_of(const ExportArguments& options, const std::string& stem) {
     plan.one_file = std::find(known.begin(), known.end(), name) != known.end() && !fs::is_directory(to);
     if (!plan.one_file && !extension.empty() && !fs::exists(to))
         return Error{ErrorCode::unsupported, "--to",
-                     "`" + extension + "` is no format; there are .glb .3mf .stl .obj .vtu .pvd .csv .urdf (a folder's name ends in /)"};
+                     "`" + extension +
+                         "` is not a format; known are .glb .3mf .stl .obj .vtu .pvd .csv .urdf .dxf .svg (a folder's name ends in /)"};
     if (!plan.one_file) {
         const auto formats = wanted_formats(options.formats);
         if (!formats) return formats.errors();
@@ -95,7 +101,7 @@ Result<Plan> plan_of(const ExportArguments& options, const std::string& stem) {
     return plan;
 }
 
-/// Files of the bodies' meshes, which a certificate can speak of.
+/// Files of the bodies' meshes, which a certificate can name.
 bool has_meshes_alone(const std::string& format) { return format == "3mf" || format == "stl" || format == "obj"; }
 
 /// Of files that hold meshes alone the parts can be arranged.
@@ -104,7 +110,7 @@ Errors arrange_errors(const ExportArguments& options) {
     const Result<Plan> plan = plan_of(options, "");
     if (!plan) return plan.errors();
     if (std::any_of(plan->formats.begin(), plan->formats.end(), has_meshes_alone)) return {};
-    return {{ErrorCode::inconsistent, "--arrange", "is of 3mf, stl and obj: other formats have the parts where they are"}};
+    return {{ErrorCode::inconsistent, "--arrange", "is for 3mf, stl and obj: other formats have the parts where they are"}};
 }
 
 /// The time series: poses at the ends of the steps, and of a run's folder its tables.
@@ -151,7 +157,7 @@ int run_export_urdf(const ExportArguments& options, const CommonOptions& common,
     if (const Errors errors = reading::not_wanted(options.shown.path, file_kind(options.shown.path), "scene"); !errors.empty())
         return console.input_errors(errors);
     const Result<core::scene::Scene> scene =
-        core::scene::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
+        core::scene_files::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
     if (!scene) return console.input_errors(scene.errors());
     core::model::BuildOptions build;
     build.check_start = false;
@@ -179,10 +185,99 @@ int run_export_urdf(const ExportArguments& options, const CommonOptions& common,
     return exit_done;
 }
 
+/// Plane figures of parts that part files describe.
+bool is_profile_format(const std::string& format) { return format == "dxf" || format == "svg"; }
+
+std::string profile_format(const ExportArguments& options) {
+    const std::string extension = fs::path(options.to).extension().string();
+    if (extension == ".dxf" || extension == ".svg") return extension.substr(1);
+    return is_profile_format(options.formats) ? options.formats : "";
+}
+
+/// A body of a part file, with the values of its dimensions.
+struct DrawnBody {
+    std::string name;
+    std::shared_ptr<const shapes::FilePart> part;
+};
+
+Result<std::vector<DrawnBody>> drawn_bodies(const ExportArguments& options, const CommonOptions& common) {
+    std::vector<DrawnBody> out;
+    const auto take = [&](const std::string& name, const std::shared_ptr<const description::Shape>& shape) {
+        if (auto part = std::dynamic_pointer_cast<const shapes::FilePart>(shape)) out.push_back({name, std::move(part)});
+    };
+    if (file_kind(options.shown.path) == reading::FileKind::design) {
+        const auto file = reading::read_design(options.shown.path, {common.mesh_dirs, programs_of(common)});
+        if (!file) return file.errors();
+        for (std::size_t i = 0; i < file->design.shapes.size(); ++i) take(file->design.scene.bodies[i].name, file->design.shapes[i]);
+        return out;
+    }
+    if (const Errors errors = reading::not_wanted(options.shown.path, file_kind(options.shown.path), "scene"); !errors.empty())
+        return errors;
+    const auto made = std::make_shared<std::vector<reading::MadePart>>();
+    const auto scene =
+        core::scene_files::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common), made));
+    if (!scene) return scene.errors();
+    for (const core::scene::Body& body : scene->bodies)
+        for (const reading::MadePart& part : *made)
+            if (body.shape && *body.shape == part.spec) take(body.name, part.shape);
+    return out;
+}
+
+/// A file for each profile of each body; of one profile alone the file that --to names.
+int run_export_profiles(const ExportArguments& options, const CommonOptions& common, Console& console) {
+    const std::string format = profile_format(options);
+    const auto bodies = drawn_bodies(options, common);
+    if (!bodies) return console.input_errors(bodies.errors());
+    std::vector<std::pair<std::string, std::string>> drawings;  // file names, texts
+    core::files::UniqueNames names("_", true);
+    for (const DrawnBody& body : *bodies) {
+        const std::vector<double> values = description::drawn_values(*body.part);
+        for (const std::string& profile : body.part->file().profile_names()) {
+            const Errors errors = body.part->file().with_profile(profile, values, [&](const core::parts::Profile& figure) {
+                const std::string stem = names.unique(core::files::file_stem(body.name + "." + profile));
+                drawings.emplace_back(stem + "." + format, format == "dxf" ? exports::profile_dxf(figure) : exports::profile_svg(figure));
+            });
+            if (!errors.empty()) return console.input_errors(errors);
+        }
+    }
+    if (drawings.empty())
+        return console.input_errors(
+            {{ErrorCode::unsupported, options.shown.path,
+              "no body has profiles: those are of parts that part files describe (`\"part\"` in a body's `shape`)"}});
+    const bool one_file = fs::path(options.to).extension() == "." + format;
+    if (one_file && drawings.size() > 1) {
+        std::string known;
+        for (const auto& [name, text] : drawings) known += (known.empty() ? "" : ", ") + name;
+        return console.input_errors(
+            {{ErrorCode::inconsistent, "--to",
+              "there are " + std::to_string(drawings.size()) + " profiles (" + known + "); name a folder, with --format " + format}});
+    }
+    const fs::path folder =
+        one_file ? (fs::path(options.to).has_parent_path() ? fs::path(options.to).parent_path() : fs::path(".")) : fs::path(options.to);
+    Errors errors = answers::try_output_folder(folder);
+    core::files::FilesTogether together;
+    std::vector<NamedFile> written;
+    Json files = Json::array();
+    std::string text;
+    for (const auto& [name, bytes] : drawings) {
+        const fs::path path = one_file ? fs::path(options.to) : folder / name;
+        written.push_back({"--to", path.string(), true});
+        if (errors.empty()) errors = together.add(path, bytes);
+        files.push_back({{"file", path.string()}, {"format", format}, {"bytes", bytes.size()}, {"hash", core::files::hash_of(bytes)}});
+        text += formatted("%s  %zu bytes\n", path.string().c_str(), bytes.size());
+    }
+    if (errors.empty()) errors = replaced_inputs(written, common.given);
+    if (errors.empty()) errors = together.take_names();
+    if (!errors.empty()) return console.input_errors(errors);
+    console.result({{"status", "ok"}, {"files", std::move(files)}}, text);
+    return exit_done;
+}
+
 int run_export(const ExportArguments& options, const CommonOptions& common, Console& console) {
+    if (!profile_format(options).empty()) return run_export_profiles(options, common, console);
     if (options.to.ends_with(".urdf")) return run_export_urdf(options, common, console);
     if (options.in_place && !options.separate())
-        return console.input_errors({{ErrorCode::inconsistent, "--in-place", "is of --arrange separate: a file for each part"}});
+        return console.input_errors({{ErrorCode::inconsistent, "--in-place", "needs --arrange separate: a file for each part"}});
     if (const Errors errors = arrange_errors(options); !errors.empty()) return console.input_errors(errors);
     Result<ShownMotion> shown = load_shown(options.shown, common, console);
     if (!shown) return console.input_errors(shown.errors());
@@ -241,20 +336,21 @@ int run_export(const ExportArguments& options, const CommonOptions& common, Cons
 }  // namespace
 
 Command add_export(CommandLine& program, const CommonOptions& common) {
-    CommandLine app = program.command("export", "Parts and their motion for other programs: glb, 3mf, stl, obj, vtu, csv, urdf");
+    CommandLine app =
+        program.command("export", "Writes parts and their motion for other programs: glb, 3mf, stl, obj, vtu, csv, urdf, dxf, svg");
     auto options = std::make_shared<ExportArguments>();
     add_shown_options(app, options->shown);
-    app.option("--to", options->to, "File, whose extension says the format (.pvd, .vtu: ParaView; .urdf: of a scene), or folder")
+    app.option("--to", options->to, "File, whose extension says the format (.pvd, .vtu: ParaView; .urdf: for a scene), or folder")
         .required();
-    app.option("--format", options->formats, "Into a folder: which, with commas (default: glb,3mf,stl,obj,vtu,csv)");
+    app.option("--format", options->formats, "For a folder: which formats, with commas (default: glb,3mf,stl,obj,vtu,csv)");
     app.option("--arrange", options->arrange,
                "3mf, stl, obj: assembled (default), plate (side by side for printing), separate or parts (a file each, in its own frame)")
         .one_of({"assembled", "plate", "parts", "separate"});
     app.flag("--in-place", options->in_place, "With --arrange separate: each part where it stands in the assembly");
     app.option("--every", options->every, "vtu: a frame for every so many steps (default 1)").at_least(1);
     app.closing_words(
-        "Lengths: millimetres in 3mf, stl and obj, metres and Y up in glb, metres in vtu. Of a certificate, it then names the files of\n"
-        "meshes, and fettle validate says \"stale\" when one has changed.\n"
+        "Lengths: millimetres in 3mf, stl and obj, metres and Y up in glb, metres in vtu. An exported certificate then names\n"
+        "these files, and fettle validate says \"stale\" when one has changed.\n"
         "Example:  fettle export out --to out/motion.glb                       a run's folder: animated\n"
         "          fettle export fit.certificate.json --to print.3mf --arrange plate\n"
         "          fettle export SCENE --to parts --format stl --arrange separate --in-place   for a check by fettle clearance parts "

@@ -10,10 +10,10 @@
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/description/requirement_text.hpp"
+#include "fettle/design/gradient_audit/design_line.hpp"
+#include "fettle/design/gradient_audit/difference_check.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/design_line.hpp"
-#include "fettle/design/studies/difference_check.hpp"
 
 namespace fettle::design::cli {
 
@@ -22,12 +22,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 using description::Design;
 using description::Parameter;
+using gradient_audit::CheckReport;
+using gradient_audit::CheckRow;
+using gradient_audit::QuantityRoughness;
+using gradient_audit::RoughnessReport;
 using problem::DesignEvaluation;
 using problem::DesignProblem;
-using studies::CheckReport;
-using studies::CheckRow;
-using studies::QuantityRoughness;
-using studies::RoughnessReport;
 
 struct GradientArguments {
     std::string path;
@@ -159,15 +159,15 @@ Json roughness_json(const Design& design, const RoughnessReport& report) {
                         {"rough", quantity.rough}});
     }
     json["quantities"] = list;
-    json["remedies"] = studies::roughness_remedies(design, report);
+    json["remedies"] = gradient_audit::roughness_remedies(design, report);
     return json;
 }
 
 Json contact_changes_json(const Design& design, const CheckReport& report) {
     Json list = Json::array();
-    for (const studies::ContactChange& change : report.contact_changes) {
+    for (const gradient_audit::ContactChange& change : report.contact_changes) {
         const double unit = factor_of(design, change.parameter);
-        const studies::ContactState &was = change.at.was, &is = change.at.is;
+        const gradient_audit::ContactState &was = change.at.was, &is = change.at.is;
         list.push_back({{"parameter", change.parameter},
                         {"from", change.from / unit},
                         {"to", change.to / unit},
@@ -200,7 +200,7 @@ void add_check(const Design& design, const CheckReport& report, Json& json) {
     }
     json["check"] = rows;
     Json along = Json::array();
-    for (const studies::LineRow& row : report.along)
+    for (const gradient_audit::LineRow& row : report.along)
         along.push_back({{"quantity", row.quantity},
                          {"adjoint", row.adjoint},
                          {"difference", row.difference},
@@ -228,7 +228,7 @@ std::string length_text(const Design& design, const RoughnessReport& report, dou
     Eigen::Index k = 0;
     report.direction.cwiseAbs().maxCoeff(&k);
     const Parameter& parameter = design.parameters[static_cast<size_t>(k)];
-    const double moved = share * studies::parameter_ranges(design)[k] / to_si(1, parameter.unit);
+    const double moved = share * gradient_audit::parameter_ranges(design)[k] / to_si(1, parameter.unit);
     return formatted("%.3g %s", moved, std::string(parameter.unit.name).c_str());
 }
 
@@ -250,12 +250,12 @@ std::string roughness_text(const Design& design, const RoughnessReport& report) 
     }
     if (rough.empty()) return text;
     text += "rougher than the tolerance: " + rough + ". What would help:\n";
-    for (const std::string& remedy : studies::roughness_remedies(design, report)) text += "  - " + remedy + "\n";
+    for (const std::string& remedy : gradient_audit::roughness_remedies(design, report)) text += "  - " + remedy + "\n";
     return text;
 }
 
 // "width grows by 0.01 to 0.1 mm"
-std::string move_text(const Design& design, const studies::ContactChange& change) {
+std::string move_text(const Design& design, const gradient_audit::ContactChange& change) {
     const double unit = factor_of(design, change.parameter);
     std::string_view unit_name;
     for (const Parameter& p : design.parameters)
@@ -267,7 +267,7 @@ std::string move_text(const Design& design, const studies::ContactChange& change
 // A line for each change, with all parameters that make it.
 std::vector<std::string> contact_change_lines(const Design& design, const CheckReport& report) {
     std::vector<std::string> sentences, lines;
-    for (const studies::ContactChange& change : report.contact_changes) {
+    for (const gradient_audit::ContactChange& change : report.contact_changes) {
         const std::string sentence = sentence_of(change) + (is_kink(change.at.event) ? " (gradients jump there)" : "");
         const auto known = std::find(sentences.begin(), sentences.end(), sentence);
         if (known != sentences.end()) {
@@ -295,7 +295,7 @@ std::string contact_changes_text(const Design& design, const CheckReport& report
         for (const int side : {0, 1}) {
             const double looked = report.contacts_reach(static_cast<Eigen::Index>(k), side);
             if (looked >= reach) continue;
-            text += "  not looked at: " + name + (side == 0 ? " falling" : " growing");
+            text += "  not examined: " + name + (side == 0 ? " falling" : " growing");
             text += looked > 0 ? formatted(" by more than %.3g %%\n", 100 * looked) : "\n";
         }
     }
@@ -306,7 +306,7 @@ std::string along_text(const Design& design, const CheckReport& report) {
     if (report.along.empty()) return "along the gradient: not simulated\n";
     std::string text =
         formatted("%-61s %14s %14s %10s %10s\n", "along the gradient, in shares of the ranges", "adjoint", "difference", "error", "slope");
-    for (const studies::LineRow& row : report.along) {
+    for (const gradient_audit::LineRow& row : report.along) {
         const std::string slope = std::isfinite(row.slope) ? formatted("%10.2f", row.slope) : "         -";
         const auto [unit, name] = counted_in(design, row.quantity);
         text += formatted("%-61s %14.7g %14.7g %10.2e %s%s\n", name.c_str(), row.adjoint / unit, row.difference / unit, row.relative_error,
@@ -375,15 +375,15 @@ std::string values_text(const Design& design, const DesignEvaluation& e, const C
 
 CheckReport run_check(const DesignProblem& problem, const VectorX& values, const DesignEvaluation& at, const GradientArguments& arguments,
                       Console& console) {
-    studies::CheckOptions check;
+    gradient_audit::CheckOptions check;
     check.limit = arguments.check_limit;
     check.most_parameters = arguments.check_parameters;
-    const int cost = studies::check_cost(problem.parameter_count(), check), threads = core::base::thread_count();
+    const int cost = gradient_audit::check_cost(problem.parameter_count(), check), threads = core::base::thread_count();
     console.narrate(formatted("the check takes up to %d simulations of about %.2g s each, on %d thread%s", cost, at.forward_seconds,
                               threads, threads == 1 ? "" : "s"));
     check.on_simulation = [&](int done, int of) { console.progress("differences", done, of); };
     check.should_stop = interrupted;
-    CheckReport report = studies::check_gradients(problem, values, at, check);
+    CheckReport report = gradient_audit::check_gradients(problem, values, at, check);
     console.end_progress();
     return report;
 }
@@ -427,15 +427,15 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
 }  // namespace
 
 Command add_gradient(CommandLine& program, const CommonOptions& common) {
-    CommandLine app = program.command("gradient", "Objective, constraints and their gradients");
+    CommandLine app = program.command("gradient", "Computes objective, constraints and their gradients");
     auto options = std::make_shared<GradientArguments>();
     app.option("DESIGN", options->path, "Design, taken at its values").required();
-    const Option check = app.flag("--check", options->check, "Audit all gradients against central differences of whole simulations");
+    const Option check = app.flag("--check", options->check, "Compare all gradients with central differences of whole simulations");
     app.option("--check-limit", options->check_limit, "Largest relative error that passes (default 1e-5); else exit code 2")
         .above(0)
         .needs(check);
     app.option("--check-parameters", options->check_parameters,
-               "Check that many alone, those that the objective hangs on most in shares of their ranges (default: all)")
+               "Check only this many parameters, those that the objective depends on most in shares of their ranges (default: all)")
         .at_least(1)
         .needs(check);
     app.closing_words(

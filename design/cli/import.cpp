@@ -61,7 +61,7 @@ int run_import(const ImportArguments& arguments, const CommonOptions& common, Co
 }  // namespace
 
 Command add_import(CommandLine& program, const CommonOptions& common) {
-    CommandLine app = program.command("import", "A robot description (URDF) as a scene: links, joints, limits, meshes");
+    CommandLine app = program.command("import", "Converts a robot description (URDF) into a scene: links, joints, limits, meshes");
     auto options = std::make_shared<ImportArguments>();
     app.option("FILE", options->path, "ROBOT.urdf").required();
     app.option("--to", options->to, "Scene to write, X.scene.json; meshes go to X.meshes beside it").required();

@@ -12,6 +12,7 @@
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/session.hpp"
 #include "fettle/design/exports/picture.hpp"
+#include "fettle/design/exports/png_writer.hpp"
 #include "fettle/design/exports/svg_writer.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
@@ -87,7 +88,7 @@ Errors draw_shape(const std::string& name, const std::string& file) {
     options.height = 700;
     options.title = name + ", default dimensions";
     const exports::Picture picture = exports::draw_picture(assembly, assembly.keyframes.front().poses, options);
-    return core::files::write_file_atomically(file, png ? exports::png_bytes(exports::inked(picture)) : exports::svg_text(picture));
+    return core::files::write_file_atomically(file, png ? exports::png_bytes(picture) : exports::svg_text(picture));
 }
 
 struct ShapesArguments {
@@ -151,7 +152,7 @@ Command add_list(CommandLine& program, const std::string& command, const std::st
                  int (*run)(const std::string&, Console&)) {
     CommandLine app = program.command(command, description);
     auto name = std::make_shared<std::string>();
-    app.option("NAME", *name, "One of them, with all that there is to say (default: all)");
+    app.option("NAME", *name, "One of them, in full (default: all)");
     app.closing_words("Example:  fettle " + command + " " + example);
     return {app, [name, run](Console& console) { return run(*name, console); }};
 }
@@ -159,7 +160,7 @@ Command add_list(CommandLine& program, const std::string& command, const std::st
 }  // namespace
 
 Command add_shapes(CommandLine& program) {
-    CommandLine app = program.command("shapes", "Generators of parts: dimensions, defaults, relations, a drawing");
+    CommandLine app = program.command("shapes", "Lists generators of parts: dimensions, defaults, relations, a drawing");
     auto options = std::make_shared<ShapesArguments>();
     app.option("NAME", options->name, "One of them, with all its dimensions (default: all)");
     app.option("--draw", options->draw, "Draw it at its defaults: .png or .svg");
@@ -168,15 +169,15 @@ Command add_shapes(CommandLine& program) {
 }
 
 Command add_quantities(CommandLine& program) {
-    return add_list(program, "quantities", "What an objective can sum and a constraint bound", "stroke", run_quantities);
+    return add_list(program, "quantities", "Lists what an objective can sum and a constraint can bound", "stroke", run_quantities);
 }
 
 Command add_joints(CommandLine& program) {
-    return add_list(program, "joints", "Kinds of joint that a scene can have", "revolute", run_joints);
+    return add_list(program, "joints", "Lists the kinds of joint that a scene can have", "revolute", run_joints);
 }
 
 Command add_optimisers(CommandLine& program) {
-    return add_list(program, "optimisers", "Optimisers that a design can name", "ipopt", run_optimisers);
+    return add_list(program, "optimisers", "Lists the optimisers that a design can name", "sqp", run_optimisers);
 }
 
 }  // namespace fettle::design::cli

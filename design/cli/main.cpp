@@ -78,16 +78,18 @@ void add_common_options(CommandLine program, CommonOptions& common) {
     program.flag("--json", common.json, "Answer with one JSON object on stdout, and nothing else there");
     program.option("--log", common.log, "Write narration and progress to this file too, --quiet or not");
     program.flag("--quiet", common.quiet, "No narration, no progress bars");
-    program.flag("--strict", common.strict, "Meshes: what is mended or a warning else (copies, turned triangles, gaps, ...) is an error");
+    program.flag("--strict", common.strict,
+                 "Make errors of mesh faults that would be mended (copies, turned triangles, gaps, ...), and of warnings");
     program.flag("--allow-programs", common.allow_programs, "Run the programs that a scene names to make its parts (such as OpenSCAD)");
     program.option("--mesh-dir", common.mesh_dirs, "Look for meshes here too (can be given several times)").one_value_each();
 }
 
 void add_check_options(CommandLine program, CheckFiles& files) {
-    program.option("--junit", files.junit, "Write what was found as JUnit XML too, for the tests of a CI; undecided is a failure");
-    program.option("--sarif", files.sarif, "Write what was found as SARIF 2.1.0 too, for code scanning");
-    program.option("--markdown", files.markdown, "Write what was found as a table in Markdown too (of GitHub's job summary: added to it)");
-    program.flag("--annotations", files.annotations, "Tell what was found on stderr as GitHub Actions shows it beside the files");
+    program.option("--junit", files.junit, "Also write the findings as JUnit XML, for the tests of a CI; undecided is a failure");
+    program.option("--sarif", files.sarif, "Also write the findings as SARIF 2.1.0, for code scanning");
+    program.option("--markdown", files.markdown,
+                   "Also write the findings as a table in Markdown (appended, if it is GitHub's job summary)");
+    program.flag("--annotations", files.annotations, "Write findings to stderr in the form that GitHub Actions shows beside the files");
 }
 
 Checks checks_of(const std::string& command, int exit_code, const Console& console) {
@@ -205,10 +207,10 @@ std::vector<Command> add_commands(CommandLine& program, const CommonOptions& com
         }
     };
     add("Start", {add_new(program), add_shapes(program), add_joints(program), add_quantities(program), add_optimisers(program)});
-    add("Check what there is", {add_validate(program, common), add_clearance(program, common)});
-    add("Move and tune",
+    add("Check", {add_validate(program, common), add_clearance(program, common)});
+    add("Simulate and tune",
         {add_simulate(program, common), add_optimise(program, common), add_explore(program, common), add_gradient(program, common)});
-    add("See and pass on",
+    add("Show and export",
         {add_report(program, common), add_draw(program, common), add_export(program, common), add_import(program, common)});
     add("About the program", {add_completion(program), add_manual(program)});
     return all;

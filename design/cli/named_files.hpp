@@ -12,7 +12,7 @@
 namespace fettle::design::cli {
 
 struct NamedFile {
-    std::string option;  ///< "--junit"; of what is told by its place "FILE"; of what a file names that file (read_files.hpp)
+    std::string option;  ///< "--junit"; for a positional argument "FILE"; of what a file names that file (read_files.hpp)
     std::string file;
     bool is_written = false;
 };
@@ -24,7 +24,7 @@ struct GivenFiles {
     std::vector<std::string> mesh_dirs;
 };
 
-/// Of the options that were given, those that name files.
+/// Those of the given options that name files.
 std::vector<NamedFile> named_files_of(const std::string& command, const std::vector<GivenValue>& given);
 
 /// The same, of a command line that cannot be read: the words after `written`'s options; all others count as read.

@@ -81,7 +81,7 @@ int run_new(const NewArguments& options, Console& console) {
 Command add_new(CommandLine& program) {
     CommandLine app = program.command("new", "Writes a commented scene and design to start from");
     auto options = std::make_shared<NewArguments>();
-    app.option("NAME", options->name, "Which; without it, what there is");
+    app.option("NAME", options->name, "Which one (default: list them)");
     app.option("--in", options->folder, "Folder to write into (default: this one)");
     app.closing_words("Example:  fettle new hinge");
     return {app, [options](Console& console) { return run_new(*options, console); }};

@@ -174,14 +174,15 @@ Command add_optimise(CommandLine& program, const CommonOptions& common) {
     auto options = std::make_shared<OptimiseArguments>();
     app.option("DESIGN", options->path, "Design to start from").required();
     app.option("--optimiser,--optimizer", options->optimiser,
-               "ipopt, mma, ccsaq, slsqp, cobyla or gauss_newton (default: what the design says)")
+               "sqp, gauss_newton, ipopt, mma, ccsaq, slsqp or cobyla (default: the design's)")
         .one_of(optimisers::optimiser_names());
     app.option("--out", options->out, "Folder for the result (default: the design's `output`)");
-    app.option("--starts", options->starts, "From so many starts: the file's values, and random ones; the best is kept").between(1, 1000);
+    app.option("--starts", options->starts, "How many starts: the file's values, then random ones; the best result is kept")
+        .between(1, 1000);
     app.option("--seed", options->seed,
-               "With --starts: which list of random starts (default 1); else: begin at the random start of this seed")
+               "With --starts: seed of the random starts (default 1); else: begin at the random start of this seed")
         .between(0, most_lists * 1000.0);
-    app.flag("--repair", options->repair, "The smallest change that meets every requirement, instead of the best design");
+    app.flag("--repair", options->repair, "Find the smallest change that meets every requirement, instead of the best design");
     app.flag("--no-report", options->no_report, "No report.html");
     app.flag("--resume", options->resume, "Replay the folder's history, and go on where a killed run stopped");
     app.closing_words("Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out --json");

@@ -36,7 +36,7 @@ std::string by_models_text(const Design& design, const OptimiseOutcome& outcome,
     return "with the play of the fits taken up (" + outcome.play_taken_up_by + ": parts stay in the middle of their fits):\n" + text;
 }
 
-// A tuned mechanism whose requirements hang on how its parts lie in their fits.
+// A tuned mechanism whose requirements depend on how its parts lie in their fits.
 std::string play_advice(const OptimiseOutcome& outcome) {
     if (outcome.in_doubt.empty()) return {};
     return "a real mechanism may do either, depending on where its parts lie in their fits. What to do: put into the scene what decides\n"
@@ -77,7 +77,7 @@ std::string verdict_text(const Design& design, const optimisers::Optimality& o, 
     if (!o.refused.empty()) text += "but designs there cannot be evaluated: " + o.refused + "\n";
     if (o.roughest >= 0) {
         text += formatted(
-            "whether this is the best cannot be told: simulated values scatter by up to %.3g in %s (the tolerance is %.3g), "
+            "it cannot be determined whether this is the best: simulated values scatter by up to %.3g in %s (the tolerance is %.3g), "
             "most of it by %s; ",
             o.noise_in_objective, minimised.c_str(), o.worth, answers::roughest_name(design, o).c_str());
         text += "a wider contact distance (`contact.dhat`) or damping makes the motion smoother\n";

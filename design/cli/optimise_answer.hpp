@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What `fettle optimise` tells people (answers/optimise_json.hpp is for programs), and its exit code.
+/// What `fettle optimise` prints for people (answers/optimise_json.hpp is for programs), and its exit code.
 #pragma once
 
 #include <string>

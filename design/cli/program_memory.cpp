@@ -119,8 +119,8 @@ void end_out_of_memory() {
     if (answers_json)
         put(STDOUT_FILENO,
             "{\n  \"status\": \"error\",\n  \"errors\": [\n    {\n      \"code\": \"out_of_memory\",\n      \"where\": \"memory\",\n"
-            "      \"message\": \"what was asked for takes more memory than there is\"\n    }\n  ]\n}\n");
-    put(STDERR_FILENO, "error: memory: what was asked for takes more memory than there is [out_of_memory]\n");
+            "      \"message\": \"the request needs more memory than there is\"\n    }\n  ]\n}\n");
+    put(STDERR_FILENO, "error: memory: the request needs more memory than there is [out_of_memory]\n");
     ::_exit(exit_bad_input);
 }
 

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every text of a JSON file with the key before it; without recursion, up to where it is no JSON any more.
+/// Every text of a JSON file with the key before it; without recursion, up to where it is not JSON any more.
 struct Texts : nlohmann::json_sax<nlohmann::json> {
     std::function<void(const std::string& key, const std::string& text)> take;
     std::string last_key;

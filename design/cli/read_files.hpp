@@ -12,8 +12,8 @@
 
 namespace fettle::design::cli {
 
-/// Through all that is given: each file with, as its option, what names it ("rod.scene.json"). A file that cannot be read names none. Of a
-/// scene or a design every text counts that is a file's name there.
+/// Through all that is given: each file with, as its option, what names it ("rod.scene.json"). A file that cannot be read names none. In a
+/// scene or a design every text that is the name of a file counts.
 std::vector<NamedFile> files_read(const GivenFiles& given);
 
 /// Those of `written` that are there and that the command reads: named by its command line, or files_read().

@@ -47,7 +47,7 @@ Command add_report(CommandLine& program, const CommonOptions& common) {
     CommandLine app = program.command("report", "Makes the HTML report of a folder of results, or of an exploration");
     auto options = std::make_shared<ReportArguments>();
     app.option("DIR", options->source, "What optimise, simulate or clearance wrote with --out; or the file that explore wrote").required();
-    app.option("--out", options->out, "File for it (default: report.html in DIR; of sweep.jsonl sweep.report.html)");
+    app.option("--out", options->out, "File to write (default: report.html in DIR; for sweep.jsonl, sweep.report.html)");
     app.closing_words("Examples:  fettle report out\n           fettle report sweep.jsonl");
     return {app, [options, &common](Console& console) { return run_report(*options, common, console); }};
 }

@@ -11,7 +11,7 @@
 
 namespace fettle::design::cli {
 
-/// Makes FOLDER/report.html, tells of it in `answer` (`report`) and at the end of `told`. One that cannot be made is told there with the
+/// Makes FOLDER/report.html, names it in `answer` (`report`) and at the end of `told`. If it cannot be made, both say so with the
 /// reason (`report` null, `report_fault`): the results are there. Once a stop has been asked for, what takes computing is left out.
 /// @param answer   that is in the folder
 /// @param at_hand  whatever else is

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/design/clearance/certificate_files.hpp"
 #include "fettle/design/clearance/mesh_parts.hpp"
 #include "fettle/design/cli/inputs.hpp"
@@ -27,7 +27,8 @@ Result<std::string> file_to_read(const ShownOptions& options, std::string& certi
         certificate = path;
         return options.trajectory.empty() ? clearance::certificate_trajectory(path) : options.trajectory;
     }
-    if (!options.trajectory.empty()) return Error{ErrorCode::inconsistent, "--trajectory", "is of a certificate, and " + path + " is none"};
+    if (!options.trajectory.empty())
+        return Error{ErrorCode::inconsistent, "--trajectory", "is for a certificate, and " + path + " is none"};
     return path;
 }
 
@@ -48,7 +49,8 @@ void take_gravity(const CommonOptions& common, clearance::Subject& subject) {
     std::error_code code;
     if (subject.source != clearance::SubjectSource::trajectory || !fs::is_regular_file(subject.scene_path, code)) return;
     if (file_kind(subject.scene_path) != FileKind::scene) return;
-    const auto scene = core::scene::read_scene(subject.scene_path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
+    const auto scene =
+        core::scene_files::read_scene(subject.scene_path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
     if (scene) subject.model.gravity = scene->gravity;
 }
 
@@ -56,10 +58,10 @@ void take_gravity(const CommonOptions& common, clearance::Subject& subject) {
 
 void add_shown_options(CommandLine& app, ShownOptions& options) {
     app.option("FILE", options.path,
-               "Scene or design (as assembled), trajectory, certificate (its path), mesh, or a folder: of a run, or with meshes")
+               "Scene or design (as assembled), trajectory, certificate (its path), mesh, or a folder (of a run, or with meshes)")
         .required();
-    app.option("--unit", options.unit, "Of meshes that state none: mm, um, cm, m, in, ft");
-    app.option("--trajectory", options.trajectory, "Of a certificate: the path that it speaks of (default: beside it)");
+    app.option("--unit", options.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
+    app.option("--trajectory", options.trajectory, "For a certificate: the path that it is about (default: beside it)");
     app.option("--up", options.up, "The world's up: x, -x, y, -y, z, -z (default: against gravity; z where that is not known)")
         .one_of(up_names);
 }

@@ -157,7 +157,7 @@ Errors add_motion(const SimulateArguments& options, const FinishedRun& run, core
         console.narrate("warning: a longer run was there, which is kept as " + kept);
         files.keep_as(file, kept);
     }
-    answers::replace_motion(files, options.out);  // what is there speaks of another motion
+    answers::replace_motion(files, options.out);  // what is there is about another motion
     Errors errors = core::records::add_trajectory(files, file, simulation.trajectory, model, run.loaded.scene_path, &simulation.checkpoint);
     if (errors.empty()) errors = run.writing->tables.add_to(files);
     if (errors.empty()) errors = answers::add_animation(files, options.out, model, simulation.trajectory);
@@ -325,7 +325,7 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
     if (!options.joint_gap.empty()) {
         const Result<double> gap = core::base::parse_length(options.joint_gap, "--joint-gap");
         if (!gap) return console.input_errors(gap.errors());
-        if (!(*gap > 0)) return console.input_errors({{ErrorCode::out_of_range, "--joint-gap", "a length greater than 0 is wanted"}});
+        if (!(*gap > 0)) return console.input_errors({{ErrorCode::out_of_range, "--joint-gap", "a length greater than 0 is expected"}});
     }
     const Errors unwritable = try_outputs(options);
     if (!unwritable.empty()) return console.input_errors(unwritable);
@@ -347,7 +347,7 @@ Command add_simulate(CommandLine& program, const CommonOptions& common) {
     CommandLine app = program.command("simulate", "Runs a scene (or a design at its values) through time");
     auto options = std::make_shared<SimulateArguments>();
     app.option("SCENE", options->path, "Scene or design").required();
-    Option steps = app.option("--steps", options->steps, "How many steps (default: the scene's end time)").at_least(0);
+    Option steps = app.option("--steps", options->steps, "Number of steps (default: up to the scene's end time)").at_least(0);
     app.option("--time", options->time, "How long, in seconds").at_least(0).excludes(steps);
     app.option("--out", options->out,
                "Folder for trajectory.json, result.json and, per step, steps.csv (energies, momenta, least distance), contacts.csv "
@@ -355,11 +355,10 @@ Command add_simulate(CommandLine& program, const CommonOptions& common) {
                "trajectory.running.json");
     app.flag("--no-report", options->no_report, "With --out: no report.html");
     app.option("--continue", options->earlier,
-               "An earlier run of this scene, its trajectory or its folder (of a killed one too): goes on to --steps or --time in all");
+               "An earlier run of this scene, its trajectory or its folder (also of a killed run); goes on to --steps or --time in all");
     app.option("--poses", options->poses, "Write the poses at the ends of the steps for other programs (.csv or .json)");
-    app.option(
-        "--joint-gap", options->joint_gap,
-        "Joints part between the nodes of the path by no more than this, with its unit: 0.01mm (nodes are added; default: as it comes)");
+    app.option("--joint-gap", options->joint_gap,
+               "Largest distance by which joints may part between nodes, with its unit: 0.01mm (adds nodes; default: any gap)");
     app.closing_words(
         "Example:  fettle simulate examples/slider_crank/slider_crank.scene.json --steps 50 --out out\n"
         "          fettle simulate examples/slider_crank/slider_crank.scene.json --continue out/trajectory.json --steps 100 --out out");

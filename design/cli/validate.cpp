@@ -5,12 +5,12 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_judgement.hpp"
-#include "fettle/core/geometry/mesh_repair.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/solids/mesh_judgement.hpp"
+#include "fettle/core/solids/mesh_repair.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/body_facts.hpp"
@@ -49,10 +49,10 @@ Verdict validate_mesh_file(const std::string& path, bool strict) {
         return verdict;
     }
     if (strict) {
-        verdict.errors = core::geometry::validate_mesh(*mesh, {});
+        verdict.errors = core::solids::validate_mesh(*mesh, {});
     } else {
-        verdict.warnings = core::geometry::repair_mesh(*mesh);
-        core::geometry::MeshFindings found = core::geometry::judge_mesh(*mesh, true);
+        verdict.warnings = core::solids::repair_mesh(*mesh);
+        core::solids::MeshFindings found = core::solids::judge_mesh(*mesh, true);
         verdict.errors = std::move(found.errors);
         verdict.warnings.insert(verdict.warnings.end(), found.warnings.begin(), found.warnings.end());
     }
@@ -125,7 +125,7 @@ int run_validate(const ValidateArguments& options, const CommonOptions& common, 
     Errors not_taken;
     for (const auto& [option, value] : {std::pair{"--minimum", options.minimum}, {"--trajectory", options.trajectory}})
         if (!value.empty())
-            not_taken.push_back({ErrorCode::inconsistent, option, std::string("is of a certificate; ask fettle clearance")});
+            not_taken.push_back({ErrorCode::inconsistent, option, std::string("is for a certificate; use fettle clearance")});
     if (!not_taken.empty()) return console.input_errors(not_taken);
     if (core::records::is_poses_file(path))
         return console.input_errors(
@@ -151,14 +151,14 @@ int run_validate(const ValidateArguments& options, const CommonOptions& common, 
 
 Command add_validate(CommandLine& program, const CommonOptions& common) {
     CommandLine app =
-        program.command("validate", "Is this scene, design, trajectory, certificate or mesh usable? Every fault, by name and place");
+        program.command("validate", "Checks a scene, design, trajectory, certificate or mesh, and lists every fault with its place");
     auto options = std::make_shared<ValidateArguments>();
     app.option("FILE", options->path,
                "Scene, design, trajectory, certificate (.json) or mesh (" + core::mesh_files::mesh_extensions() + ")")
         .required();
     app.option("--trajectory", options->trajectory,
-               "Of a certificate: the path that it speaks of (default: FILE's name, .trajectory.json)");
-    app.option("--minimum", options->minimum, "Of a certificate: do its bounds meet this clearance, per side, with its unit: 0.3mm");
+               "For a certificate: the path that it is about (default: FILE's name, .trajectory.json)");
+    app.option("--minimum", options->minimum, "For a certificate: do its bounds meet this clearance, per side, with its unit: 0.3mm");
     app.closing_words(
         "Example:  fettle validate examples/slider_crank/slider_crank.design.json\n"
         "          fettle validate fit.certificate.json     is every claim proven? exit code 0: accepted, 1: rejected");

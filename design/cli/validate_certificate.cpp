@@ -66,7 +66,7 @@ std::string claims_text(const CheckedCertificate& checked, const Model& model, c
     return text;
 }
 
-const char* const of_path_alone = "of the path as stored, between whose nodes joints may have the bodies elsewhere";
+const char* const of_path_alone = "about the path as stored, between whose nodes the joints may put the bodies elsewhere";
 
 // Against the minimum; without one, what is proven of the two bodies.
 Check check_of(const Claim& pair, const std::string& name, const RoundedLengths& lengths, const std::optional<double>& minimum,
@@ -96,8 +96,8 @@ Result<std::optional<double>> read_minimum(const std::string& text) {
 const char* about(const Certificate& certificate) {
     if (certificate.linkage) return "over all positions of the joints";
     if (!certificate.motion) return "as assembled";
-    if (certificate.joints) return "over the motion, of joints met at all times";
-    return certificate.is_of_path ? "over the motion, of the path as stored" : "over the motion";
+    if (certificate.joints) return "over the motion, for joints met at all times";
+    return certificate.is_of_path ? "over the motion, for the path as stored" : "over the motion";
 }
 
 std::string name_of_pair(const std::array<int, 2>& pair, const Model& model) { return claim_name({pair[0], pair[1]}, model); }

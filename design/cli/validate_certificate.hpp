@@ -12,7 +12,7 @@ namespace fettle::design::cli {
 
 struct CertificateQuestion {
     std::string path;        ///< of the certificate
-    std::string trajectory;  ///< the path that it speaks of; empty: the one beside it
+    std::string trajectory;  ///< the path that it is about; empty: the one beside it
     std::string minimum;     ///< required clearance, "0.3mm"; empty: only the claims are checked
 };
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/description/design.hpp"
 
+#include <algorithm>
+
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/scene/place.hpp"
 
 namespace fettle::design::description {
 
@@ -17,6 +20,20 @@ core::scene::Scene described_scene(const Design& design) {
         shape != nullptr ? describe(*shape, scene.bodies[i]) : scene.bodies[i].shape.reset();
     }
     return scene;
+}
+
+Errors set_number(Design& design, const std::string& place, const std::string& formula) {
+    const core::scene::Scene scene = described_scene(design);
+    const Result<core::scene::Place> found = core::scene::find_place(scene, place);
+    if (!found) return found.errors();
+    const Dimension dimension = core::scene::dimension_at(scene, *found);
+    Result<core::expression::Formula> parsed =
+        core::expression::parse_formula_of(formula, scope_of(design.parameters), dimension, 1, place);
+    if (!parsed) return parsed.errors();
+    const std::string pointer = core::scene::pointer_to(scene, *found);
+    std::erase_if(design.numbers, [&](const core::scene::BoundNumber& number) { return number.place == pointer; });
+    design.numbers.push_back({pointer, std::move(parsed).value()});
+    return {};
 }
 
 Result<int> add_part(Design& design, core::scene::Body body, std::shared_ptr<const Shape> shape) {

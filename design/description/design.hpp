@@ -7,8 +7,9 @@
 ///     core::scene::Body pin;
 ///     pin.name = "pin";
 ///     add_part(design, pin, shape);                       // the mesh is the shape's as drawn
-///     design.parameters.push_back({.name = "radius", .value = 5e-3, .lower = 4e-3, .upper = 6e-3,
-///                                  .moves = {{"/bodies/pin/shape/dimensions/radius"}}});
+///     design.parameters.push_back({.name = "radius", .value = 5e-3, .lower = 4e-3, .upper = 6e-3, .unit = *find_unit("mm")});
+///     set_number(design, "/bodies/pin/shape/dimensions/radius", "radius");
+///     set_number(design, "/bodies/pin/position/2", "2 * radius + 0.5 mm");
 ///     design.objective.push_back({.name = "mass", .quantity = mass});
 #pragma once
 
@@ -34,17 +35,19 @@ struct ObjectiveTerm {
 };
 
 struct OptimiserSettings {
-    std::string name = "ipopt";  ///< optimisers/optimisation.hpp knows which there are
+    std::string name = "sqp";  ///< optimisers/optimisation.hpp knows which there are
     int max_evaluations = 100;
     double tolerance = 1e-4;
 };
 
 struct Design {
-    core::scene::Scene scene;                          ///< as written, before any parameter moves it
+    core::scene::Scene scene;                          ///< at the parameters' values
     std::vector<std::shared_ptr<const Shape>> shapes;  ///< per body; null, or beyond its end: the body's mesh stays as it is
     int steps = 0;                                     ///< of the simulation
     double clearance_tolerance = 1e-9;                 ///< upper - lower wanted of certified distances [m]
     std::vector<Parameter> parameters;
+    /// The numbers of the scene that follow from the parameters, each by a formula of their names; one for a place.
+    std::vector<core::scene::BoundNumber> numbers;
     std::vector<ObjectiveTerm> objective;
     std::vector<Constraint> constraints;
     std::vector<Relation> relations;  ///< between parameters; judged before anything is simulated
@@ -60,6 +63,11 @@ inline const Shape* shape_of(const Design& design, int body) {
 void describe(const Shape& shape, core::scene::Body& body);
 /// The scene with its shapes described, and no others: what parameters can move has a place there.
 core::scene::Scene described_scene(const Design& design);
+
+/// Lets the number at a place of the scene (core/scene/place.hpp) follow from the parameters, in place of what it followed from.
+/// @param formula  Of the parameters (core/expression/parse_formula.hpp); numbers without a unit count in SI.
+/// @return what is wrong with it, or with the place; then nothing is changed.
+Errors set_number(Design& design, const std::string& place, const std::string& formula);
 
 /// Adds a body with the shape as drawn for its mesh. @return its index, or what keeps the shape from being made.
 Result<int> add_part(Design& design, core::scene::Body body, std::shared_ptr<const Shape> shape);

@@ -6,13 +6,6 @@
 
 namespace fettle::design::description {
 
-std::vector<Move> vector_moves(const std::string& place, const Vector3& direction, double scale, const Vector3& offset) {
-    std::vector<Move> moves;
-    for (int k = 0; k < 3; ++k)
-        if (direction[k] != 0) moves.push_back({place + "/" + std::to_string(k), scale * direction[k], offset[k]});
-    return moves;
-}
-
 std::vector<std::string> names_of(const std::vector<Parameter>& parameters) {
     std::vector<std::string> names;
     for (const Parameter& parameter : parameters) names.push_back(parameter.name);
@@ -46,14 +39,14 @@ std::string told(double si, const Unit& unit) {
 Errors check_values(const std::vector<Parameter>& parameters, const VectorX& p) {
     if (p.size() != static_cast<Eigen::Index>(parameters.size()))
         return {{ErrorCode::inconsistent, "p",
-                 "one value for each of the design's parameters is wanted: " + std::to_string(parameters.size()) + ", found " +
+                 "one value for each of the design's parameters is expected: " + std::to_string(parameters.size()) + ", found " +
                      std::to_string(p.size())}};
     Errors errors;
     for (Eigen::Index k = 0; k < p.size(); ++k) {
         const Parameter& of = parameters[static_cast<size_t>(k)];
         const double range = of.upper - of.lower;
         if (!std::isfinite(p[k])) {
-            errors.push_back({ErrorCode::not_finite, "p/" + of.name, "it is no finite number"});
+            errors.push_back({ErrorCode::not_finite, "p/" + of.name, "it is not a finite number"});
         } else if (p[k] < of.lower - range || p[k] > of.upper + range) {
             errors.push_back({ErrorCode::out_of_range, "p/" + of.name,
                               told(p[k], of.unit) + " is far outside its bounds, " + told(of.lower, of.unit) + " to " +

@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Design parameters and the numbers of a scene that they move (core/scene/place.hpp has the table of those). How a scene is moved by them:
-/// problem/moved_scene.hpp.
-///
-/// What a parameter moves is a sum over all moves of that place: number = sum (scale p + offset). The scene's own number there is replaced,
-/// so that a design says all by itself what its `value`s are; a turn is added to the scene's rotation. Numbers are linear in p, meshes are
-/// not.
+/// Design parameters: the numbers that an optimiser may change. What follows from them in the scene: Design::numbers (design.hpp).
 #pragma once
 
 #include <string>
@@ -17,22 +12,10 @@
 
 namespace fettle::design::description {
 
-/// One number that a parameter moves. SI throughout: scale * p + offset.
-struct Move {
-    std::string place;  ///< "/bodies/1/position/2", "/bodies/pin/shape/dimensions/radius"
-    double scale = 1, offset = 0;
-};
-
-/// Moves of a vector's components, those with a coefficient that is not 0: direction[i] scale p + offset[i].
-/// @param place  Of the vector: "/bodies/1/position".
-std::vector<Move> vector_moves(const std::string& place, const Vector3& direction, double scale = 1,
-                               const Vector3& offset = Vector3::Zero());
-
 struct Parameter {
     std::string name;
     double value = 0, lower = 0, upper = 0;  ///< SI
     Unit unit = {};                          ///< that people read it in; trial values are those that a file in it can hold exactly
-    std::vector<Move> moves;
 };
 
 VectorX values_of(const std::vector<Parameter>& parameters);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// A number that a simulated design has: what an objective sums and what a constraint bounds. Value and derivative are two functions, so
-/// that their times can be told apart; the derivative starts from what the value found (witness, extremal nodes), so nothing is searched
+/// that their times can be distinguished; the derivative starts from what the value found (witness, extremal nodes), so nothing is searched
 /// twice. Those of the program: ../quantities. Add one: derive from Quantity, and hand it to the design (design.hpp).
 #pragma once
 
@@ -60,9 +60,9 @@ public:
     /// Adds scale * d(r_i) to the seeds. Contract: 0 <= i < deviations().size().
     virtual void add_deviation_seeds(const Simulated& simulated, int i, double scale, Seeds& seeds) const;
 
-    /// Of a value that is the least of several smooth functions (a clearance: of the distances at its witnesses): first the one that
-    /// add_seeds differentiates, then a few of the others that are at most `limit` (SI), which say most about where the value can go.
-    /// Empty: it is no such value. Not to outlive `simulated` and `measured`.
+    /// The branches of a value that is the least of several smooth functions (a clearance: of the distances at its witnesses): first the
+    /// one that add_seeds differentiates, then a few of the others that are at most `limit` (SI), which say most about where the value can
+    /// go. Empty: it is no such value. Not to outlive `simulated` and `measured`.
     virtual std::vector<Branch> branches(const Simulated& simulated, const Measurement& measured, double limit) const;
 
     /// Whether a simulation changes nothing of it: of the parts as assembled, or of their shapes alone.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A condition between parameters alone, known without a simulation: lower <= r(p) <= upper. A ratio, a sum, Grashof's condition. Of a
-/// design file: reading/relation_reader.hpp. Made by a program:
+/// A condition between parameters alone, known without a simulation: lower <= r(p) <= upper. A ratio, a sum, Grashof's condition. Read from
+/// a design file by reading/relation_reader.hpp. Made by a program:
 ///
 ///     design.relations.push_back({.name = "slenderness", .bounds = {.upper = 0.35}, .at = [](const VectorX& p) {
 ///         return RelationValue{p[0] / p[1], Vector2(1 / p[1], -p[0] / (p[1] * p[1]))};
@@ -26,8 +26,8 @@ struct Relation {
     std::string name;
     Bounds bounds = {};    ///< lower == upper: an equation. The margin keeps an optimiser's end, which is not exact, on the right side
     double tolerance = 0;  ///< how far beyond its bounds it still counts as met; of an equation above 0, since parameters are rounded
-    /// Of all of the design's parameters, in their order, SI. A pure function, exact up to rounding; called from several threads at once.
-    /// Where it is not defined: a value or a gradient that is not finite; such a design is not evaluated.
+    /// The value at all of the design's parameters, in their order, SI. A pure function, exact up to rounding; called from several threads
+    /// at once. Where it is not defined: a value or a gradient that is not finite; such a design is not evaluated.
     std::function<RelationValue(const VectorX&)> at = {};
     std::string formula = {};  ///< what `at` was read from (core/expression/parse_formula.hpp); empty: made by a program
 };

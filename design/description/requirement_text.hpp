@@ -11,7 +11,7 @@ namespace fettle::design::description {
 
 using core::base::Towards;
 
-/// What numbers of the requirement are told in: "mm"; empty: plain numbers.
+/// The unit in which numbers of the requirement are shown: "mm"; empty: plain numbers.
 std::string unit_name(const Constraint& constraint);
 
 /// 3e-4 in 1e-3, "mm" -> "0.3 mm".
@@ -24,7 +24,7 @@ std::string required_text(const Bounds& bounds, const std::string& unit_name);
 std::string proven_bound_text(double si, Towards towards, double unit, const std::string& unit_name);
 
 /// What is proven of it: "0.302 to 0.304 mm", the lower bound rounded down and the upper one up; "0.302 mm", the one that is nearer to its
-/// limit, where the two do not differ in the digits that are told.
+/// limit, where the two do not differ in the digits that are shown.
 std::string proven_text(const Measurement& measured, const Bounds& bounds, const std::string& unit_name);
 
 }  // namespace fettle::design::description

@@ -10,11 +10,12 @@ namespace fettle::design::exports {
 
 namespace {
 
-constexpr int hatch_pitch = 12, hatch_width = 3;  // [pixels]
+constexpr double hatch_share = 0.24;     // of the cut that its lines cover
+constexpr double depth_rounding = 1e-6;  // [pixels]
 
 }  // namespace
 
-DepthBuffer::DepthBuffer(int width, int height, const core::mesh_files::Colour& background, std::optional<Cut> cut) : cut_(cut) {
+DepthBuffer::DepthBuffer(int width, int height, const Colour& background, std::optional<Cut> cut) : cut_(cut) {
     const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     image_.width = width;
     image_.height = height;
@@ -22,14 +23,18 @@ DepthBuffer::DepthBuffer(int width, int height, const core::mesh_files::Colour& 
     depth_.assign(count, -std::numeric_limits<double>::infinity());
     if (!cut_) return;
     turns_.assign(count, 0);
-    in_solid_.assign(count, 0);
+    solid_.assign(count, 0);
 }
 
 bool DepthBuffer::is_in_cut(int x, int y) const {
     return cut_ && (Vector2(x + 0.5, y + 0.5) - cut_->centre).squaredNorm() <= cut_->radius * cut_->radius;
 }
 
-void DepthBuffer::add_triangle(const std::array<Vector3, 3>& corners, const core::mesh_files::Colour& colour) {
+bool DepthBuffer::is_in_material(int x, int y) const {
+    return cut_ && x >= 0 && y >= 0 && x < image_.width && y < image_.height && solid_[index(x, y)] != 0;
+}
+
+void DepthBuffer::add_triangle(const std::array<Vector3, 3>& corners, const std::array<double, 3>& light, const Colour& colour) {
     const Vector3 &a = corners[0], &b = corners[1], &c = corners[2];
     const double area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
     if (!(std::abs(area) > 1e-12)) return;
@@ -43,42 +48,56 @@ void DepthBuffer::add_triangle(const std::array<Vector3, 3>& corners, const core
             const double wc = ((b.x() - a.x()) * (py - a.y()) - (b.y() - a.y()) * (px - a.x())) / area;
             if (!(wb >= 0 && wc >= 0 && wb + wc <= 1)) continue;
             const double z = a.z() + wb * (b.z() - a.z()) + wc * (c.z() - a.z());
-            const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
+            const std::size_t at = index(x, y);
             if (is_in_cut(x, y)) {
                 if (z > cut_->depth) continue;
                 turns_[at] = static_cast<short>(turns_[at] + (area > 0 ? 1 : -1));  // y points down: seen from outside, corners turn left
             }
-            if (!(z > depth_[at])) continue;
+            if (!(z > depth_[at] + depth_rounding)) continue;
             depth_[at] = z;
-            image_.pixels[at] = colour;
+            image_.pixels[at] = lit(colour, light[0] + wb * (light[1] - light[0]) + wc * (light[2] - light[0]));
         }
     }
 }
 
-void DepthBuffer::close_solid(const core::mesh_files::Colour& colour, const core::mesh_files::Colour& shared) {
+void DepthBuffer::close_solid(const Colour& colour, const Colour& shared, const Vector2& hatch) {
+    ++solids_;
+    const std::size_t width = static_cast<std::size_t>(image_.width);
     for (std::size_t at = 0; at < turns_.size(); ++at) {
         if (std::exchange(turns_[at], short{0}) <= 0) continue;
-        const std::size_t width = static_cast<std::size_t>(image_.width);
-        const bool is_line = (at % width + at / width) % hatch_pitch < hatch_width;
-        const core::mesh_files::Colour& fill = in_solid_[at] != 0 ? shared : colour;
-        for (std::size_t k = 0; k < 3; ++k) image_.pixels[at][k] = is_line ? static_cast<unsigned char>(fill[k] - fill[k] / 3) : fill[k];
+        const double across = hatch.dot(Vector2(static_cast<double>(at % width), static_cast<double>(at / width)));
+        const bool is_line = across - std::floor(across) < hatch_share;
+        image_.pixels[at] = lit(solid_[at] != 0 ? shared : colour, is_line ? hatch_light : 1);
         depth_[at] = cut_->depth;
-        in_solid_[at] = 1;
+        solid_[at] = solids_;
+    }
+}
+
+void DepthBuffer::outline_cut() {
+    if (!cut_) return;
+    for (int y = 0; y < image_.height; ++y) {
+        for (int x = 0; x < image_.width; ++x) {
+            if (!is_in_cut(x, y)) continue;
+            for (const auto& [u, v] : {std::array{x + 1, y}, std::array{x, y + 1}}) {
+                if (u >= image_.width || v >= image_.height || !is_in_cut(u, v) || solid_[index(u, v)] == solid_[index(x, y)]) continue;
+                image_.at(x, y) = image_.at(u, v) = ink;
+            }
+        }
     }
 }
 
 void DepthBuffer::close_open() { std::fill(turns_.begin(), turns_.end(), short{0}); }
 
-// The line may lie on the border of what covers it: the deepest of the pixels round it counts.
+// The line may lie on the border of what covers it: the deepest of the pixels round it counts. In a cut nothing is before the material.
 bool DepthBuffer::is_visible(const Vector3& point, double tolerance) const {
     const int x = static_cast<int>(std::floor(point.x())), y = static_cast<int>(std::floor(point.y()));
     if (is_in_cut(x, y) && point.z() > cut_->depth + tolerance) return false;
+    if (is_in_material(x, y)) return false;
     double deepest = std::numeric_limits<double>::infinity();
     for (int v = y - 1; v <= y + 1; ++v) {
         for (int u = x - 1; u <= x + 1; ++u) {
             if (u < 0 || v < 0 || u >= image_.width || v >= image_.height) return true;
-            deepest = std::min(deepest,
-                               depth_[static_cast<std::size_t>(v) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(u)]);
+            deepest = std::min(deepest, depth_[index(u, v)]);
         }
     }
     return point.z() >= deepest - tolerance;

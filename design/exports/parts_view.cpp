@@ -15,17 +15,24 @@ namespace {
 using core::geometry::Mesh;
 
 constexpr int fine = 2;                // pixels of the depth buffer per pixel of the picture, each way
+constexpr double hatch_pitch = 7;      // of material that is cut [pixels]
 constexpr double depth_tolerance = 3;  // of an edge against the faces that it belongs to [fine pixels]
 constexpr double margin = 0.08;        // of the picture on each side
 
-// A light at the viewer's shoulder; the inner side of what is not closed is lit as well.
-Colour shaded(const Colour& colour, const Vector3& normal, const ProjectionView& view) {
-    const Vector3 light = (view.towards + 0.35 * view.up - 0.25 * view.right).normalized();
-    const double brightness = 0.45 + 0.55 * std::abs(normal.dot(light));
-    Colour out{};
-    for (std::size_t k = 0; k < 3; ++k)
-        out[k] = static_cast<unsigned char>(std::lround(std::min(255.0, 40 + 0.84 * colour[k]) * brightness));
-    return out;
+// From the viewer's upper left, and less from the right, as the report's page has it (design/report/web/src/materials.js); the inner side
+// of what is not closed is lit as well.
+double light_of(const Vector3& face, const Vector3& corner, const ProjectionView& view) {
+    const double side = face.dot(view.towards) < 0 ? -1 : 1;
+    const Vector3 n = side * Vector3(corner.dot(view.right), corner.dot(view.up), corner.dot(view.towards));
+    const double key = std::max(0.0, n.dot(Vector3(-0.45, 0.65, 0.75).normalized()));
+    const double fill = std::max(0.0, n.dot(Vector3(0.7, -0.2, 0.45).normalized()));
+    return 0.66 + 0.09 * n.y() + 0.33 * key + 0.10 * fill;
+}
+
+// Across the lines of number `part`: parts side by side have them at different angles.
+Vector2 hatch_of(std::size_t part) {
+    const double angle = (0.25 + 0.2 * static_cast<double>(part % 4)) * M_PI;
+    return Vector2(std::cos(angle), std::sin(angle)) / (fine * hatch_pitch);
 }
 
 std::vector<Vector3> normals_of(const Mesh& mesh, const Matrix3X& x) {
@@ -33,6 +40,37 @@ std::vector<Vector3> normals_of(const Mesh& mesh, const Matrix3X& x) {
     for (const auto& t : mesh.triangles)
         normals.push_back(Vector3(x.col(t[1]) - x.col(t[0])).cross(Vector3(x.col(t[2]) - x.col(t[0]))).stableNormalized());
     return normals;
+}
+
+// Of the faces that meet in a corner below the crease, weighted by their angles there. A corner of very many, a fan's middle, is flat.
+std::vector<std::array<Vector3, 3>> corner_normals_of(const Mesh& mesh, const Matrix3X& x, const std::vector<Vector3>& normals,
+                                                      double crease) {
+    constexpr std::size_t most = 64;
+    struct Corner {
+        std::size_t triangle;
+        double angle;
+    };
+    std::vector<std::vector<Corner>> corners(static_cast<std::size_t>(x.cols()));
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const auto& t = mesh.triangles[i];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vector3 u = x.col(t[(k + 1) % 3]) - x.col(t[k]), v = x.col(t[(k + 2) % 3]) - x.col(t[k]);
+            corners[static_cast<std::size_t>(t[k])].push_back({i, std::atan2(u.cross(v).norm(), u.dot(v))});
+        }
+    }
+    std::vector<std::array<Vector3, 3>> out;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        out.push_back({normals[i], normals[i], normals[i]});
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::vector<Corner>& there = corners[static_cast<std::size_t>(mesh.triangles[i][k])];
+            if (there.size() > most) continue;
+            Vector3 sum = Vector3::Zero();
+            for (const Corner& other : there)
+                if (normals[other.triangle].dot(normals[i]) > std::cos(crease)) sum += other.angle * normals[other.triangle];
+            if (sum.norm() > 0) out.back()[k] = sum.normalized();
+        }
+    }
+    return out;
 }
 
 std::map<core::geometry::Edge, std::vector<int>> triangles_by_edge(const Mesh& mesh) {
@@ -80,8 +118,9 @@ PartsView::PartsView(const Assembly& assembly, const std::vector<core::kinematic
     FETTLE_ASSERT(poses.size() == assembly.parts.size(), "one pose for each part");
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const Mesh& mesh = assembly.parts[i].mesh;
-        Part part{&assembly.parts[i], (poses[i].rotation * mesh.vertices).colwise() + poses[i].position, {}, triangles_by_edge(mesh)};
+        Part part{&assembly.parts[i], (poses[i].rotation * mesh.vertices).colwise() + poses[i].position, {}, {}, triangles_by_edge(mesh)};
         part.normals = normals_of(mesh, part.vertices);
+        part.corner_normals = corner_normals_of(mesh, part.vertices, part.normals, crease);
         part.is_closed =
             std::all_of(part.triangles.begin(), part.triangles.end(), [](const auto& at) { return at.second.size() % 2 == 0; });
         parts_.push_back(std::move(part));
@@ -119,18 +158,21 @@ double PartsView::diagonal() const {
 
 DepthBuffer PartsView::drawn(const Projection& fine_projection, int width, int height, const std::optional<Cut>& cut) const {
     DepthBuffer buffer(fine * width, fine * height, white, cut);
-    for (const Part& part : parts_) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const Part& part = parts_[i];
         const Mesh& mesh = part.part->mesh;
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
             const auto corner = [&](std::size_t k) { return fine_projection(part.vertices.col(mesh.triangles[t][k])); };
-            buffer.add_triangle({corner(0), corner(1), corner(2)}, shaded(part.part->colour, part.normals[t], fine_projection.view));
+            const auto light = [&](std::size_t k) { return light_of(part.normals[t], part.corner_normals[t][k], fine_projection.view); };
+            buffer.add_triangle({corner(0), corner(1), corner(2)}, {light(0), light(1), light(2)}, part.part->colour);
         }
         if (part.is_closed) {
-            buffer.close_solid(part.part->colour, alarm);
+            buffer.close_solid(part.part->colour, alarm, hatch_of(i));
         } else {
             buffer.close_open();
         }
     }
+    buffer.outline_cut();
     return buffer;
 }
 
@@ -162,10 +204,7 @@ ViewedParts PartsView::seen(const Projection& projection, int width, int height,
     const Projection fine_projection = finer(projection);
     const DepthBuffer buffer = drawn(fine_projection, width, height, finer(cut));
     ViewedParts out{averaged(buffer.image()), {}};
-    for (const Part& part : parts_) {
-        const auto lines = visible_edges(part, buffer, fine_projection);
-        out.edges.insert(out.edges.end(), lines.begin(), lines.end());
-    }
+    for (const Part& part : parts_) out.edges.push_back({lit(part.part->colour, edge_light), visible_edges(part, buffer, fine_projection)});
     return out;
 }
 

@@ -2,6 +2,7 @@
 /// Parts where they are, as shaded pixels with the edges that can be seen, from any side, whole or cut.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <vector>
@@ -29,20 +30,26 @@ struct Projection {
     }
 };
 
+/// Of one part, its edges' visible stretches.
+struct PartEdges {
+    Colour colour{};
+    std::vector<PictureLine> lines;
+};
+
 struct ViewedParts {
-    Image surfaces;                  ///< shaded, on white, no edges
-    std::vector<PictureLine> edges;  ///< their visible stretches
+    Image surfaces;                ///< shaded, on white, no edges
+    std::vector<PartEdges> edges;  ///< of each part
 };
 
 class PartsView {
 public:
-    /// @param crease  faces that meet at a larger angle have an edge between them [rad].
+    /// @param crease  faces that meet at a larger angle have an edge between them; across others light changes smoothly [rad].
     /// Contract: one pose per part, which outlive this.
     PartsView(const Assembly& assembly, const std::vector<core::kinematics::Pose>& poses, double crease);
 
     /// As large as the picture allows.
     Projection fitted(const ProjectionView& view, int width, int height) const;
-    /// Of the box of all parts [m].
+    /// Diagonal of the box of all parts [m].
     double diagonal() const;
     /// Does a part hide this point [m]? Of all edges the nearest to the viewer hides none of itself.
     bool hides(const Vector3& point, const Projection& projection, int width, int height) const;
@@ -59,6 +66,7 @@ private:
         const AssemblyPart* part = nullptr;
         Matrix3X vertices;
         std::vector<Vector3> normals;                                // of triangles
+        std::vector<std::array<Vector3, 3>> corner_normals;          // of their corners, across faces that meet below the crease
         std::map<core::geometry::Edge, std::vector<int>> triangles;  // at each edge
         bool is_closed = false;
     };

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/design/exports/small_letters.hpp"
 
 namespace fettle::design::exports {
 
@@ -35,82 +34,6 @@ void choose_scale(double pixels_per_metre, int width, Picture& out) {
     }
     out.scale_pixels = millimetres / 1000 * pixels_per_metre;
     out.scale_text = text;
-}
-
-// A line one pixel wide, with its share of the pixels on both sides.
-void draw_line(Image& image, const PictureLine& line, const Colour& colour, double width) {
-    const Vector2 along = line.to - line.from;
-    const double length = along.norm(), reach = width / 2 + 0.5;
-    const auto clamped = [](double x, int count) { return static_cast<int>(std::clamp(x, 0.0, count - 1.0)); };
-    const bool steep = std::abs(along.y()) > std::abs(along.x());
-    const int axis = steep ? 1 : 0, across = 1 - axis;
-    const int count[] = {image.width, image.height};
-    const double low = std::min(line.from[axis], line.to[axis]), high = std::max(line.from[axis], line.to[axis]);
-    for (int u = clamped(low - reach, count[axis]); u <= clamped(high + reach, count[axis]); ++u) {
-        const double t = length > 0 ? std::clamp((u + 0.5 - line.from[axis]) / (along[axis] == 0 ? 1 : along[axis]), 0.0, 1.0) : 0;
-        const double middle = line.from[across] + t * along[across];
-        for (int v = clamped(middle - 2 * reach, count[across]); v <= clamped(middle + 2 * reach, count[across]); ++v) {
-            const Vector2 p = steep ? Vector2(v + 0.5, u + 0.5) : Vector2(u + 0.5, v + 0.5);
-            const double s = length > 0 ? std::clamp((p - line.from).dot(along) / (length * length), 0.0, 1.0) : 0;
-            const double cover = std::clamp(reach - (p - line.from - s * along).norm(), 0.0, 1.0);
-            Colour& pixel = steep ? image.at(v, u) : image.at(u, v);
-            for (std::size_t k = 0; k < 3; ++k)
-                pixel[k] = static_cast<unsigned char>(std::lround(pixel[k] + cover * (colour[k] - pixel[k])));
-        }
-    }
-}
-
-void draw_dot(Image& image, const Vector2& centre, const Colour& colour) { draw_line(image, {centre, centre}, colour, 7); }
-
-struct Rectangle {
-    int x, y, width, height;
-};
-void fill(Image& image, const Rectangle& r, const Colour& colour) {
-    for (int v = std::max(0, r.y); v < std::min(r.y + r.height, image.height); ++v)
-        for (int u = std::max(0, r.x); u < std::min(r.x + r.width, image.width); ++u) image.at(u, v) = colour;
-}
-
-// A circle as a drawing has it round what is shown again beside it.
-void draw_circle(Image& image, const Vector2& centre, double radius, const Colour& colour) {
-    const auto at = [&](int k) { return Vector2(centre + radius * Vector2(std::cos(k * M_PI / 36), std::sin(k * M_PI / 36))); };
-    for (int k = 0; k < 72; ++k) draw_line(image, {at(k), at(k + 1)}, colour, 1.5);
-}
-
-void ink_marker(const Picture& picture, Image& image) {
-    const Colour& colour = picture.marker_colour;
-    if (picture.hole > 0) draw_circle(image, middle_of(*picture.marker), picture.hole, colour);
-    draw_line(image, *picture.marker, colour, 2);
-    draw_dot(image, picture.marker->from, colour);
-    draw_dot(image, picture.marker->to, colour);
-    if (picture.marker_text.empty()) return;
-    const Vector2 at = text_place(picture);
-    const int width = text_width(picture.marker_text, 2);
-    const int x = std::clamp(static_cast<int>(at.x()), 4, std::max(4, image.width - width - 4));
-    const int y = std::clamp(static_cast<int>(at.y()) - 14, 4, std::max(4, image.height - 24));
-    fill(image, {x - 3, y - 3, width + 4, 21}, white);
-    write_text(image, x, y, picture.marker_text, colour, 2);
-}
-
-void ink_inset(const Picture& picture, Image& image) {
-    const Image inset = inked(picture.inset.front());
-    const int x = static_cast<int>(picture.inset_place.x()), y = static_cast<int>(picture.inset_place.y());
-    fill(image, {x - 2, y - 2, inset.width + 4, inset.height + 4}, picture.marker_colour);
-    for (int v = 0; v < inset.height; ++v)
-        for (int u = 0; u < inset.width; ++u) image.at(x + u, y + v) = inset.at(u, v);
-}
-
-void ink_texts(const Picture& picture, Image& image) {
-    int y = 12;
-    if (!picture.title.empty()) write_text(image, 12, std::exchange(y, y + 26), picture.title, ink, 2);
-    for (const LegendEntry& entry : picture.legend) {
-        fill(image, {12, y, 14, 12}, entry.colour);
-        write_text(image, 34, y, entry.name, ink, 2);
-        y += 20;
-    }
-    const double base = image.height - 14;
-    draw_line(image, {{12, base}, {12 + picture.scale_pixels, base}}, ink, 2);
-    for (const double x : {12.0, 12 + picture.scale_pixels}) draw_line(image, {{x, base - 5}, {x, base + 5}}, ink, 2);
-    write_text(image, static_cast<int>(20 + picture.scale_pixels), image.height - 21, picture.scale_text, ink, 2);
 }
 
 // A view with the marker in the picture's plane, else one as near to `view` as that allows.
@@ -158,7 +81,7 @@ Picture inset_of(const PartsView& parts, const PictureMarker& marker, const Proj
 // The corner where least is hidden; below the legend, above the scale, and not over the marker.
 Vector2 free_corner(const Picture& picture, int side) {
     const double right = picture.surfaces.width - side - 14, bottom = picture.surfaces.height - side - 14;
-    const double under_legend = 40 + 20.0 * static_cast<double>(picture.legend.size());
+    const double under_legend = 44 + legend_pitch * static_cast<double>(picture.legend.size());
     const std::array<Vector2, 4> corners{Vector2(right, 14), Vector2(right, bottom), Vector2(14, bottom - 40), Vector2(14, under_legend)};
     const auto covered = [&](const Vector2& corner) {
         double sum = 0;
@@ -170,9 +93,9 @@ Vector2 free_corner(const Picture& picture, int side) {
             }
         const Vector2 off = middle_of(*picture.marker) - (corner + Vector2::Constant(0.5 * side));
         const bool hides_marker = off.cwiseAbs().maxCoeff() < 0.5 * side + picture.hole + 30;
-        const Vector2 text = text_place(picture) - corner;  // it ends at the picture's border at the latest
-        const double length = text_width(picture.marker_text, 2), begin = std::min(text.x(), picture.surfaces.width - length - corner.x());
-        const bool hides_text = begin < side + 8 && begin + length > -8 && text.y() > -12 && text.y() < side + 30;
+        const Vector2 text = text_place(picture) - corner;
+        const bool hides_text = text.x() < side + 8 && text.x() + text_width(picture.marker_text, marker_letters) > -8 && text.y() > -12 &&
+                                text.y() < side + 30;
         return sum + (hides_marker ? 1e9 : 0) + (hides_text ? 1e6 : 0);
     };
     Vector2 best = corners.front();
@@ -207,6 +130,18 @@ void add_marker(const PartsView& parts, const Projection& projection, const Pict
 
 }  // namespace
 
+double text_width(std::string_view words, const Letters& letters) {
+    const auto count = std::count_if(words.begin(), words.end(), [](char c) { return (c & 0xc0) != 0x80; });
+    return (letters.bold ? 0.7 : 0.62) * letters.size * static_cast<double>(count);
+}
+
+Vector2 text_place(const Picture& picture) {
+    const Vector2 beside = picture.marker->to + Vector2(12 + std::max(0.0, picture.hole - 8), -10 - 0.5 * picture.hole);
+    const double width = text_width(picture.marker_text, marker_letters), height = marker_letters.size;
+    return {std::clamp(beside.x(), 4.0, std::max(4.0, picture.surfaces.width - width - 4)),
+            std::clamp(beside.y(), height + 2, std::max(height + 2, picture.surfaces.height - 8.0))};
+}
+
 Picture draw_picture(const Assembly& assembly, const std::vector<Pose>& poses, const PictureOptions& options) {
     FETTLE_ASSERT(std::min(options.width, options.height) >= 16 && std::max(options.width, options.height) <= 16384, "a picture's size");
     const PartsView parts(assembly, poses, options.crease);
@@ -223,15 +158,6 @@ Picture draw_picture(const Assembly& assembly, const std::vector<Pose>& poses, c
     choose_scale(projection.scale, options.width, out);
     if (options.marker) add_marker(parts, projection, options, out);
     return out;
-}
-
-Image inked(const Picture& picture) {
-    Image image = picture.surfaces;
-    for (const PictureLine& line : picture.edges) draw_line(image, line, ink, 1);
-    if (!picture.inset.empty()) ink_inset(picture, image);
-    if (picture.marker) ink_marker(picture, image);
-    ink_texts(picture, image);
-    return image;
 }
 
 }  // namespace fettle::design::exports

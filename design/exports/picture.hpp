@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 /// Pictures of an assembly without a browser: orthographic, hidden surfaces removed by a depth buffer, edges where faces meet at an angle
 /// (parts_view.hpp). What is marked is seen whatever stands before it: it is cut free, and shown near in an inset.
-/// As PNG: png_writer.hpp (`inked`); as SVG with edges and text as vectors: svg_writer.hpp.
+/// As PNG: png_writer.hpp; as SVG with edges and text as vectors: svg_writer.hpp.
 #pragma once
 
-#include <algorithm>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fettle/design/exports/assembly.hpp"
+#include "fettle/design/exports/image.hpp"
 #include "fettle/design/exports/parts_view.hpp"
-#include "fettle/design/exports/png_writer.hpp"
 #include "fettle/design/exports/projection_view.hpp"
 
 namespace fettle::design::exports {
@@ -32,14 +32,25 @@ struct PictureOptions {
     std::string title;  ///< one line at the top
 };
 
+struct Letters {
+    double size = 15;  ///< of the font [pixels]
+    bool bold = false;
+    double rim = 3;  ///< a line round them in the paper's colour, so that they can be read on anything
+};
+inline constexpr Letters plain_letters{}, title_letters{17, true}, marker_letters{15, true, 4};
+inline constexpr double legend_pitch = 22;  ///< pixels from one line to the next
+
+/// About how wide a text becomes, whatever the font; mostly less [pixels].
+double text_width(std::string_view words, const Letters& letters);
+
 struct LegendEntry {
     std::string name;
     Colour colour{};
 };
 
 struct Picture {
-    Image surfaces;                  ///< shaded, on white, no edges, no text
-    std::vector<PictureLine> edges;  ///< their visible stretches
+    Image surfaces;                ///< shaded, on white, no edges, no text
+    std::vector<PartEdges> edges;  ///< of each part, their visible stretches
     std::optional<PictureLine> marker;
     Colour marker_colour{};
     std::string marker_text, title;
@@ -51,10 +62,8 @@ struct Picture {
     Vector2 inset_place = Vector2::Zero();  ///< of its upper left corner
 };
 
-/// Where a marker's text begins: beside the hole.
-inline Vector2 text_place(const Picture& picture) {
-    return picture.marker->to + Vector2(12 + std::max(0.0, picture.hole - 8), -10 - 0.5 * picture.hole);
-}
+/// Where a marker's text begins: beside the hole, all of it within the picture if it can be.
+Vector2 text_place(const Picture& picture);
 
 /// The middle of a marker in the picture.
 inline Vector2 middle_of(const PictureLine& marker) { return (marker.from + marker.to) / 2; }
@@ -63,8 +72,5 @@ inline Vector2 middle_of(const PictureLine& marker) { return (marker.from + mark
 /// pixels have no inset.
 /// Contract: one pose per part; width and height from 16 to 16384.
 Picture draw_picture(const Assembly& assembly, const std::vector<core::kinematics::Pose>& poses, const PictureOptions& options);
-
-/// Pixels of all of it.
-Image inked(const Picture& picture);
 
 }  // namespace fettle::design::exports

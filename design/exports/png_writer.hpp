@@ -1,31 +1,24 @@
 // SPDX-License-Identifier: MIT
-/// Pixels as PNG, and bytes as base64 for data URLs.
+/// Pictures as PNG, drawn by cairo: lines, circles and letters are anti-aliased. Letters are those of DejaVu Sans (Debian's
+/// fonts-dejavu-core); where that is not, cairo's own, which are ASCII. No other font of a machine, nor its settings of fonts, changes a
+/// picture, and nothing but the letters differs between the two.
 #pragma once
 
-#include <cstddef>
 #include <string>
-#include <string_view>
-#include <vector>
 
-#include "fettle/core/mesh_files/mesh_writer.hpp"
+#include "fettle/design/exports/image.hpp"
+#include "fettle/design/exports/picture.hpp"
 
 namespace fettle::design::exports {
 
-struct Image {
-    int width = 0, height = 0;
-    std::vector<core::mesh_files::Colour> pixels;  ///< row by row from the top
-
-    core::mesh_files::Colour& at(int x, int y) {
-        return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
-    }
-    const core::mesh_files::Colour& at(int x, int y) const {
-        return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
-    }
-};
-
-/// 8 bits a channel, no alpha.
+/// 8 bits a channel, no alpha. Throws core::base::MissingLibrary where cairo is not there.
 std::string png_bytes(const Image& image);
 
-std::string base64(std::string_view bytes);
+/// Where Debian has DejaVu Sans.
+inline constexpr const char* font_folder = "/usr/share/fonts/truetype/dejavu";
+
+/// All of a picture, likewise.
+/// @param fonts  has DejaVuSans.ttf and DejaVuSans-Bold.ttf, or not.
+std::string png_bytes(const Picture& picture, const std::string& fonts = font_folder);
 
 }  // namespace fettle::design::exports

@@ -55,7 +55,7 @@ Result<ProjectionView> projection_view(const std::string& name, const Vector3& u
     }
     if (!view) {
         return Error{ErrorCode::out_of_range, where,
-                     "\"" + name + "\" is no view; azimuth,elevation in degrees, elevation from -90 to 90, or a name: " +
+                     "\"" + name + "\" is not a view; azimuth,elevation in degrees, elevation from -90 to 90, or a name: " +
                          core::files::did_you_mean(name, known)};
     }
     // With Z up the viewer stands at (sin a cos e, -cos a cos e, sin e).

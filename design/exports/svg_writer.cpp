@@ -4,85 +4,85 @@
 #include <cstdio>
 
 #include "fettle/core/base/text.hpp"
+#include "fettle/design/exports/base64.hpp"
+#include "fettle/design/exports/picture_marks.hpp"
+#include "fettle/design/exports/png_writer.hpp"
 
 namespace fettle::design::exports {
 
 namespace {
 
-/// Hundredths of a pixel.
+/// Hundredths of a pixel, without zeros at the end.
 std::string number(double x) {
     char text[40];
     std::snprintf(text, sizeof text, "%.2f", x);
-    return text;
+    std::string out = text;
+    out.erase(out.find_last_not_of('0') + 1);
+    if (out.back() == '.') out.pop_back();
+    return out == "-0" ? "0" : out;
 }
 
-std::string path_of(const PictureLine& line) {
-    return "M" + number(line.from.x()) + " " + number(line.from.y()) + "L" + number(line.to.x()) + " " + number(line.to.y());
-}
+std::string attribute(const char* name, double x) { return std::string(" ") + name + "=\"" + number(x) + "\""; }
 
-std::string text_at(double x, double y, const std::string& text, const char* more = "") {
-    return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\"" + more + ">" + core::base::xml_text(text) + "</text>\n";
-}
+std::string size_of(double width, double height) { return attribute("width", width) + attribute("height", height); }
 
-std::string circle_at(const Vector2& centre, double radius, const char* more = "") {
-    return "<circle cx=\"" + number(centre.x()) + "\" cy=\"" + number(centre.y()) + "\" r=\"" + number(radius) + "\"" + more + "/>\n";
-}
-
-std::string marker_text(const Picture& picture) {
-    if (!picture.marker) return "";
-    const Vector2 &a = picture.marker->from, &b = picture.marker->to;
-    const std::string colour = css_colour(picture.marker_colour);
-    std::string out = "<g class=\"witness\" stroke=\"" + colour + "\" stroke-width=\"2\" fill=\"" + colour + "\">\n<path d=\"" +
-                      path_of(*picture.marker) + "\"/>\n";
-    for (const Vector2& p : {a, b}) out += circle_at(p, 3);
-    if (picture.hole > 0) out += circle_at(middle_of(*picture.marker), picture.hole, " fill=\"none\" stroke-width=\"1.5\"");
-    const Vector2 at = text_place(picture);
-    if (!picture.marker_text.empty())
-        out += text_at(at.x(), at.y(), picture.marker_text, " stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"");
-    return out + "</g>\n";
-}
-
-std::string legend_text(const Picture& picture) {
-    std::string out = "<g>\n";
-    double y = 26;
-    if (!picture.title.empty()) {
-        out += text_at(12, y, picture.title, " font-weight=\"bold\"");
-        y += 26;
+/// Of picture_marks.hpp.
+class SvgCanvas {
+public:
+    void pixels(const Image& image) {
+        out += "<image" + size_of(image.width, image.height) + " href=\"data:image/png;base64," + base64(png_bytes(image)) + "\"/>\n";
     }
-    for (const LegendEntry& entry : picture.legend) {
-        out += "<rect x=\"12\" y=\"" + number(y - 12) + "\" width=\"14\" height=\"14\" fill=\"" + css_colour(entry.colour) + "\"/>\n" +
-               text_at(34, y, entry.name);
-        y += 20;
+
+    void lines(const std::vector<PictureLine>& lines, const Colour& colour, double width) {
+        if (lines.empty()) return;
+        std::string path;
+        for (const PictureLine& line : lines)
+            path += "M" + number(line.from.x()) + " " + number(line.from.y()) + "L" + number(line.to.x()) + " " + number(line.to.y());
+        out += "<path d=\"" + path + "\"" + ink(colour, width) + " stroke-linecap=\"round\"/>\n";
     }
-    const double base = picture.surfaces.height - 14, end = 12 + picture.scale_pixels;
-    return out + "<path d=\"M12 " + number(base - 5) + "V" + number(base + 5) + "M12 " + number(base) + "H" + number(end) + "M" +
-           number(end) + " " + number(base - 5) + "V" + number(base + 5) + "\" stroke=\"" + css_colour(ink) +
-           "\" stroke-width=\"2\" fill=\"none\"/>\n" + text_at(end + 8, base + 5, picture.scale_text) + "</g>\n";
-}
 
-std::string size_of(const Picture& picture) {
-    return "width=\"" + std::to_string(picture.surfaces.width) + "\" height=\"" + std::to_string(picture.surfaces.height) + "\"";
-}
+    void circle(const Vector2& centre, double radius, const Colour& colour, double width) {
+        out += "<circle" + attribute("cx", centre.x()) + attribute("cy", centre.y()) + attribute("r", radius) + ink(colour, width) + "/>\n";
+    }
 
-std::string content_of(const Picture& picture) {
-    std::string edges, out;
-    for (const PictureLine& line : picture.edges) edges += path_of(line);
-    out = "<image " + size_of(picture) + " href=\"data:image/png;base64," + base64(png_bytes(picture.surfaces)) +
-          "\"/>\n<path fill=\"none\" stroke=\"" + css_colour(ink) + "\" stroke-width=\"1\" stroke-linecap=\"round\" d=\"" + edges +
-          "\"/>\n";
-    for (const Picture& inset : picture.inset)
-        out += "<svg x=\"" + number(picture.inset_place.x()) + "\" y=\"" + number(picture.inset_place.y()) + "\" " + size_of(inset) +
-               ">\n" + content_of(inset) + "<rect " + size_of(inset) + " fill=\"none\" stroke=\"" + css_colour(picture.marker_colour) +
-               "\" stroke-width=\"4\"/>\n</svg>\n";
-    return out + marker_text(picture) + legend_text(picture);
-}
+    void box(const Vector2& corner, const Vector2& size, const Colour& colour, double width) {
+        out +=
+            "<rect" + attribute("x", corner.x()) + attribute("y", corner.y()) + size_of(size.x(), size.y()) + ink(colour, width) + "/>\n";
+    }
+
+    void text(const Vector2& place, const std::string& words, const Colour& colour, const Letters& letters) {
+        out += "<text" + attribute("x", place.x()) + attribute("y", place.y()) + attribute("font-size", letters.size) +
+               (letters.bold ? " font-weight=\"bold\"" : "") + ink(colour, 0) + " stroke=\"" + css_colour(white) + "\"" +
+               attribute("stroke-width", letters.rim) + " stroke-linejoin=\"round\" paint-order=\"stroke\">" + core::base::xml_text(words) +
+               "</text>\n";
+    }
+
+    template <class Draw>
+    void within(const Vector2& corner, const Vector2& size, const Draw& draw) {
+        out += "<svg" + attribute("x", corner.x()) + attribute("y", corner.y()) + size_of(size.x(), size.y()) + ">\n";
+        draw();
+        out += "</svg>\n";
+    }
+
+    std::string out;
+
+private:
+    static std::string ink(const Colour& colour, double width) {
+        if (width == 0) return " fill=\"" + css_colour(colour) + "\"";
+        return " fill=\"none\" stroke=\"" + css_colour(colour) + "\"" + attribute("stroke-width", width);
+    }
+};
 
 }  // namespace
 
 std::string svg_text(const Picture& picture) {
-    return "<svg xmlns=\"http://www.w3.org/2000/svg\" " + size_of(picture) + " viewBox=\"0 0 " + std::to_string(picture.surfaces.width) +
-           " " + std::to_string(picture.surfaces.height) + "\" font-family=\"sans-serif\" font-size=\"15\" fill=\"" + css_colour(ink) +
-           "\">\n" + content_of(picture) + "</svg>\n";
+    const Image& image = picture.surfaces;
+    SvgCanvas canvas;
+    canvas.out = "<svg xmlns=\"http://www.w3.org/2000/svg\"" + size_of(image.width, image.height) + " viewBox=\"0 0 " +
+                 std::to_string(image.width) + " " + std::to_string(image.height) +
+                 "\" font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n";
+    put_marks(picture, canvas);
+    return canvas.out + "</svg>\n";
 }
 
 }  // namespace fettle::design::exports

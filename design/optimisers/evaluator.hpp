@@ -22,8 +22,8 @@ struct EvaluatorOptions {
     std::function<bool()> should_stop;  ///< optional; asked before each evaluation
     /// Optional: after each evaluation, with its number (1, 2, ...) and whether it became the best.
     std::function<void(int, const VectorX&, const Evaluation&, bool)> on_evaluation;
-    /// Optional: of a smoother model of the same thing, near the start. Where this one's derivatives tell its own values worse, they stand
-    /// in (local_model.hpp).
+    /// Optional: of a smoother model of the same thing, near the start. Where this one's derivatives predict its own values worse, they
+    /// stand in (local_model.hpp).
     std::optional<Evaluation> reference = {};
 };
 
@@ -34,7 +34,7 @@ struct StopOptimisation : std::exception {
 
 enum class StopReason { none, budget, interrupted, exception };
 
-/// Whether an evaluation tells of the functions near it: values and derivatives.
+/// Whether an evaluation describes the functions near it: values and derivatives.
 inline bool tells(const Evaluation& e) { return e.usable && e.has_derivatives; }
 
 class Evaluator {

@@ -20,6 +20,7 @@ IpoptLibrary load_ipopt() {
     FETTLE_IPOPT(add_string_option, AddIpoptStrOption);
     FETTLE_IPOPT(add_number_option, AddIpoptNumOption);
     FETTLE_IPOPT(add_integer_option, AddIpoptIntOption);
+    FETTLE_IPOPT(set_intermediate_callback, SetIntermediateCallback);
     FETTLE_IPOPT(solve, IpoptSolve);
 #undef FETTLE_IPOPT
     return out;

@@ -13,6 +13,7 @@ struct IpoptLibrary {
     decltype(&AddIpoptStrOption) add_string_option;
     decltype(&AddIpoptNumOption) add_number_option;
     decltype(&AddIpoptIntOption) add_integer_option;
+    decltype(&SetIntermediateCallback) set_intermediate_callback;
     decltype(&IpoptSolve) solve;
 };
 

@@ -6,14 +6,14 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::design::optimisers {
 
 namespace {
 
 MatrixX positive_part(const MatrixX& symmetric) {
-    const SymmetricEigen<Eigen::Dynamic> eigen = symmetric_eigen<Eigen::Dynamic>(symmetric);
+    const core::linear::SymmetricEigen<Eigen::Dynamic> eigen = core::linear::symmetric_eigen<Eigen::Dynamic>(symmetric);
     const VectorX values = eigen.values.cwiseMax(0);
     return eigen.vectors * values.asDiagonal() * eigen.vectors.transpose();
 }

@@ -38,9 +38,9 @@ VectorX whole_multipliers(const QuadraticSolution& solution);
 QuadraticSolution best_step(const Evaluator& evaluator, const VectorX& point, const Evaluation& e, const MatrixX* rest, double radius,
                             double penalty);
 
-/// The evaluation at a scaled point with, row by row (residuals, constraints), those derivatives that tell the values at the other points
-/// near it better: its own, or those of the smoother model (EvaluatorOptions::reference). A rough function's own derivatives hold over
-/// microns. With no other point to compare, the smoother model's.
+/// The evaluation at a scaled point with, row by row (residuals, constraints), those derivatives that predict the values at the other
+/// points near it better: its own, or those of the smoother model (EvaluatorOptions::reference). A rough function's own derivatives hold
+/// over microns. With no other point to compare, the smoother model's.
 Evaluation with_telling_derivatives(const Evaluator& evaluator, const VectorX& point, const Evaluation& e);
 
 /// f + penalty * violation of the targets, scaled: what a step has to bring down.

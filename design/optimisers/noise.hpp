@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How rough a computed function is, told from a few of its values at equal spacing along a line, and the difference steps that follow.
-/// Pure numerics: what the values are of, and along which line, is the caller's (studies/roughness.hpp).
+/// How rough a computed function is, estimated from a few of its values at equal spacing along a line, and the difference steps that
+/// follow. Pure numerics: what the values are of, and along which line, is the caller's (gradient_audit/roughness.hpp).
 ///
 /// A function of a simulation is f(t) = smooth(t) + noise(t): rounding, solver tolerances, contacts that come and go. Differences of order
 /// k make smooth values smaller, by spacing^k, and noise of standard deviation eps larger, by sqrt((2k)!) / k!:
@@ -27,7 +27,7 @@ struct NoiseLevel {
     /// Standard deviation, in the unit of the values. detected: level_k of the least such k. spacing_too_large: the least level of at least
     /// three differences, which noise does not exceed by much. spacing_too_small: level_1, of the jumps that were met; 0 if all are equal.
     double noise = 0;
-    /// Of the parabola and the cubic nearest to the values (least squares), per unit of the line's parameter.
+    /// Derivatives of the parabola and the cubic nearest to the values (least squares), per unit of the line's parameter.
     double second_derivative = 0, third_derivative = 0;
     /// Standard deviation that the noise gives them: one that does not exceed its own says nothing.
     double second_derivative_error = 0, third_derivative_error = 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// The verdict on a design: is there anything left to gain, as far as can be told?
+/// The verdict on a design: is there anything left to gain, as far as can be seen?
 ///
 /// At the best point the local model (local_model.hpp: derivatives, Gauss-Newton, the curvature that the evaluations near it show) predicts
 /// how much the objective falls along the best step that keeps the constraints, within a tenth of each range. Where that is below the
 /// tolerance, the design is optimal. Where it is not, the step is tried: a gain that comes true is kept, and the run goes on from there; a
 /// gain that does not teaches the model, and the step is shortened. Where a clearance has several witnesses near its least one, the step
-/// keeps them all, and a term of the objective that is the greatest of several is taken as that: at a kink no single derivative tells.
+/// keeps them all, and a term of the objective that is the greatest of several is taken as that: at a kink no single derivative suffices.
 /// A step that promises a gain and leads to designs that cannot be evaluated, however short it is made, shows no optimum either: what
 /// stands in the way is no requirement that was asked for. Values that scatter by more than the tolerance (noise.hpp: the objective's own
 /// noise, and each constraint's times its multiplier) show no optimum, whatever the derivatives say.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "fettle/core/base/text.hpp"
+#include "fettle/design/optimisers/ipopt_optimiser.hpp"
 #include "fettle/design/optimisers/nlopt_optimiser.hpp"
 #include "fettle/design/optimisers/sequential_optimiser.hpp"
 
@@ -39,24 +40,26 @@ const std::vector<std::string>& optimiser_names() {
 
 const std::vector<OptimiserInfo>& optimiser_table() {
     static const std::vector<OptimiserInfo> table{
-        {"ipopt", "sequential quadratic steps in a trust region, each solved by Ipopt; the default"},
+        {"sqp", "sequential quadratic programming in a trust region, made for simulations: few evaluations; the default"},
+        {"gauss_newton", "as sqp, with the residuals' curvature alone; for sums of squares that can become nearly nothing"},
+        {"ipopt", "the interior-point method of Ipopt, which estimates curvature from gradients; uses gradients"},
         {"mma", "method of moving asymptotes (NLopt); uses gradients, inequality constraints"},
         {"ccsaq", "conservative convex separable approximations with a quadratic term (NLopt); uses gradients, inequality constraints"},
         {"slsqp", "sequential least-squares quadratic programming (NLopt); uses gradients"},
-        {"cobyla", "linear approximations of the values alone (NLopt); uses no gradient"},
-        {"gauss_newton", "as ipopt, with the residuals' curvature alone; for sums of squares that can become nearly nothing"}};
+        {"cobyla", "linear approximations of the values alone (NLopt); uses no gradient"}};
     return table;
 }
 
 Result<std::unique_ptr<Optimiser>> make_optimiser(const std::string& name, const std::string& where) {
-    if (name == "ipopt") return std::unique_ptr<Optimiser>(std::make_unique<SequentialOptimiser>());
+    if (name == "sqp") return std::unique_ptr<Optimiser>(std::make_unique<SequentialOptimiser>());
+    if (name == "gauss_newton") return std::unique_ptr<Optimiser>(std::make_unique<SequentialOptimiser>(Curvature::gauss_newton));
+    if (name == "ipopt") return std::unique_ptr<Optimiser>(std::make_unique<IpoptOptimiser>());
     if (name == "mma") return std::unique_ptr<Optimiser>(std::make_unique<NloptOptimiser>(NloptAlgorithm::mma));
     if (name == "ccsaq") return std::unique_ptr<Optimiser>(std::make_unique<NloptOptimiser>(NloptAlgorithm::ccsaq));
     if (name == "slsqp") return std::unique_ptr<Optimiser>(std::make_unique<NloptOptimiser>(NloptAlgorithm::slsqp));
     if (name == "cobyla") return std::unique_ptr<Optimiser>(std::make_unique<NloptOptimiser>(NloptAlgorithm::cobyla));
-    if (name == "gauss_newton") return std::unique_ptr<Optimiser>(std::make_unique<SequentialOptimiser>(Curvature::gauss_newton));
     return Error{ErrorCode::out_of_range, where,
-                 "unknown optimiser \"" + name + "\"; known are ipopt, mma, ccsaq, slsqp, cobyla, gauss_newton"};
+                 "unknown optimiser \"" + name + "\"; known are sqp, gauss_newton, ipopt, mma, ccsaq, slsqp, cobyla"};
 }
 
 namespace {

@@ -16,7 +16,7 @@ namespace fettle::design::optimisers {
 
 enum class OptimiserStatus {
     optimal,      ///< every requirement is met, and no gain above the tolerance is in sight (Optimality::is_optimal)
-    feasible,     ///< every requirement is met; more could be gained, or it cannot be told
+    feasible,     ///< every requirement is met; more could be gained, or it is not known
     infeasible,   ///< a requirement is violated
     interrupted,  ///< should_stop ended the run; the best design so far
     start_failed  ///< neither the start nor a point on the way to the middle of the bounds can be evaluated

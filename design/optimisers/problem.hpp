@@ -16,8 +16,8 @@
 
 namespace fettle::design::optimisers {
 
-/// Of functions that are the least or the greatest of several smooth ones: those near the one that is taken (its branches), linearised. To
-/// first order the function is their least (or greatest) at any point near.
+/// Branches of functions that are the least or the greatest of several smooth ones: those near the one that is taken (its branches),
+/// linearised. To first order the function is their least (or greatest) at any point near.
 struct Branches {
     std::vector<int> of;  ///< k: which function each belongs to; those of one stand together
     VectorX values;       ///< k
@@ -35,11 +35,11 @@ struct Evaluation {
     /// f's squared deviations r_i^2 are part of it (each with its weight's root in it): r and dr/dx. Empty where f has none.
     VectorX residuals;
     MatrixX residual_jacobian;
-    /// Of constraints that are the least of several (clearances, by their witnesses), c_i <= values(k) for k of i: the other branches,
-    /// c_i and its gradient being the first. Only of those that have a lower bound.
+    /// Branches of constraints that are the least of several (clearances, by their witnesses), c_i <= values(k) for k of i: the other
+    /// branches, c_i and its gradient being the first. Only of those that have a lower bound.
     Branches constraint_branches;
-    /// Of terms of f that are the greatest of several (a clearance to be made large), by their numbers: all branches, first the one whose
-    /// value and gradient are part of f and `gradient`.
+    /// Branches of the terms of f that are the greatest of several (a clearance to be made large), by their numbers: all branches, first
+    /// the one whose value and gradient are part of f and `gradient`.
     Branches objective_branches;
     /// false: values alone were asked for (Problem::values); gradient, jacobian, residuals and branches are empty.
     bool has_derivatives = true;

@@ -3,27 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <mutex>
+#include <limits>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/design/optimisers/ipopt_library.hpp"
+#include "fettle/design/optimisers/nonlinear_program.hpp"
 
 namespace fettle::design::optimisers {
 
 namespace {
 
-constexpr double no_bound = 1e20;  // beyond 1e19 Ipopt takes a bound as none
-
-double bounded(double value) { return std::clamp(value, -no_bound, no_bound); }
+constexpr double no_bound = std::numeric_limits<double>::infinity();
 
 // Unknowns: d, then one slack for each side of a row that is finite, and one for each kink, all >= 0:
 //   lower <= A d + below - above <= upper,   cut_lower <= C d + (below of its row, or its kink).
-// Ipopt's C interface asks for each of these by a function of its own (below).
-class ElasticProgram {
+class ElasticProgram : public NonlinearProgram {
 public:
     explicit ElasticProgram(const QuadraticProgram& program) : program_(program) {
         for (int i = 0; i < m(); ++i) {
@@ -33,30 +28,17 @@ public:
         for (int j = 0; j < cuts(); ++j) share_slack(j);
     }
 
-    int unknowns() const { return n() + static_cast<int>(slacks_.size()); }
-    int rows() const { return m() + cuts(); }
-    int jacobian_entries() const { return n() * rows() + static_cast<int>(places_.size()); }
-    int hessian_entries() const { return n() * (n() + 1) / 2; }
+    int jacobian_entries() const override { return n() * rows() + static_cast<int>(places_.size()); }
+    int hessian_entries() const override { return n() * (n() + 1) / 2; }
 
-    VectorX lower() const {
-        VectorX out = VectorX::Zero(unknowns());
-        out.head(n()) = program_.box_lower;
-        return out;
-    }
-    VectorX upper() const {
-        VectorX out = VectorX::Constant(unknowns(), no_bound);
-        out.head(n()) = program_.box_upper;
-        return out;
-    }
-    VectorX row_lower() const {
-        VectorX out(rows());
-        for (int i = 0; i < m(); ++i) out[i] = bounded(program_.lower[i]);
-        for (int j = 0; j < cuts(); ++j) out[m() + j] = bounded(program_.cuts.lower[j]);
-        return out;
-    }
-    VectorX row_upper() const {
-        VectorX out = VectorX::Constant(rows(), no_bound);
-        for (int i = 0; i < m(); ++i) out[i] = bounded(program_.upper[i]);
+    Bounds bounds() const override {
+        Bounds out{VectorX::Zero(unknowns()), VectorX::Constant(unknowns(), no_bound), VectorX(rows()),
+                   VectorX::Constant(rows(), no_bound)};
+        out.lower.head(n()) = program_.box_lower;
+        out.upper.head(n()) = program_.box_upper;
+        out.row_lower.head(m()) = program_.lower;
+        out.row_lower.tail(cuts()) = program_.cuts.lower;
+        out.row_upper.head(m()) = program_.upper;
         return out;
     }
     VectorX start() const {
@@ -65,27 +47,28 @@ public:
         return out;
     }
 
-    double value(const double* x) const {
+    bool value(const double* x, double& f) override {
         const auto d = step(x);
-        double f = program_.gradient.dot(d) + 0.5 * d.dot(program_.hessian * d);
+        f = program_.gradient.dot(d) + 0.5 * d.dot(program_.hessian * d);
         for (size_t k = 0; k < slacks_.size(); ++k) f += slacks_[k].price * x[static_cast<size_t>(n()) + k];
-        return f;
+        return true;
     }
 
-    void gradient(const double* x, double* out) const {
+    bool gradient(const double* x, double* out) override {
         for (int k = n(); k < unknowns(); ++k) out[k] = slacks_[static_cast<size_t>(k - n())].price;
         Eigen::Map<VectorX>(out, n()) = program_.gradient + program_.hessian * step(x);
+        return true;
     }
 
-    void row_values(const double* x, double* out) const {
+    bool row_values(const double* x, double* out) override {
         Eigen::Map<VectorX> values(out, rows());
         values.head(m()) = program_.rows * step(x);
         if (cuts() > 0) values.tail(cuts()) = program_.cuts.rows * step(x);
         for (const SlackPlace& place : places_) values[place.row] += place.sign * x[n() + place.slack];
+        return true;
     }
 
-    // The places if there are no values to fill, else the values.
-    void jacobian(int* row, int* column, double* values) const {
+    bool jacobian(const double*, int* row, int* column, double* values) override {
         const int dense = n() * rows();
         for (int k = 0; k < dense; ++k) {
             const int i = k / n(), j = k % n();
@@ -105,9 +88,10 @@ public:
                 values[dense + k] = place.sign;
             }
         }
+        return true;
     }
 
-    void hessian(double factor, int* row, int* column, double* values) const {
+    bool hessian(double factor, int* row, int* column, double* values) override {
         int k = 0;
         for (int i = 0; i < n(); ++i) {
             for (int j = 0; j <= i; ++j, ++k) {
@@ -119,6 +103,7 @@ public:
                 }
             }
         }
+        return true;
     }
 
     QuadraticSolution solution(const VectorX& x, const VectorX& lambda) const {
@@ -158,6 +143,8 @@ private:
         places_.push_back({m() + j, slack, 1});
     }
 
+    int unknowns() const { return n() + static_cast<int>(slacks_.size()); }
+    int rows() const { return m() + cuts(); }
     int n() const { return static_cast<int>(program_.gradient.size()); }
     int m() const { return static_cast<int>(program_.rows.rows()); }
     int cuts() const { return static_cast<int>(program_.cuts.of.size()); }
@@ -173,75 +160,25 @@ bool is_finite(const QuadraticProgram& p) {
            p.cuts.lower.allFinite();
 }
 
-const ElasticProgram& program_of(UserDataPtr data) { return *static_cast<const ElasticProgram*>(data); }
-
-// NOLINTBEGIN(readability-function-size): Ipopt's parameters
-Bool ask_value(Index, Number* x, Bool, Number* value, UserDataPtr data) {
-    *value = program_of(data).value(x);
-    return TRUE;
-}
-
-Bool ask_gradient(Index, Number* x, Bool, Number* gradient, UserDataPtr data) {
-    program_of(data).gradient(x, gradient);
-    return TRUE;
-}
-
-Bool ask_rows(Index, Number* x, Bool, Index, Number* values, UserDataPtr data) {
-    program_of(data).row_values(x, values);
-    return TRUE;
-}
-
-Bool ask_jacobian(Index, Number*, Bool, Index, Index, Index* row, Index* column, Number* values, UserDataPtr data) {
-    program_of(data).jacobian(row, column, values);
-    return TRUE;
-}
-
-Bool ask_hessian(Index, Number*, Bool, Number factor, Index, Number*, Bool, Index, Index* row, Index* column, Number* values,
-                 UserDataPtr data) {
-    program_of(data).hessian(factor, row, column, values);
-    return TRUE;
-}
-// NOLINTEND(readability-function-size)
-
-using IpoptHandle = std::unique_ptr<IpoptProblemInfo, void (*)(IpoptProblem)>;
-
-void set_options(const IpoptLibrary& ipopt, IpoptProblem problem, bool predictor_corrector) {
-    const auto set = [&](std::string key, std::string value) { ipopt.add_string_option(problem, key.data(), value.data()); };
-    const auto set_number = [&](std::string key, double value) { ipopt.add_number_option(problem, key.data(), value); };
-    const auto set_integer = [&](std::string key, int value) { ipopt.add_integer_option(problem, key.data(), value); };
-    set("option_file_name", "");  // none is read
-    set_integer("print_level", 0);
-    set("sb", "yes");
-    set("jac_c_constant", "yes");
-    set("jac_d_constant", "yes");
-    set("hessian_constant", "yes");
-    set("mehrotra_algorithm", predictor_corrector ? "yes" : "no");
-    if (!predictor_corrector) set("mu_strategy", "adaptive");
-    set("nlp_scaling_method", "none");
-    set_number("bound_relax_factor", 0);
-    set_number("tol", 1e-9);
-    set_number("acceptable_tol", 1e-7);
-    set_integer("max_iter", 300);
+IpoptOptions options_for(bool predictor_corrector) {
+    IpoptOptions options;
+    options.words = {{"jac_c_constant", "yes"},
+                     {"jac_d_constant", "yes"},
+                     {"hessian_constant", "yes"},
+                     {"mehrotra_algorithm", predictor_corrector ? "yes" : "no"},
+                     {"nlp_scaling_method", "none"}};
+    if (!predictor_corrector) options.words.emplace_back("mu_strategy", "adaptive");
+    options.numbers = {{"bound_relax_factor", 0}, {"tol", 1e-9}, {"acceptable_tol", 1e-7}};
+    options.integers = {{"max_iter", 300}};
+    return options;
 }
 
 // Step and multipliers.
 std::optional<QuadraticSolution> solve_once(const QuadraticProgram& program, bool predictor_corrector) {
-    static std::mutex one_solve_at_a_time;
-    const std::lock_guard<std::mutex> lock(one_solve_at_a_time);
-    const IpoptLibrary& ipopt = ipopt_library();
     ElasticProgram elastic(program);
-    VectorX lower = elastic.lower(), upper = elastic.upper(), row_lower = elastic.row_lower(), row_upper = elastic.row_upper();
-    const IpoptHandle problem(ipopt.create_problem(elastic.unknowns(), lower.data(), upper.data(), elastic.rows(), row_lower.data(),
-                                                   row_upper.data(), elastic.jacobian_entries(), elastic.hessian_entries(), 0, ask_value,
-                                                   ask_rows, ask_gradient, ask_jacobian, ask_hessian),
-                              ipopt.free_problem);
-    if (!problem) return std::nullopt;
-    set_options(ipopt, problem.get(), predictor_corrector);
-    VectorX x = elastic.start(), lambda = VectorX::Zero(elastic.rows());
-    const ApplicationReturnStatus status =
-        ipopt.solve(problem.get(), x.data(), nullptr, nullptr, lambda.data(), nullptr, nullptr, &elastic);
-    if (status != Solve_Succeeded && status != Solved_To_Acceptable_Level) return std::nullopt;
-    QuadraticSolution found = elastic.solution(x, lambda);
+    const IpoptResult result = run_ipopt(elastic, elastic.start(), options_for(predictor_corrector));
+    if (!result.solved()) return std::nullopt;
+    QuadraticSolution found = elastic.solution(result.x, result.multipliers);
     if (!found.step.allFinite() || !found.multipliers.allFinite()) return std::nullopt;
     return found;
 }

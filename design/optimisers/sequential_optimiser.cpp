@@ -39,7 +39,7 @@ public:
                 return end("steps became so short that they change nothing that matters");
             take(step);
             if (radius_ < least_radius())
-                return end("what is predicted does not come true, however small the change: the simulated values are rough here");
+                return end("predicted gains do not come true, however small the change: the simulated values are rough here");
         }
     }
 

@@ -5,13 +5,13 @@
 /// values and derivatives at the best point so far can say within a box:
 ///   minimise  g.d + 1/2 d.B d + penalty * violation(c + J d)   over |d_k| <= radius, within the bounds
 /// with a row for each branch of a constraint (one violation for all of them), and for each kink of f what it adds to it
-/// (elastic: from an infeasible point it is the feasibility phase as well), and one evaluation tells whether it was right: the decrease of
+/// (elastic: from an infeasible point it is the feasibility phase as well), and one evaluation shows whether it was right: the decrease of
 /// f + penalty * violation(c) is compared with the predicted one, the point is taken if it is a tenth of it or more, and the box grows or
 /// shrinks with how well the prediction held (Nocedal and Wright, Numerical Optimization, 2nd ed., algorithm 18.4 with l1 penalty). B is
 /// twice the residuals' J_r^T J_r (Gauss-Newton) and a symmetric rank-one estimate of the Lagrangian's other curvature, taken up only
 /// where it explains the values better than without, made positive semi-definite. The penalty is raised until a step takes a tenth of the
 /// violation that could be taken (Byrd, Nocedal and Waltz 2008). Derivatives are the problem's own, or those of the smoother model that it
-/// was begun with, whichever tell the values better (with_telling_derivatives).
+/// was begun with, whichever predict the values better (with_telling_derivatives).
 ///
 /// Done when the predicted decrease is below the tolerance, or the box below the least size worth a simulation.
 #pragma once
@@ -26,11 +26,11 @@ enum class Curvature {
     gauss_newton  ///< where f is nothing but its residuals' squares, those alone: best where they can become nearly nothing
 };
 
-/// Called "ipopt", which solves its steps, and "gauss_newton".
+/// Called "sqp" and "gauss_newton".
 class SequentialOptimiser : public Optimiser {
 public:
     explicit SequentialOptimiser(Curvature curvature = Curvature::estimated) : curvature_(curvature) {}
-    std::string name() const override { return curvature_ == Curvature::gauss_newton ? "gauss_newton" : "ipopt"; }
+    std::string name() const override { return curvature_ == Curvature::gauss_newton ? "gauss_newton" : "sqp"; }
     NativeOutcome minimise(Evaluator& evaluator, const OptimiserOptions& options) const override;
 
 private:

@@ -15,7 +15,6 @@ namespace fettle::design::problem {
 namespace {
 
 using description::Design;
-using description::Move;
 using description::Parameter;
 using description::Relation;
 using description::Shape;
@@ -34,6 +33,7 @@ public:
             if (!names.insert(parameter.name).second) add(ErrorCode::inconsistent, place(parameter), "another parameter has this name");
             check_parameter(parameter);
         }
+        for (const core::scene::BoundNumber& number : design_.numbers) check_number(number);
         for (const auto& term : design_.objective) {
             const std::string where = "objective `" + term.name + "`";
             if (!std::isfinite(term.weight) || !(term.unit > 0)) add(ErrorCode::out_of_range, where, "a finite weight, and a unit above 0");
@@ -106,15 +106,30 @@ private:
         };
         if (!finite)
             add(ErrorCode::out_of_range, place(parameter),
-                "its bounds are " + told(parameter.lower) + " and " + told(parameter.upper) + ": finite ones are wanted");
+                "its bounds are " + told(parameter.lower) + " and " + told(parameter.upper) + ": finite ones are expected");
         else if (!(parameter.lower <= parameter.value && parameter.value <= parameter.upper))
             add(ErrorCode::out_of_range, place(parameter),
                 "its value " + told(parameter.value) + " does not lie within its bounds, " + told(parameter.lower) + " to " +
                     told(parameter.upper));
-        for (const Move& move : parameter.moves) {
-            const Result<core::scene::Place> found = core::scene::find_place(scene_, move.place);
-            for (const Error& error : found.errors()) add(error.code, place(parameter) + ": " + error.where, error.message);
-        }
+    }
+
+    void check_number(const core::scene::BoundNumber& number) {
+        const Result<core::scene::Place> found = core::scene::find_place(scene_, number.place);
+        for (const Error& error : found.errors()) add(error.code, error.where, error.message);
+        if (!found) return;
+        if (!places_.insert(*found).second) add(ErrorCode::inconsistent, number.place, "another formula is given for this number");
+        const core::expression::Scope scope = description::scope_of(design_.parameters);
+        for (const std::string& input : number.formula.inputs)
+            if (scope.find(input) == nullptr)
+                return add(ErrorCode::unknown_key, number.place, "its formula names `" + input + "`, which is no parameter");
+        const auto expected = core::expression::powers_of(core::scene::dimension_at(scene_, *found));
+        if (!same(number.formula.dimension, expected))
+            return add(ErrorCode::wrong_type, number.place,
+                       "its formula is " + described(number.formula.dimension) + "; " + described(expected) + " is expected");
+        const description::RelationValue at =
+            description::function_of(number.formula, design_.parameters)(description::values_of(design_.parameters));
+        if (!std::isfinite(at.value) || !at.gradient.allFinite())
+            add(ErrorCode::not_finite, number.place, "its formula or the derivative is not a finite number at the parameters' values");
     }
 
     static std::string place(const Relation& relation) { return "relation `" + relation.name + "`"; }
@@ -141,6 +156,7 @@ private:
     const Design& design_;
     const core::model::Model& model_;
     const core::scene::Scene scene_ = description::described_scene(design_);
+    std::set<core::scene::Place> places_;
     Errors errors_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What is wrong with a design that a program made. (Readers tell of a file's faults with their place in it.)
+/// What is wrong with a design that a program made. (Readers report a file's faults with their place in it.)
 #pragma once
 
 #include "fettle/core/base/result.hpp"

@@ -56,8 +56,8 @@ bool is_finite(const adjoint::Seeds& seeds) {
 // By numbers alone: two designs that say the same are the same.
 Design with_plain_places(Design design) {
     const core::scene::Scene scene = description::described_scene(design);
-    for (description::Parameter& parameter : design.parameters)
-        for (description::Move& move : parameter.moves) move.place = pointer_to(scene, core::scene::find_place(scene, move.place).value());
+    for (core::scene::BoundNumber& number : design.numbers)
+        number.place = pointer_to(scene, core::scene::find_place(scene, number.place).value());
     return design;
 }
 
@@ -67,7 +67,9 @@ std::string name_of(const description::Constraint& constraint) { return "constra
 }  // namespace
 
 Result<DesignProblem> DesignProblem::create(Design design) {
-    Result<Model> model = core::model::build_model(design.scene);
+    core::model::BuildOptions options;
+    options.check_start = false;  // parts that intersect at the parameters' values are a trial that cannot begin: other trials may
+    Result<Model> model = core::model::build_model(design.scene, options);
     if (!model) return model.errors();
     const Errors errors = check_design(design, *model);
     if (!errors.empty()) return errors;
@@ -239,12 +241,12 @@ void DesignProblem::simulate(const EvaluateOptions& options, DesignEvaluation& e
     evaluation.reason = report.message.empty() ? core::stepper::to_string(report.status) : report.message;
 }
 
-// Sets the reason where a value is no finite number. (A bound of it may be infinite: nothing is known on that side.)
+// Sets the reason where a value is not a finite number. (A bound of it may be infinite: nothing is known on that side.)
 void DesignProblem::measure(DesignEvaluation& evaluation) const {
     const Simulated simulated{*evaluation.model, evaluation.simulation.trajectory, design_.clearance_tolerance};
     const auto look_at = [&](const auto& of, const description::Measurement& measured) {
         if (std::isfinite(measured.value) && !std::isnan(measured.lower) && !std::isnan(measured.upper)) return;
-        if (evaluation.reason.empty()) evaluation.reason = name_of(of) + ": its value is no finite number";
+        if (evaluation.reason.empty()) evaluation.reason = name_of(of) + ": its value is not a finite number";
     };
     evaluation.objective = evaluation.violation = 0;
     for (const description::ObjectiveTerm& term : design_.objective) {
@@ -271,7 +273,7 @@ void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, De
         evaluation.usable = false;
         evaluation.reason = reason;
     };
-    const std::string no_number = ": its derivative is no finite number";
+    const std::string no_number = ": its derivative is not a finite number";
     for (size_t k = 0; k < design_.objective.size(); ++k) {
         const description::ObjectiveTerm& term = design_.objective[k];
         term.quantity->add_seeds(simulated, evaluation.terms[k], term.weight / term.unit, seeds[0]);
@@ -303,7 +305,7 @@ void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, De
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
         rows.row(i) = pull_back(moved, *evaluation.model, (*gradients)[static_cast<size_t>(i)], parameter_count()).transpose();
     for (int k = 0; k < parameter_count(); ++k) {
-        const std::string by = ": its derivative by `" + design_.parameters[static_cast<size_t>(k)].name + "` is no finite number";
+        const std::string by = ": its derivative by `" + design_.parameters[static_cast<size_t>(k)].name + "` is not a finite number";
         if (!std::isfinite(rows(0, k))) return refuse("objective" + by);
         for (size_t i = 0; i < design_.constraints.size(); ++i)
             if (!std::isfinite(rows(static_cast<Eigen::Index>(i) + 1, k))) return refuse(name_of(design_.constraints[i]) + by);

@@ -16,7 +16,6 @@ namespace {
 using core::scene::Place;
 using core::scene::Scene;
 using description::Design;
-using description::Move;
 using description::Shape;
 using description::ShapeInstance;
 
@@ -25,33 +24,46 @@ public:
     Mover(const Design& design, const VectorX& p, SceneDerivative derivative)
         : design_(design), derivative_(derivative), moved_{description::described_scene(design), {}, {}} {
         moved_.jacobians.resize(design.scene.bodies.size());
-        for (size_t k = 0; k < design.parameters.size(); ++k)
-            for (const Move& move : design.parameters[k].moves) add(static_cast<int>(k), move, p[static_cast<Eigen::Index>(k)]);
+        const std::vector<std::string> names = description::names_of(design.parameters);
+        for (const core::scene::BoundNumber& number : design.numbers) add(number, names, p);
     }
 
     Result<MovedScene> run() {
         Errors errors;
-        for (const auto& [place, value] : sums_) {
+        for (const auto& [place, value] : values_) {
             double& number = core::scene::at(moved_.scene, place);
             number = value;
             is_moved_.insert(&number);
         }
-        for (const auto& [place, value] : sums_)
+        for (const auto& [place, value] : values_)
             for (Error& error : core::scene::faults_at(moved_.scene, place)) errors.push_back(std::move(error));
         if (!errors.empty()) return errors;
-        for (core::scene::Body& body : moved_.scene.bodies)
-            if (!body.turn.isZero(0)) body.pose.rotation = core::kinematics::rotation(body.turn) * body.pose.rotation;
+        for (core::scene::Body& body : moved_.scene.bodies) turn(body);
         for (size_t i = 0; i < moved_.scene.bodies.size(); ++i) make_shape(i, errors);
         if (!errors.empty()) return errors;
         return std::move(moved_);
     }
 
 private:
-    // Sums in the order of the file, so that the same file gives the same bits.
-    void add(int parameter, const Move& move, double p) {
-        const Place place = core::scene::find_place(moved_.scene, move.place).value();
-        sums_[place] += move.scale * p + move.offset;
-        moved_.numbers.push_back({parameter, place, move.scale});
+    void add(const core::scene::BoundNumber& number, const std::vector<std::string>& names, const VectorX& p) {
+        const Place place = core::scene::find_place(moved_.scene, number.place).value();
+        const std::vector<int> positions = core::expression::positions_of(number.formula, names);
+        std::vector<double> inputs;
+        for (const int position : positions) inputs.push_back(p[position]);
+        const core::expression::ValueAndGradient at = core::expression::differentiated(number.formula, inputs);
+        values_[place] = at.value;
+        for (size_t k = 0; k < positions.size(); ++k)
+            moved_.numbers.push_back({positions[k], place, at.gradient[static_cast<Eigen::Index>(k)]});
+    }
+
+    // The pose follows from what was moved of it.
+    void turn(core::scene::Body& body) const {
+        const double* numbers = body.orientation.numbers.data();
+        const bool is_written_anew = std::any_of(numbers, numbers + 3, [&](const double& x) { return is_moved_.count(&x) > 0; });
+        if (is_written_anew)
+            core::scene::settle_rotation(body);
+        else if (!body.turn.isZero(0))
+            body.pose.rotation = core::kinematics::rotation(body.turn) * body.pose.rotation;
     }
 
     Result<ShapeInstance> part_of(const Shape& shape, const std::vector<double>& values) const {
@@ -95,11 +107,11 @@ private:
     const Design& design_;
     SceneDerivative derivative_;
     MovedScene moved_;
-    std::map<Place, double> sums_;
+    std::map<Place, double> values_;
     std::set<const double*> is_moved_;
 };
 
-// From the mesh and pose to the dimensions and the turn that they are made of: dR = [J dtheta] R.
+// From the mesh and pose to the dimensions, the turn and the angles that they are made of: dR = [J dturn + exp(turn) W dangles]x R.
 void reverse_made(const MovedScene& moved, size_t i, core::scene::Body& bar) {
     for (const auto& [name, jacobian] : moved.jacobians[i]) {
         FETTLE_ASSERT(bar.mesh.vertices.cols() == jacobian.cols(), "the model keeps a part's vertices in their order");
@@ -107,7 +119,10 @@ void reverse_made(const MovedScene& moved, size_t i, core::scene::Body& bar) {
     }
     const core::scene::Body& body = moved.scene.bodies[i];
     const core::kinematics::PoseGradient gradient{bar.pose.position, bar.pose.rotation * body.pose.rotation.transpose()};
-    bar.turn = core::kinematics::left_jacobian(body.turn).transpose() * tangent_gradient(gradient).tail<3>();
+    const Vector3 turned = tangent_gradient(gradient).tail<3>();
+    bar.turn = core::kinematics::left_jacobian(body.turn).transpose() * turned;
+    const Matrix3 axes = core::kinematics::rotation(body.turn) * core::scene::rotation_axes(body.orientation);
+    bar.orientation.numbers = axes.transpose() * turned;
 }
 
 }  // namespace

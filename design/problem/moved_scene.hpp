@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// From parameters to a scene and back. Forward: parameters -> a Scene, and the derivative of everything in it that moved. Backward: a
-/// ModelGradient -> d/d(parameters). What a parameter moves: description/parameter.hpp.
+/// ModelGradient -> d/d(parameters). What follows from parameters: description/design.hpp, Design::numbers.
 #pragma once
 
 #include <map>
@@ -15,7 +15,7 @@
 
 namespace fettle::design::problem {
 
-/// d(number of the scene)/d(parameter), one of a sum.
+/// A number of the scene, and its derivative in one of the parameters that it follows from.
 struct MovedNumber {
     int parameter = 0;
     core::scene::Place place;
@@ -24,7 +24,7 @@ struct MovedNumber {
 
 struct MovedScene {
     core::scene::Scene scene;
-    std::vector<MovedNumber> numbers;  ///< a place may be there several times
+    std::vector<MovedNumber> numbers;  ///< a place is there once for each of its parameters
     /// [body]: d(vertices)/d(dimension) of the dimensions that are moved, by name.
     std::vector<std::map<std::string, Matrix3X>> jacobians;
 };
@@ -40,7 +40,7 @@ Result<MovedScene> move_scene(const description::Design& design, const VectorX& 
 
 /// dJ/dp from dJ/d(model data), exactly transposed to move_scene: with x_bar of the numbers x of the scene (adjoint/model/
 /// build_model_adjoint.hpp; of a dimension <dJ/d(vertices), d(vertices)/dx>, of a turn theta J(theta)^T times that of the rotation),
-///   dJ/dp_k = sum x_bar dx/dp_k
+///   dJ/dp_k = sum x_bar dx/dp_k          with x = f(p), the number's formula
 VectorX pull_back(const MovedScene& moved, const core::model::Model& model, const adjoint::ModelGradient& gradient, int parameter_count);
 
 }  // namespace fettle::design::problem

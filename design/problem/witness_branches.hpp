@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// What a design's clearances have beside the witness that is differentiated: their other branches (description/quantity.hpp), as rows
-/// that optimisers take, or as ties that are told.
+/// that optimisers take, or as ties that are reported.
 #pragma once
 
 #include <vector>
@@ -58,7 +58,7 @@ std::vector<int> telling_branches(const VectorX& values, const MatrixX& jacobian
 optimisers::Branches constraint_rows(const description::Design& design, const std::vector<QuantityBranches>& all);
 optimisers::Branches objective_rows(const description::Design& design, const std::vector<QuantityBranches>& all);
 
-/// Of branches within reach `tied`.
+/// Ties of branches within reach `tied`.
 std::vector<Tie> ties_of(const description::Design& design, const std::vector<QuantityBranches>& all);
 
 }  // namespace fettle::design::problem

@@ -23,7 +23,7 @@ std::string shown_number(double number) {
 
 void check_number(const std::string& where, double value, bool fits, const std::string& allowed) {
     if (!std::isfinite(value))
-        refuse(ErrorCode::not_finite, where, shown_number(value) + " is no finite number: " + allowed + " is allowed");
+        refuse(ErrorCode::not_finite, where, shown_number(value) + " is not a finite number: " + allowed + " is allowed");
     if (!fits || !core::base::is_usable_number(value))
         refuse(ErrorCode::out_of_range, where, shown_number(value) + " is not allowed: " + allowed + " is");
 }
@@ -49,7 +49,7 @@ double quantity_from(py::handle given, core::base::Dimension dimension, const st
     py::detail::make_caster<double> number;
     if (given.is_none() || py::isinstance<py::bool_>(given) || !number.load(given, true))
         refuse(ErrorCode::wrong_type, where,
-               shown(given) + ": a number in " + std::string(core::base::si_unit(dimension)) + ", or a text with a unit, is wanted");
+               shown(given) + ": a number in " + std::string(core::base::si_unit(dimension)) + ", or a text with a unit, is expected");
     return py::detail::cast_op<double>(number);
 }
 
@@ -69,7 +69,7 @@ int body_from(const std::vector<std::string>& names, py::handle given, const std
                "there is no body \"" + name + "\"; " + core::files::did_you_mean(name, {names.begin(), names.end()}));
     }
     py::detail::make_caster<int> number;
-    if (!number.load(given, true)) refuse(ErrorCode::wrong_type, where, shown(given) + ": a body's name or its number is wanted");
+    if (!number.load(given, true)) refuse(ErrorCode::wrong_type, where, shown(given) + ": a body's name or its number is expected");
     const int body = py::detail::cast_op<int>(number);
     if (body < 0 || body >= count)
         throw py::index_error("there is no body " + std::to_string(body) + "; there are " + std::to_string(count) + ", counted from 0");

@@ -43,7 +43,7 @@ void check_above(const std::string& where, double value, double least);
 int steps_from(const std::optional<int>& steps);
 /// Those that are not negative.
 std::uint64_t seed_from(std::int64_t seed);
-/// Of a trajectory and the model that it is said to be of.
+/// Checks that a trajectory is of the given model.
 void check_same_bodies(const core::stepper::Trajectory& trajectory, const core::model::Model& model);
 
 }  // namespace fettle::design::python

@@ -7,6 +7,7 @@
 
 namespace fettle::design::python {
 
+void bind_formula(pybind11::module_& module);     ///< arithmetic with parameters
 void bind_scene(pybind11::module_& module);       ///< meshes and scenes, read
 void bind_model(pybind11::module_& module);       ///< Model
 void bind_trajectory(pybind11::module_& module);  ///< Trajectory, simulations

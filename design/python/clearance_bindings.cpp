@@ -58,7 +58,7 @@ PairRequest pair_from(py::handle given, const std::vector<std::string>& names, d
     const bool some = py::isinstance<py::tuple>(given) || py::isinstance<py::list>(given);
     const std::size_t count = some ? py::len(given) : 0;
     if (count != 2 && count != 3)
-        refuse(ErrorCode::wrong_type, where, shown(given) + ": a PairRequest, (a, b) or (a, b, minimum) is wanted, with names of bodies");
+        refuse(ErrorCode::wrong_type, where, shown(given) + ": a PairRequest, (a, b) or (a, b, minimum) is expected, with names of bodies");
     set_bodies(given[py::int_(0)], given[py::int_(1)]);
     if (count == 3) pair.minimum = quantity_from(given[py::int_(2)], Dimension::length, where + "/minimum");
     return pair;
@@ -82,7 +82,7 @@ std::vector<PairRequest> pairs_from(const py::object& given, const Model& model,
     check_at_least("minimum", minimum, 0);
     if (given.is_none()) return pairs_that_may_collide(model, minimum);
     if (!py::isinstance<py::sequence>(given) || py::isinstance<py::str>(given))
-        refuse(ErrorCode::wrong_type, "pairs", shown(given) + ": a list of pairs is wanted");
+        refuse(ErrorCode::wrong_type, "pairs", shown(given) + ": a list of pairs is expected");
     const std::vector<std::string> names = body_names(model);
     std::vector<PairRequest> pairs;
     for (const py::handle each : given) pairs.push_back(pair_from(each, names, minimum, "pairs/" + std::to_string(pairs.size())));
@@ -184,10 +184,10 @@ std::shared_ptr<Trajectory> or_as_assembled(const std::shared_ptr<Trajectory>& t
 std::vector<std::string> texts_from(const py::object& given, const char* where) {
     if (py::isinstance<py::str>(given)) return {given.cast<std::string>()};
     if (!py::isinstance<py::sequence>(given))
-        refuse(ErrorCode::wrong_type, where, shown(given) + ": a text such as \"A:B\", or a list, is wanted");
+        refuse(ErrorCode::wrong_type, where, shown(given) + ": a text such as \"A:B\", or a list, is expected");
     std::vector<std::string> texts;
     for (const py::handle each : given) {
-        if (!py::isinstance<py::str>(each)) refuse(ErrorCode::wrong_type, where, shown(each) + ": a text such as \"A:B\" is wanted");
+        if (!py::isinstance<py::str>(each)) refuse(ErrorCode::wrong_type, where, shown(each) + ": a text such as \"A:B\" is expected");
         texts.push_back(each.cast<std::string>());
     }
     return texts;
@@ -202,7 +202,7 @@ std::string listed(const std::vector<std::string>& texts) {
 // {"frame": ["a", "b"]} as the command line has it: "frame=a,b".
 std::vector<std::string> groups_from(const py::object& given) {
     if (!py::isinstance<py::dict>(given))
-        refuse(ErrorCode::wrong_type, "groups", shown(given) + ": a dict of names and lists of bodies is wanted");
+        refuse(ErrorCode::wrong_type, "groups", shown(given) + ": a dict of names and lists of bodies is expected");
     std::vector<std::string> groups;
     for (const auto& [name, bodies] : given.cast<py::dict>())
         groups.push_back(py::str(name).cast<std::string>() + "=" +
@@ -229,7 +229,7 @@ clearance::Subject subject_from(const Model& model, const std::shared_ptr<Trajec
     }
     if (trajectory) refuse(ErrorCode::inconsistent, "ranges", "are in place of a trajectory");
     if (py::isinstance<py::bool_>(ranges)) return clearance::subject_over(model, value_or_raise(core::clearance::joint_ranges(model)));
-    if (!py::isinstance<JointRanges>(ranges)) refuse(ErrorCode::wrong_type, "ranges", shown(ranges) + ": True or JointRanges is wanted");
+    if (!py::isinstance<JointRanges>(ranges)) refuse(ErrorCode::wrong_type, "ranges", shown(ranges) + ": True or JointRanges is expected");
     check_ranges(ranges.cast<const JointRanges&>(), model);
     return clearance::subject_over(model, ranges.cast<const JointRanges&>());
 }
@@ -252,7 +252,7 @@ clearance::PairOptions pair_options_from(const py::object& minimum, const std::s
 py::object report_of(const clearance::Subject& subject, clearance::Question question, const std::optional<Path>& baseline,
                      const py::object& progress) {
     if (subject.ranges && !question.pairs.touches.empty())
-        refuse(ErrorCode::inconsistent, "allow_touch", "is of a path: over ranges of joints touches are not told");
+        refuse(ErrorCode::inconsistent, "allow_touch", "needs a path: over ranges of joints touches are not reported");
     std::optional<clearance::Baseline> before;
     if (baseline) before = value_or_raise(clearance::Baseline::read(baseline->string()));
     Watch watch(progress);
@@ -289,7 +289,7 @@ void bind_question(py::module_& module) {
         py::arg("tolerance") = py::none(), py::arg("witnesses") = false, py::arg("baseline") = py::none(), py::arg("proof") = false,
         py::arg("progress") = py::none(),
         "What `fettle clearance` asks and answers, a ClearanceReport: as assembled, over the trajectory, or, with ranges (True, or "
-        "JointRanges), over all positions of the joints. minimum: None tells distances and clashes. process: \"fdm\", \"sla\", \"sls\", "
+        "JointRanges), over all positions of the joints. minimum: None reports distances and clashes. process: \"fdm\", \"sla\", \"sls\", "
         "\"mjf\". pairs, ignore: \"A:B\", \"pin*:plate=0.4mm\" or a list of such; by default every pair as assembled, else those that may "
         "collide. allow_touch: \"lid:base\". groups: {\"frame\": [\"a\", \"b\"]}, bodies that are one rigid set. tolerance: None is 1 um "
         "or "

@@ -24,7 +24,7 @@ std::function<RelationValue(const VectorX&)> relation_function(py::handle callab
         const py::object answer = (*function)(p);
         py::detail::make_caster<std::pair<double, VectorX>> found;
         if (!found.load(answer, true))
-            refuse(ErrorCode::wrong_type, "Relation.at()", "returned " + shown(answer) + "; (value, gradient) is wanted, both in SI");
+            refuse(ErrorCode::wrong_type, "Relation.at()", "returned " + shown(answer) + "; (value, gradient) is expected, both in SI");
         const auto [value, gradient] = py::detail::cast_op<std::pair<double, VectorX>>(found);
         return RelationValue{value, gradient};
     };
@@ -39,7 +39,7 @@ reading::DesignReadOptions read_options(const std::vector<Path>& mesh_dirs, bool
 void refuse_unit(const std::string& name) {
     std::vector<std::string_view> known;
     for (const Unit& unit : core::base::units()) known.push_back(unit.name);
-    refuse(ErrorCode::out_of_range, "unit", "\"" + name + "\" is no unit; " + core::files::did_you_mean(name, known));
+    refuse(ErrorCode::out_of_range, "unit", "\"" + name + "\" is not a unit; " + core::files::did_you_mean(name, known));
 }
 
 VectorX point_from(const std::vector<description::Parameter>& parameters, py::handle given) {
@@ -69,7 +69,7 @@ VectorX point_from(const std::vector<description::Parameter>& parameters, py::ha
     }
     py::detail::make_caster<VectorX> numbers;
     if (given.is_none() || !numbers.load(given, true))
-        refuse(ErrorCode::wrong_type, "p", shown(given) + ": values of the parameters are wanted, in SI, or by name");
+        refuse(ErrorCode::wrong_type, "p", shown(given) + ": values of the parameters are expected, in SI, or by name");
     return py::detail::cast_op<VectorX>(numbers);
 }
 

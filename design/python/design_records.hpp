@@ -72,10 +72,8 @@ public:
 
 }  // namespace pybind11::detail
 
-FETTLE_RECORD(fettle::design::description::Move, "Move", field("place", &Type::place), field("scale", &Type::scale),
-              field("offset", &Type::offset))
 FETTLE_RECORD(fettle::design::description::Parameter, "Parameter", field("name", &Type::name), field("value", &Type::value),
-              field("lower", &Type::lower), field("upper", &Type::upper), field("unit", &Type::unit), field("moves", &Type::moves))
+              field("lower", &Type::lower), field("upper", &Type::upper), field("unit", &Type::unit))
 FETTLE_RECORD(fettle::design::description::Bounds, "Bounds", field("lower", &Type::lower), field("upper", &Type::upper),
               field("margin", &Type::margin), field("unit", &Type::unit))
 FETTLE_RECORD(fettle::design::description::ObjectiveTerm, "ObjectiveTerm", field("name", &Type::name), field("weight", &Type::weight),
@@ -105,8 +103,8 @@ public:
 
 FETTLE_RECORD(fettle::design::description::Design, "Design", field("scene", &Type::scene), field("shapes", &Type::shapes),
               field("steps", &Type::steps), field("clearance_tolerance", &Type::clearance_tolerance),
-              field("parameters", &Type::parameters), field("objective", &Type::objective), field("constraints", &Type::constraints),
-              field("relations", &Type::relations), field("optimiser", &Type::optimiser))
+              field("parameters", &Type::parameters), field("numbers", &Type::numbers), field("objective", &Type::objective),
+              field("constraints", &Type::constraints), field("relations", &Type::relations), field("optimiser", &Type::optimiser))
 FETTLE_RECORD(fettle::design::reading::DesignFile, "DesignFile", field("design", &Type::design), path_field("path", &Type::path),
               field("text", &Type::text), path_field("scene_path", &Type::scene_path), field("length_unit", &Type::length_unit),
               field("output", &Type::output), field("warnings", &Type::warnings))

@@ -7,6 +7,7 @@
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/design/exports/export_files.hpp"
 #include "fettle/design/exports/picture.hpp"
+#include "fettle/design/exports/png_writer.hpp"
 #include "fettle/design/exports/projection_view.hpp"
 #include "fettle/design/exports/svg_writer.hpp"
 #include "fettle/design/python/arguments.hpp"
@@ -91,7 +92,7 @@ std::string picture(const Model& model, const Trajectory* trajectory, const Pict
     options.title = arguments.title;
     const auto& poses = trajectory == nullptr ? assembly.keyframes.front().poses : trajectory->poses[static_cast<std::size_t>(t)];
     const exports::Picture drawn = exports::draw_picture(assembly, poses, options);
-    return arguments.svg ? exports::svg_text(drawn) : exports::png_bytes(exports::inked(drawn));
+    return arguments.svg ? exports::svg_text(drawn) : exports::png_bytes(drawn);
 }
 
 py::bytes draw(const Model& model, const Trajectory* trajectory, const PictureArguments& arguments) {
@@ -133,7 +134,7 @@ void bind_exports(py::module_& module) {
         py::arg("arrangement") = "assembled", py::arg("every") = 1, py::arg("in_place") = false,
         "Parts for other programs, and with glb and vtu their motion: the paths of the files. format: glb, 3mf, stl, obj, vtu. arrangement "
         "(3mf, stl, obj): assembled; plate, for a printer's bed; parts, a file for each, with in_place where it stands at the start. "
-        "every: of vtu, a frame for so many steps.");
+        "every: for vtu, a frame for every so many steps.");
     module.def(
         "draw_picture",
         [](const Model& model, const Trajectory* trajectory, int t, const std::string& view, std::pair<int, int> size,

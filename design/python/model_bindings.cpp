@@ -132,7 +132,7 @@ void bind_model(py::module_& module) {
         .def_readonly("dhat", &Model::dhat, "Activation distance [m].")
         .def_readonly("dmin", &Model::dmin, "Minimum separation [m].")
         .def_readonly("kappa", &Model::kappa, "Barrier stiffness [N/m].")
-        .def_readonly("length_unit", &Model::length_unit, "Of the scene's file [m].")
+        .def_readonly("length_unit", &Model::length_unit, "Unit of length of the scene's file [m].")
         .def_readonly("warnings", &Model::warnings)
         .def("__len__", [](const Model& model) { return model.bodies.size(); });
     module.def("build_model", &build_model, py::arg("scene"), py::arg("kappa") = py::none(), py::arg("check_start") = true,

@@ -15,6 +15,7 @@ PYBIND11_MODULE(_fettle, module) {
                  return std::make_unique<fettle::core::base::ThreadLimit>(threads);
              }),
              pybind11::arg("threads"));
+    python::bind_formula(module);
     python::bind_scene(module);
     python::bind_model(module);
     python::bind_trajectory(module);

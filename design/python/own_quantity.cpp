@@ -92,7 +92,7 @@ void add_pose_gradient(const FoundGradient& found, double scale, Seeds& seeds) {
 double number_from(py::handle answer, const std::string& where, const char* wanted = "a number") {
     py::detail::make_caster<double> number;
     if (answer.is_none() || !number.load(answer, true))
-        refuse(ErrorCode::wrong_type, where, "returned " + shown(answer) + "; " + wanted + " is wanted");
+        refuse(ErrorCode::wrong_type, where, "returned " + shown(answer) + "; " + wanted + " is expected");
     return py::detail::cast_op<double>(number);
 }
 
@@ -179,7 +179,7 @@ public:
 private:
     static void add_gradient(const FoundGradient& found, double scale, Seeds& seeds) {
         if (!py::isinstance(found.gradient, record_class("QuantityGradient")))
-            refuse(ErrorCode::wrong_type, found.where, "returned " + shown(found.gradient) + "; a fettle.QuantityGradient is wanted");
+            refuse(ErrorCode::wrong_type, found.where, "returned " + shown(found.gradient) + "; a fettle.QuantityGradient is expected");
         add_pose_gradient(found, scale, seeds);
         add_model_gradient(found, scale, seeds);
     }

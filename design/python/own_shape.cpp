@@ -49,7 +49,7 @@ void check_dimensions(const std::vector<ShapeDimension>& dimensions, const std::
     if (dimensions.empty()) refuse(ErrorCode::missing_key, where, "a shape has dimensions");
     for (const ShapeDimension& dimension : dimensions) {
         if (!std::isfinite(dimension.value))
-            refuse(ErrorCode::not_finite, where, "the dimension `" + dimension.name + "` is no finite number; give metres");
+            refuse(ErrorCode::not_finite, where, "the dimension `" + dimension.name + "` is not a finite number; give metres");
     }
 }
 
@@ -67,7 +67,7 @@ std::vector<ShapeDimension> dimensions_of(py::handle shape) {
     const py::object answer = shape.attr("dimensions")();
     const std::optional<py::dict> named = dict_from(answer);
     if (!named || !py::detail::make_caster<NamedNumbers>().load(*named, true))
-        refuse(ErrorCode::wrong_type, where, "returned " + shown(answer) + "; {name: metres} is wanted");
+        refuse(ErrorCode::wrong_type, where, "returned " + shown(answer) + "; {name: metres} is expected");
     std::vector<ShapeDimension> dimensions;
     for (const auto& [name, value] : *named) dimensions.push_back({name.cast<std::string>(), value.cast<double>()});
     check_dimensions(dimensions, where);
@@ -76,7 +76,7 @@ std::vector<ShapeDimension> dimensions_of(py::handle shape) {
 
 core::geometry::Mesh mesh_from(py::handle answer, const std::string& where) {
     if (!py::isinstance(answer, record_class("Mesh")))
-        refuse(ErrorCode::wrong_type, where, "returned " + shown(answer) + "; a fettle.Mesh is wanted");
+        refuse(ErrorCode::wrong_type, where, "returned " + shown(answer) + "; a fettle.Mesh is expected");
     return mesh_from_python(answer);
 }
 
@@ -118,7 +118,7 @@ public:
                 const std::optional<py::dict> by_name = two ? dict_from(answer[py::int_(1)]) : std::nullopt;
                 if (!by_name)
                     refuse(ErrorCode::wrong_type, where,
-                           "returned " + shown(answer) + "; (fettle.Mesh, {dimension: derivatives}) is wanted");
+                           "returned " + shown(answer) + "; (fettle.Mesh, {dimension: derivatives}) is expected");
                 ShapeInstance part;
                 part.mesh = mesh_from(answer[py::int_(0)], where);
                 part.jacobian = jacobian_of(*by_name, part.mesh.vertices.cols(), where);
@@ -193,7 +193,7 @@ std::vector<double> in_order(const Shape& shape, const std::map<std::string, dou
     for (const auto& [name, value] : values) {
         if (std::find(known.begin(), known.end(), name) == known.end())
             refuse(ErrorCode::unknown_key, name, "the shape has no dimension \"" + name + "\"; " + core::files::did_you_mean(name, known));
-        if (!std::isfinite(value)) refuse(ErrorCode::not_finite, name, "it is no finite number; give metres");
+        if (!std::isfinite(value)) refuse(ErrorCode::not_finite, name, "it is not a finite number; give metres");
     }
     for (const ShapeDimension& dimension : shape.dimensions()) {
         const auto found = values.find(dimension.name);

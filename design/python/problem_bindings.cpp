@@ -19,14 +19,6 @@ namespace {
 
 // What a design's file is refused for, and the library takes to have been refused.
 void check_numbers(const description::Design& design) {
-    for (const description::Parameter& parameter : design.parameters) {
-        for (std::size_t k = 0; k < parameter.moves.size(); ++k) {
-            const description::Move& move = parameter.moves[k];
-            if (!std::isfinite(move.scale) || !std::isfinite(move.offset))
-                refuse(ErrorCode::not_finite, "parameter `" + parameter.name + "`/moves/" + std::to_string(k),
-                       "its scale and offset are finite numbers");
-        }
-    }
     for (const description::ObjectiveTerm& term : design.objective) check_above("objective `" + term.name + "`/unit", term.unit, 0);
     for (const description::Constraint& constraint : design.constraints)
         check_above("constraint `" + constraint.name + "`/bounds/unit", constraint.bounds.unit, 0);

@@ -30,7 +30,7 @@ py::object paths_as_text(py::object given) {
 void refuse_type(const char* record, const char* member, py::handle found, const std::string& wanted) {
     const std::string type = py::str(py::type::of(found).attr("__name__"));
     throw py::type_error(std::string(record) + "." + member + ": a value of type " + type + " is not what belongs there" +
-                         (wanted.empty() ? "" : ": " + wanted + (wanted.starts_with("three") ? " are wanted" : " is wanted")));
+                         (wanted.empty() ? "" : ": " + wanted + (wanted.starts_with("three") ? " are expected" : " is expected")));
 }
 
 void refuse_word(const std::string& word, std::span<const std::string_view> known) {
@@ -40,7 +40,7 @@ void refuse_word(const std::string& word, std::span<const std::string_view> know
           "\"" + word + "\" is none of: " + core::base::joined(known) + (nearest ? "; did you mean \"" + *nearest + "\"?" : "")}});
 }
 
-void refuse_nan() { throw RaisedErrors({{ErrorCode::not_finite, "", "it is NaN, or has one in it; numbers are wanted"}}); }
+void refuse_nan() { throw RaisedErrors({{ErrorCode::not_finite, "", "it is NaN, or has one in it; numbers are expected"}}); }
 
 namespace {
 

@@ -73,10 +73,10 @@ pybind11::object paths_as_text(pybind11::object given);
 [[noreturn]] void refuse_type(const char* record, const char* member, pybind11::handle found, const std::string& wanted);
 [[noreturn]] void refuse_word(const std::string& word, std::span<const std::string_view> known);
 [[noreturn]] void refuse_nan();
-/// Throws the errors on, their place told from this record: "body `cube`/type", "parameter `height`/moves/scale".
+/// Throws the errors on, their place given from this record: "body `cube`/type", "parameter `height`/upper".
 [[noreturn]] void refuse_member(const Errors& errors, pybind11::handle record, const char* record_name, const char* member);
 
-/// Of numbers, vectors and matrices, and of lists, tables and optional ones of them; false for all else.
+/// True for numbers, vectors and matrices, and for lists, tables and optional ones of them; false for all else.
 template <class T>
 bool has_nan(const T& x) {
     if constexpr (std::is_floating_point_v<T>) {

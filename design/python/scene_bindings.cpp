@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/mesh_judgement.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/solids/mesh_judgement.hpp"
 #include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"
@@ -22,12 +22,12 @@ reading::Programs programs(bool allowed) { return allowed ? reading::Programs::a
 scene::Scene read_scene(const Path& path, const Paths& mesh_dirs, bool strict_meshes, bool allow_programs) {
     scene::ReadOptions options = reading::scene_read_options(texts_of(mesh_dirs), programs(allow_programs));
     options.strict_meshes = strict_meshes;
-    return value_or_raise(scene::read_scene(path.string(), options));
+    return value_or_raise(core::scene_files::read_scene(path.string(), options));
 }
 
 scene::Scene parse_scene(const std::string& text, const Path& path, const Paths& mesh_dirs, bool allow_programs) {
     return value_or_raise(
-        scene::parse_scene(text, path.string(), reading::scene_read_options(texts_of(mesh_dirs), programs(allow_programs))));
+        core::scene_files::parse_scene(text, path.string(), reading::scene_read_options(texts_of(mesh_dirs), programs(allow_programs))));
 }
 
 core::geometry::Mesh read_mesh(const Path& path, const py::object& unit, bool weld) {
@@ -38,7 +38,7 @@ core::geometry::Mesh read_mesh(const Path& path, const py::object& unit, bool we
 }
 
 std::vector<std::string> judge_mesh(const core::geometry::Mesh& mesh, bool as_solid) {
-    core::geometry::MeshFindings findings = core::geometry::judge_mesh(mesh, as_solid);
+    core::solids::MeshFindings findings = core::solids::judge_mesh(mesh, as_solid);
     raise_if_any(findings.errors);
     return std::move(findings.warnings);
 }

@@ -49,6 +49,7 @@ FETTLE_WORDS(fettle::core::scene::Integrator, "implicit_euler", "bdf2", "newmark
 FETTLE_WORDS(fettle::core::scene::CurveKind, "linear", "cubic", "trapezoid", "control_points")
 FETTLE_WORDS(fettle::core::scene::JointKind, "ball", "revolute", "prismatic", "cylindrical", "planar", "fixed", "screw", "gear", "rack")
 FETTLE_WORDS(fettle::core::scene::MotorKind, "motion", "effort")
+FETTLE_WORDS(fettle::core::scene::Orientation::Kind, "angles", "vector")
 
 FETTLE_RECORD(fettle::core::kinematics::Pose, "Pose", field("rotation", &Type::rotation), field("position", &Type::position))
 FETTLE_RECORD(fettle::core::scene::MotionCurve, "MotionCurve", field("rate", &Type::rate), field("times", &Type::times),
@@ -63,7 +64,8 @@ FETTLE_RECORD(fettle::core::scene::MeshProgram, "MeshProgram", path_field("comma
               path_field("directory", &Type::directory), field("format", &Type::format), field("unit", &Type::unit),
               field("time_limit", &Type::time_limit))
 FETTLE_RECORD(fettle::core::scene::ShapeSpec, "ShapeSpec", field("generator", &Type::generator), field("dimensions", &Type::dimensions),
-              field("counts", &Type::counts), field("program", &Type::program))
+              field("counts", &Type::counts), field("program", &Type::program), field("part", &Type::part), field("chord", &Type::chord),
+              field("angles", &Type::angles), field("numbers", &Type::numbers))
 FETTLE_RECORD(fettle::core::scene::Curve, "Curve", field("kind", &Type::kind), field("rate", &Type::rate), field("times", &Type::times),
               field("values", &Type::values), field("stop_time", &Type::stop_time))
 FETTLE_RECORD(fettle::core::scene::Attachment, "Attachment", field("body", &Type::body), field("point", &Type::point),
@@ -103,18 +105,23 @@ public:
 
 FETTLE_RECORD(fettle::core::scene::Inertial, "Inertial", field("mass", &Type::mass), field("centre", &Type::centre),
               field("inertia", &Type::inertia))
+FETTLE_RECORD(fettle::core::scene::Orientation, "Orientation", field("kind", &Type::kind), field("numbers", &Type::numbers))
+FETTLE_RECORD(fettle::core::scene::Variable, "Variable", field("name", &Type::name), field("formula", &Type::formula),
+              field("value", &Type::value))
+FETTLE_RECORD(fettle::core::scene::BoundNumber, "BoundNumber", field("place", &Type::place), field("formula", &Type::formula))
 FETTLE_RECORD(fettle::core::scene::Body, "Body", field("name", &Type::name), field("where", &Type::where), field("type", &Type::type),
               field("mesh", &Type::mesh), field("shape", &Type::shape), field("mesh_policy", &Type::mesh_policy),
               field("density", &Type::density), field("density_given", &Type::density_given), field("mass_kind", &Type::mass_kind),
               field("mass_kind_given", &Type::mass_kind_given), field("inertial", &Type::inertial), field("material", &Type::material),
-              field("mu", &Type::mu), field("pose", &Type::pose), field("linear_velocity", &Type::linear_velocity),
-              field("angular_velocity", &Type::angular_velocity), field("prescribed", &Type::prescribed), field("script", &Type::script),
-              field("force", &Type::force), field("torque", &Type::torque), field("damping", &Type::damping),
-              field("reference_point", &Type::reference_point), field("group", &Type::group))
+              field("mu", &Type::mu), field("pose", &Type::pose), field("orientation", &Type::orientation),
+              field("linear_velocity", &Type::linear_velocity), field("angular_velocity", &Type::angular_velocity),
+              field("prescribed", &Type::prescribed), field("script", &Type::script), field("force", &Type::force),
+              field("torque", &Type::torque), field("damping", &Type::damping), field("reference_point", &Type::reference_point),
+              field("group", &Type::group))
 FETTLE_RECORD(fettle::core::scene::Scene, "Scene", path_field("path", &Type::path), field("length_unit", &Type::length_unit),
               field("bodies", &Type::bodies), field("gravity", &Type::gravity), field("timestep", &Type::timestep),
               field("end_time", &Type::end_time), field("dhat", &Type::dhat), field("dmin", &Type::dmin), field("kappa", &Type::kappa),
               field("area_weighted", &Type::area_weighted), field("contact_damping_time", &Type::contact_damping_time),
               field("friction", &Type::friction), field("mechanism", &Type::mechanism), field("integrator", &Type::integrator),
               field("velocity_tolerance", &Type::velocity_tolerance), field("max_newton_iterations", &Type::max_newton_iterations),
-              field("warnings", &Type::warnings))
+              field("variables", &Type::variables), field("numbers", &Type::numbers), field("warnings", &Type::warnings))

@@ -21,24 +21,25 @@ using studies::OptimiseOutcome;
 
 namespace {
 
-studies::CheckReport check_gradients(const DesignProblem& problem, const py::object& p, int most_parameters, const py::object& progress) {
+gradient_audit::CheckReport check_gradients(const DesignProblem& problem, const py::object& p, int most_parameters,
+                                            const py::object& progress) {
     const auto& parameters = problem.design().parameters;
     const VectorX point = p.is_none() ? description::values_of(parameters) : point_from(parameters, p);
     raise_if_any(description::check_values(parameters, point));
     check_at_least("most_parameters", most_parameters, 0);
     Watch watch(progress);
-    studies::CheckReport report;
+    gradient_audit::CheckReport report;
     std::string reason;
     {
         const py::gil_scoped_release unlocked;
-        studies::CheckOptions options;
+        gradient_audit::CheckOptions options;
         options.most_parameters = most_parameters;
         options.on_simulation = watch.on_count();
         options.should_stop = watch.should_stop();
         problem::EvaluateOptions evaluate;
         evaluate.should_stop = watch.should_stop();
         const problem::DesignEvaluation at = problem.evaluate(point, evaluate);
-        if (at.usable) report = studies::check_gradients(problem, point, at, options);
+        if (at.usable) report = gradient_audit::check_gradients(problem, point, at, options);
         reason = at.reason;
     }
     watch.end();

@@ -109,7 +109,7 @@ Trajectory unpacked(const py::tuple& state) {
     std::size_t wanted = 12 * bodies * (nodes.size() + 1);
     for (const int count : nodes) wanted += 6 * bodies * static_cast<std::size_t>(count);
     if (static_cast<std::size_t>(array.size()) != wanted || fractions.size() != nodes.size())
-        throw py::value_error("this is no trajectory's state");
+        throw py::value_error("this is not a trajectory's state");
     const double* next = array.data();
     const auto take = [&](double* out, int count) {
         std::copy_n(next, count, out);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A long call seen from Python: the interpreter's lock is released while it runs, Ctrl-C ends it, and a callback is told how far it is.
+/// A long call seen from Python: the interpreter's lock is released while it runs, Ctrl-C ends it, and a callback receives its progress.
 #pragma once
 
 #include <pybind11/pybind11.h>

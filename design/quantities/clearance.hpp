@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// Certified clearance of two bodies [m], as assembled or over the motion (or a window of it: the least distance over a long motion jumps
-/// between times that are far apart, and is not smooth there; as one quantity per window each follows its own). As assembled, of a pin in
+/// between times that are far apart, and is not smooth there; as one quantity per window each follows its own). As assembled, for a pin in
 /// a bore drawn concentric, it is the play of the fit (half the diametral one), as long as the fit is where the two are closest.
 ///
-/// Of solids: where they are found to pass through each other no bound is met; where one lies wholly inside the other's material
-/// (PairClearance::solids) it is minus the distance of the surfaces, and no bound is met either. Of bodies that are not closed, which have
-/// no inside, it is the distance of the surfaces.
+/// It is the clearance of solids: where they are found to pass through each other no bound is met; where one lies wholly inside the other's
+/// material (PairClearance::solids) it is minus the distance of the surfaces, and no bound is met either. For bodies that are not closed,
+/// which have no inside, it is the distance of the surfaces.
 #pragma once
 
 #include <utility>
@@ -31,8 +31,8 @@ public:
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
-    /// Of the features that come as near at the witness's instant, and of the nearest instants in each of `branch_windows` equal parts of
-    /// the range's time, the most distinct ones (adjoint/clearance/distinct_witnesses.hpp), and before them the witness.
+    /// The witness, then the most distinct (adjoint/clearance/distinct_witnesses.hpp) of the features that come as near at its instant, and
+    /// of the nearest instants in each of `branch_windows` equal parts of the range's time.
     std::vector<description::Branch> branches(const description::Simulated& simulated, const description::Measurement& measured,
                                               double limit) const override;
     bool is_at_rest() const override { return !range_.motion; }

@@ -177,7 +177,7 @@ void Energy::add_series_seeds(const Simulated& s, const std::vector<double>& wei
 Errors Energy::check(const core::model::Model& model, int steps) const {
     Errors errors = StepSeries::check(model, steps);
     if (kind_ == EnergyKind::kinetic && model.integrator == core::scene::Integrator::quasi_static)
-        errors.push_back({ErrorCode::inconsistent, "", "a quasi-static simulation knows no velocities, so no kinetic energy"});
+        errors.push_back({ErrorCode::inconsistent, "", "a quasi-static simulation has no velocities, so no kinetic energy"});
     for (const Body& body : model.bodies) {
         if (kind_ == EnergyKind::spring || !has_mass(body) || body.given_mass || adjoint::model::has_moments_of_mesh(body, model.dhat))
             continue;

@@ -40,7 +40,7 @@ Errors MarkerSpeed::check(const core::model::Model& model, int steps) const {
     Errors errors = StepSeries::check(model, steps);
     for (const core::base::Error& error : description::check_body(model, of_.body)) errors.push_back(error);
     if (model.integrator == core::scene::Integrator::quasi_static)
-        errors.push_back({ErrorCode::inconsistent, "", "a quasi-static simulation knows no velocities"});
+        errors.push_back({ErrorCode::inconsistent, "", "a quasi-static simulation has no velocities"});
     return errors;
 }
 

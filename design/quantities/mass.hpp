@@ -18,7 +18,7 @@ public:
         core::scene::MassKind kind = core::scene::MassKind::volume;  ///< of the body's scene (the model does not keep it)
     };
     explicit Mass(std::vector<Of> bodies) : bodies_(std::move(bodies)) {}
-    /// Of these bodies of the scene, each by its own kind.
+    /// The mass of these bodies of the scene, each by its own kind.
     Mass(const core::scene::Scene& scene, const std::vector<int>& bodies);
 
     const std::vector<Of>& bodies() const { return bodies_; }

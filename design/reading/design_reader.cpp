@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <set>
 #include <system_error>
 
@@ -11,10 +13,12 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene/place.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/reading/constraint_reader.hpp"
+#include "fettle/design/reading/design_formulas.hpp"
 #include "fettle/design/reading/parameter_reader.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
 #include "fettle/design/reading/relation_reader.hpp"
@@ -36,8 +40,8 @@ public:
 
     Result<DesignFile> read() {
         const JsonNode root = document_.root();
-        root.allow_keys({"$schema", "fettle_design", "description", "scene", "units", "simulation", "parameters", "objective",
-                         "constraints", "optimiser", "output"});
+        root.allow_keys({"$schema", "fettle_design", "description", "scene", "units", "parameters", "variables", "set", "simulation",
+                         "objective", "constraints", "optimiser", "output"});
         root["$schema"].string();
         root["description"].string();
         core::files::is_version(root.require("fettle_design"), 1);
@@ -45,11 +49,17 @@ public:
         const auto unit = root.require("units").choice({"um", "mm", "cm", "m", "in", "ft"});
         if (!unit) return all_errors();  // no length means anything
         file_.length_unit = *find_unit(*unit);
-        if (!read_scene_file(root.require("scene"))) return all_errors();
+        std::optional<JsonDocument> scene = open_scene_file(root.require("scene"));
+        if (!scene) return all_errors();
+        DesignFormulas formulas(document_, to_si(1, file_.length_unit), core::scene_files::variables_of(*scene));
+        design_.parameters = read_parameters(root.require("parameters"), formulas.scene_variables(), file_.length_unit);
+        formulas.add_parameters(root["parameters"], design_.parameters);
+        formulas.read_variables(root["variables"]);
+        if (!has_parameters() || !read_scene_file(*scene, root["set"], formulas)) return all_errors();
         take_shapes();
+        take_numbers(root["parameters"]);
         read_simulation(root["simulation"]);
         const ReadContext context{design_.scene, to_si(1, file_.length_unit), design_.steps * design_.scene.timestep};
-        design_.parameters = read_parameters(root.require("parameters"), context, design_.shapes, file_.length_unit);
         read_objective(root["objective"], context);
         const double margin = read_optimiser(root["optimiser"]);
         design_.constraints = read_constraints(root["constraints"], context, margin);
@@ -58,7 +68,7 @@ public:
         if (const std::string fault = core::base::name_fault(file_.output); !file_.output.empty() && !fault.empty())
             root["output"].fail(ErrorCode::out_of_range, "the folder's name " + fault);
         if (!file_.output.empty()) file_.output = (fs::path(file_.path).parent_path() / file_.output).string();
-        if (!document_.errors().empty()) return all_errors();
+        if (!document_.errors().empty() || !scene_errors_.empty()) return all_errors();
         file_.warnings = document_.warnings();
         file_.warnings.insert(file_.warnings.end(), design_.scene.warnings.begin(), design_.scene.warnings.end());
         file_.warnings.insert(file_.warnings.end(), remarks_.begin(), remarks_.end());
@@ -66,35 +76,87 @@ public:
     }
 
 private:
-    // Names of bodies mean nothing without the scene: its faults end the reading, together with those found so far.
-    bool read_scene_file(const JsonNode& node) {
+    // Can the scene be read with them? Values that are out of their bounds can be set, faults of the form cannot.
+    bool has_parameters() const {
+        const Errors& errors = document_.errors();
+        return std::all_of(errors.begin(), errors.end(), [](const Error& error) {
+            return error.code == ErrorCode::inconsistent || error.code == ErrorCode::out_of_range || error.code == ErrorCode::unsupported;
+        });
+    }
+
+    std::optional<JsonDocument> open_scene_file(const JsonNode& node) {
         const auto name = node.string();
-        if (!name) return false;
+        if (!name) return std::nullopt;
         const std::string wanted = "; `scene` is the path of a scene file from the design's folder";
         if (name->empty()) {
             node.fail(ErrorCode::out_of_range, "it is empty" + wanted);
-            return false;
+            return std::nullopt;
         }
         file_.scene_path = (fs::path(file_.path).parent_path() / *name).string();
         std::error_code ignored;
         if (core::mesh_files::has_mesh_extension(*name) || fs::is_directory(file_.scene_path, ignored)) {
             const char* found = core::mesh_files::has_mesh_extension(*name) ? " is a mesh, which a scene names" : " is a folder";
             node.fail(ErrorCode::unsupported, file_.scene_path + found + wanted);
-            return false;
+            return std::nullopt;
         }
-        Result<core::scene::Scene> scene =
-            core::scene::read_scene(file_.scene_path, scene_read_options(options_.mesh_dirs, options_.programs, parts_));
+        Result<JsonDocument> scene = JsonDocument::read(file_.scene_path);
+        if (scene) return std::move(scene).value();
+        scene_errors_ = scene.errors();
+        if (scene_errors_.front().code == ErrorCode::file_not_found) {
+            scene_errors_.clear();
+            node.fail(ErrorCode::file_not_found,
+                      "there is no scene file " + file_.scene_path + "; `scene` is its path from the design's folder");
+        }
+        return std::nullopt;
+    }
+
+    // With the parameters for its variables, and with what the design sets. Names of bodies mean nothing without the scene: its faults end
+    // the reading, together with those found so far.
+    bool read_scene_file(JsonDocument& document, const JsonNode& set, const DesignFormulas& formulas) {
+        core::scene::ReadOptions options = scene_read_options(options_.mesh_dirs, options_.programs, parts_);
+        options.inputs = formulas.inputs_of_scene();
+        for (const auto& [pointer, value] : set.members()) options.replacements.push_back({pointer, value});
+        Result<core::scene::Scene> scene = core::scene_files::read_scene(document, options);
         if (!scene) {
             scene_errors_ = scene.errors();
-            if (scene_errors_.front().code == ErrorCode::file_not_found && scene_errors_.front().where == file_.scene_path) {
-                scene_errors_.clear();
-                node.fail(ErrorCode::file_not_found,
-                          "there is no scene file " + file_.scene_path + "; `scene` is its path from the design's folder");
-            }
             return false;
         }
         design_.scene = std::move(scene).value();
         return true;
+    }
+
+    // What follows from the parameters; the scene's other variables are constant here.
+    void take_numbers(const JsonNode& parameters) {
+        std::map<std::string, core::expression::Formula> constants;
+        for (const core::scene::Variable& variable : design_.scene.variables)
+            if (variable.formula.is_constant())
+                constants[variable.name] = core::expression::constant_formula(variable.value, variable.formula.dimension);
+        std::set<std::string> used;
+        for (core::scene::BoundNumber& number : design_.scene.numbers) {
+            number.formula = core::expression::substituted(number.formula, constants);
+            if (!number.formula.is_constant()) design_.numbers.push_back(number);
+            used.insert(number.formula.inputs.begin(), number.formula.inputs.end());
+        }
+        const std::vector<JsonNode> nodes = parameters.elements();
+        for (std::size_t k = 0; k < design_.parameters.size(); ++k)
+            if (used.count(design_.parameters[k].name) == 0)
+                nodes[k].fail(ErrorCode::inconsistent,
+                              "no number of the scene follows from parameter \"" + design_.parameters[k].name +
+                                  "\": use it in a formula there, or in the design's `set`, such as \"/bodies/" +
+                                  (design_.scene.bodies.empty() ? std::string("0") : design_.scene.bodies.front().name) +
+                                  "/position/0\": \"= " + core::expression::quoted_if_needed(design_.parameters[k].name) + "\"");
+        check_scaled_parts();
+    }
+
+    void check_scaled_parts() {
+        for (const core::scene::BoundNumber& number : design_.numbers) {
+            const std::size_t at = number.place.find("/shape/dimensions/");
+            if (at == std::string::npos) continue;
+            const core::scene::Place place = core::scene::find_place(design_.scene, number.place).value();
+            if (design_.shapes[static_cast<std::size_t>(place.item)]) continue;
+            scene_errors_.push_back({ErrorCode::unsupported, design_.scene.bodies[static_cast<std::size_t>(place.item)].where,
+                                     "it has a `scale`; a part that parameters move has none: give its dimensions their full size"});
+        }
     }
 
     // A part that the scene has scaled is none that a parameter can move.

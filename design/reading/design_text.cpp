@@ -33,9 +33,9 @@ std::string design_text(const DesignFile& file, const VectorX& values, const std
         auto& entry = json["parameters"][k];
         const double value = values[static_cast<Eigen::Index>(k)];
         // A value at a bound is written as the bound is: a neighbour with the same SI value could lie outside.
-        entry["value"] = value == parameter.lower   ? entry["lower"].get<double>()
-                         : value == parameter.upper ? entry["upper"].get<double>()
-                                                    : description::from_si(value, parameter.unit);
+        entry["value"] = value == parameter.lower   ? entry["lower"]
+                         : value == parameter.upper ? entry["upper"]
+                                                    : nlohmann::ordered_json(description::from_si(value, parameter.unit));
     }
     std::error_code failure;
     const fs::path scene = fs::relative(fs::absolute(file.scene_path), fs::absolute(directory), failure);

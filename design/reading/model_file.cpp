@@ -14,7 +14,7 @@
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/model/check_scene.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
@@ -33,7 +33,7 @@ std::string extension_of(const std::string& path) {
     return extension;
 }
 
-/// A file that is no JSON by its name and by its first character: there is no use in telling where its syntax is wrong.
+/// A file that is not JSON by its name and by its first character: there is no use in telling where its syntax is wrong.
 bool is_foreign(const std::string& path) {
     const std::string extension = extension_of(path);
     if (extension == ".json" || extension.empty()) return false;
@@ -54,7 +54,7 @@ Errors foreign_error(const std::string& path) {
 Errors strict_faults(const std::string& scene_path, const InputOptions& options) {
     core::scene::ReadOptions read_options = scene_read_options(options.mesh_dirs, options.programs);
     read_options.strict_meshes = true;
-    const Result<core::scene::Scene> scene = core::scene::read_scene(scene_path, read_options);
+    const Result<core::scene::Scene> scene = core::scene_files::read_scene(scene_path, read_options);
     if (!scene) return scene.errors();
     const core::model::SceneCheck check = core::model::check_scene(*scene, true);
     return check.errors.empty() ? as_errors(check.warnings, scene_path) : check.errors;
@@ -83,7 +83,7 @@ Result<LoadedModel> load_scene(const std::string& path, const InputOptions& opti
     core::scene::ReadOptions read_options = scene_read_options(options.mesh_dirs, options.programs);
     read_options.strict_meshes = options.strict;
     read_options.should_stop = options.should_stop;
-    Result<core::scene::Scene> scene = core::scene::read_scene(path, read_options);
+    Result<core::scene::Scene> scene = core::scene_files::read_scene(path, read_options);
     if (!scene) return scene.errors();
     LoadedModel loaded;
     loaded.scene_path = path;

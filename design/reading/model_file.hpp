@@ -39,12 +39,12 @@ struct LoadedModel {
     std::shared_ptr<const problem::DesignProblem> problem;  ///< of a design; else null
 };
 
-/// From a scene, or from a design at its parameters' values. Errors: what is neither (a mesh, a table, another program's file) is told with
-/// what is read instead; with `strict` its warnings too. @param kind  of the file
+/// From a scene, or from a design at its parameters' values. Errors: what is neither (a mesh, a table, another program's file) is named
+/// with what is read instead; with `strict` its warnings too. @param kind  of the file
 Result<LoadedModel> load_model(const std::string& path, FileKind kind, const InputOptions& options);
 Result<LoadedModel> load_model(const std::string& path, const InputOptions& options);
 
-/// A design, for what takes nothing else. Errors: a file that is something else by its name and first character is told with what is read
+/// A design, for what takes nothing else. Errors: a file that is something else by its name and first character is named with what is read
 /// instead; with `strict` also faults of its meshes, and what is doubted of its scene.
 Result<DesignFile> open_design(const std::string& path, const InputOptions& options);
 

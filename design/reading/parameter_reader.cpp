@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/reading/parameter_reader.hpp"
 
+#include <algorithm>
+#include <cstdio>
 #include <set>
 
-#include "fettle/design/reading/move_reader.hpp"
+#include "fettle/core/base/text.hpp"
+#include "fettle/design/reading/former_moves.hpp"
 
 namespace fettle::design::reading {
 
@@ -12,7 +15,7 @@ namespace {
 using core::files::JsonNode;
 using description::Parameter;
 
-// Of what a parameter can move, and pure numbers.
+// Units of the numbers that a parameter can move, and of pure numbers.
 std::vector<std::string_view> parameter_unit_names() {
     std::vector<std::string_view> names;
     for (const Dimension dimension :
@@ -25,13 +28,19 @@ std::vector<std::string_view> parameter_unit_names() {
     return names;
 }
 
+std::string in_its_unit(double si, const Unit& unit) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%g", description::from_si(si, unit));
+    return text;
+}
+
 // " mm"; of a pure number nothing.
 std::string in_unit(const Unit& unit) { return unit.dimension == Dimension::number ? "" : " " + std::string(unit.name); }
 
 class ParameterReader {
 public:
-    ParameterReader(const ReadContext& context, const Shapes& shapes, const Unit& default_unit)
-        : context_(context), shapes_(shapes), default_unit_(default_unit) {}
+    ParameterReader(const std::vector<core::scene::Variable>& variables, const Unit& length_unit)
+        : variables_(variables), length_unit_(length_unit) {}
 
     Parameter read(const JsonNode& node) {
         Parameter parameter;
@@ -40,13 +49,13 @@ public:
         node["description"].string();
         read_name(node.require("name"), parameter);
         const auto unit = node["unit"].choice(parameter_unit_names());
-        parameter.unit = unit ? *find_unit(*unit) : default_unit_;
-        read_range(node, parameter);
-        const JsonNode moves = node.require("moves");
-        if (moves.is_array() && moves.elements().empty()) moves.fail(ErrorCode::out_of_range, "a parameter that moves nothing");
-        for (const JsonNode& entry : moves.objects()) {
-            for (description::Move& move : read_moves(entry, context_, shapes_, parameter)) parameter.moves.push_back(std::move(move));
-        }
+        const core::scene::Variable* variable = variable_of(parameter.name);
+        parameter.unit = unit ? *find_unit(*unit) : default_unit(variable);
+        if (variable != nullptr && !same(variable->formula.dimension, core::expression::powers_of(parameter.unit.dimension)))
+            node.fail(ErrorCode::wrong_type, "the scene's variable `" + parameter.name + "` is " + described(variable->formula.dimension) +
+                                                 "; a parameter in " + std::string(parameter.unit.name) + " cannot replace it");
+        read_range(node, variable, parameter);
+        if (node["moves"].exists()) node["moves"].fail(ErrorCode::unsupported, instead_of_moves(node["moves"], parameter.name));
         return parameter;
     }
 
@@ -54,37 +63,57 @@ private:
     void read_name(const JsonNode& node, Parameter& parameter) {
         parameter.name = node.string().value_or("");
         if (!node.is_string()) return;
-        if (parameter.name.empty()) node.fail(ErrorCode::out_of_range, "a parameter's name is not empty");
+        if (parameter.name.empty()) node.fail(ErrorCode::out_of_range, "a parameter's name must not be empty");
+        if (const std::string fault = core::base::name_fault(parameter.name); !parameter.name.empty() && !fault.empty())
+            node.fail(ErrorCode::out_of_range, "its name " + fault + "; a name is text on one line");
         if (!names_.insert(parameter.name).second) {
             node.fail(ErrorCode::inconsistent, "another parameter is called " + node.shown() + " already; names are unique");
         }
     }
 
-    void read_range(const JsonNode& node, Parameter& parameter) {
-        const auto value = node.require("value").number(), lower = node.require("lower").number(), upper = node.require("upper").number();
+    const core::scene::Variable* variable_of(const std::string& name) const {
+        const auto found = std::find_if(variables_.begin(), variables_.end(), [&](const auto& variable) { return variable.name == name; });
+        return found == variables_.end() ? nullptr : &*found;
+    }
+
+    // The unit in which people write such a quantity.
+    Unit default_unit(const core::scene::Variable* variable) const {
+        const auto dimension =
+            variable == nullptr ? Dimension::length : named_dimension(variable->formula.dimension).value_or(Dimension::length);
+        if (dimension == Dimension::length) return length_unit_;
+        return *find_unit(dimension == Dimension::angle ? "deg" : dimension == Dimension::angular_speed ? "deg/s" : si_unit(dimension));
+    }
+
+    void read_range(const JsonNode& node, const core::scene::Variable* variable, Parameter& parameter) {
+        const auto read = [&](const JsonNode& from) { return from.quantity(parameter.unit.dimension, to_si(1, parameter.unit)); };
+        const auto lower = read(node.require("lower")), upper = read(node.require("upper"));
+        auto value = read(variable == nullptr ? node.require("value") : node["value"]);
+        if (!node["value"].exists() && variable != nullptr) value = variable->value;
+        const auto shown = [&](const JsonNode& from) {
+            return from.exists() ? from.shown() : in_its_unit(value.value_or(0), parameter.unit);
+        };
         if (lower && upper && *lower > *upper) {
             node["lower"].fail(ErrorCode::inconsistent, "the lower bound " + node["lower"].shown() + " is above the upper bound " +
                                                             node["upper"].shown() + " of parameter \"" + parameter.name + "\"");
         } else if (value && lower && upper && (*value < *lower || *value > *upper)) {
-            node["value"].fail(ErrorCode::out_of_range, "the value " + node["value"].shown() + " lies outside the bounds [" +
+            node["value"].fail(ErrorCode::out_of_range, "the value " + shown(node["value"]) + " lies outside the bounds [" +
                                                             node["lower"].shown() + ", " + node["upper"].shown() + "]" +
                                                             in_unit(parameter.unit));
         }
-        parameter.value = to_si(value.value_or(0), parameter.unit);
-        parameter.lower = to_si(lower.value_or(0), parameter.unit);
-        parameter.upper = to_si(upper.value_or(0), parameter.unit);
+        parameter.value = value.value_or(0);
+        parameter.lower = lower.value_or(0);
+        parameter.upper = upper.value_or(0);
     }
 
-    const ReadContext& context_;
-    const Shapes& shapes_;
-    const Unit& default_unit_;
+    const std::vector<core::scene::Variable>& variables_;
+    const Unit& length_unit_;
     std::set<std::string> names_;
 };
 
 }  // namespace
 
-std::vector<Parameter> read_parameters(const JsonNode& node, const ReadContext& context, const Shapes& shapes, const Unit& default_unit) {
-    ParameterReader reader(context, shapes, default_unit);
+std::vector<Parameter> read_parameters(const JsonNode& node, const std::vector<core::scene::Variable>& variables, const Unit& length_unit) {
+    ParameterReader reader(variables, length_unit);
     std::vector<Parameter> parameters;
     for (const JsonNode& entry : node.elements()) parameters.push_back(reader.read(entry));
     if (node.is_array() && parameters.empty()) node.fail(ErrorCode::out_of_range, "a design needs a parameter");

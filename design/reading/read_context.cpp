@@ -43,11 +43,6 @@ double ReadContext::unit(Dimension dimension) const {
     }
 }
 
-double ReadContext::formula_unit(Dimension dimension) const {
-    const bool is_angle = dimension == Dimension::angle || dimension == Dimension::angular_speed;
-    return is_angle ? to_si(1, *find_unit("deg")) : unit(dimension);
-}
-
 std::string unique_name(const std::string& wanted, std::set<std::string>& taken) {
     std::string name = wanted;
     for (int k = 2; !taken.insert(name).second; ++k) name = wanted + " " + std::to_string(k);

@@ -23,8 +23,6 @@ struct ReadContext {
     std::optional<Vector3> axis(const core::files::JsonNode& node) const;
     /// SI value of the unit that plain numbers of this dimension are in: lengths and areas by the file's unit, masses in grams, else SI.
     double unit(Dimension dimension) const;
-    /// The same within formulas, where angles count in degrees, and dimensions that have no unit of their own in SI.
-    double formula_unit(Dimension dimension) const;
 };
 
 /// `wanted`, or "wanted 2", "wanted 3", ... if it is taken; takes it.

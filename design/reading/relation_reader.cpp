@@ -33,7 +33,7 @@ class RelationReader {
 public:
     RelationReader(const ReadContext& context, const std::vector<description::Parameter>& parameters, std::set<std::string> names)
         : context_(context), parameters_(parameters), scope_(description::scope_of(parameters)), names_(std::move(names)) {
-        scope_.plain_unit = [&context](Dimension dimension) { return context.formula_unit(dimension); };
+        scope_.plain_unit = core::expression::plain_units(context.length_unit, context.unit(Dimension::mass));
     }
 
     std::optional<Relation> read(const JsonNode& node) {

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/reading/scene_shapes.hpp"
 
+#include <map>
+#include <string>
+
+#include "fettle/design/shapes/file_part.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
 #include "fettle/design/shapes/mesh_program.hpp"
+#include "fettle/design/shapes/part_library.hpp"
 
 namespace fettle::design::reading {
 
@@ -16,7 +21,41 @@ MadeShape as_shape(const Result<std::shared_ptr<const Part>>& part) {
     return std::shared_ptr<const description::Shape>(*part);
 }
 
+// How its facets are cut is said with its counts.
+MadeShape part_of_file(const core::scene::ShapeSpec& spec) {
+    core::part_files::Counts counts = spec.counts;
+    core::parts::Facets facets;
+    facets.chord = spec.chord;
+    const auto segments = counts.find("segments");
+    if (segments != counts.end()) {
+        constexpr int fewest = 8, most = 720;
+        if (segments->second < fewest || segments->second > most)
+            return Error{ErrorCode::out_of_range, "counts/segments",
+                         "segments is " + std::to_string(segments->second) + "; allowed: from 8 to 720"};
+        if (spec.chord > 0)
+            return Error{ErrorCode::inconsistent, "counts/segments",
+                         "`facets` says how far facets may be from what is round; `segments` goes without it"};
+        facets.segments = segments->second;
+        counts.erase(segments);
+    }
+    auto file = shapes::find_part(spec.part, counts);
+    if (!file) return file.errors();
+    return as_shape(shapes::FilePart::create(std::move(file).value(), spec.dimensions, facets));
+}
+
+Result<std::map<std::string, core::base::Dimension>> dimensions_of_part(const core::scene::ShapeSpec& spec) {
+    core::part_files::Counts counts = spec.counts;
+    counts.erase("segments");
+    const auto file = shapes::find_part(spec.part, counts);
+    if (!file) return file.errors();
+    std::map<std::string, core::base::Dimension> out;
+    for (const core::part_files::PartDimension& dimension : file->dimensions())
+        out[dimension.name] = core::part_files::dimension_of(dimension.kind);
+    return out;
+}
+
 MadeShape shape_of_spec(const core::scene::ShapeSpec& spec, Programs programs) {
+    if (!spec.part.empty()) return part_of_file(spec);
     if (!spec.program) {
         shapes::ShapeOptions options;
         for (const auto& [name, value] : spec.counts) {
@@ -42,6 +81,7 @@ core::scene::ReadOptions scene_read_options(const std::vector<std::string>& mesh
                                             const std::shared_ptr<std::vector<MadePart>>& made) {
     core::scene::ReadOptions options;
     options.mesh_dirs = mesh_dirs;
+    options.part_dimensions = dimensions_of_part;
     options.shape_generator = [programs, made](const core::scene::ShapeSpec& spec) -> Result<core::geometry::Mesh> {
         for (const MadePart& part : *made)
             if (part.spec == spec) return part.mesh;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Joins the scene's description of parts that are made (core/scene/scene.hpp, ShapeSpec) with the generators (shapes/generated_part.hpp)
-/// and the designer's own programs (shapes/mesh_program.hpp).
+/// Joins the scene's description of parts that are made (core/scene/scene.hpp, ShapeSpec) with the generators (shapes/generated_part.hpp),
+/// the parts of files (shapes/file_part.hpp) and the designer's own programs (shapes/mesh_program.hpp).
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/design/description/shape.hpp"
 
 namespace fettle::design::reading {

@@ -12,7 +12,7 @@ namespace fettle::design::report {
 
 inline constexpr double millimetre = 1e-3;  ///< [m]
 
-/// Discarded if it is no JSON.
+/// Discarded if it is not JSON.
 inline nlohmann::ordered_json parsed_json(const std::string& text) {
     using Json = nlohmann::ordered_json;
     return core::files::is_safe_json_text(text) ? Json::parse(text, nullptr, false) : Json(Json::value_t::discarded);

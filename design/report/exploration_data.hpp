@@ -20,7 +20,7 @@
 
 namespace fettle::design::report {
 
-/// Of so many designs, the best ones, the parts are put into a page.
+/// The parts of so many designs, the best ones, are put into a page.
 inline constexpr std::size_t most_shown_designs = 60;
 
 struct ExplorationSource {

@@ -27,8 +27,8 @@ Errors read_lines(const std::string& file, ExplorationSource& source) {
     std::getline(lines, line);
     source.header = parsed_json(line);
     if (member(source.header, "fettle_explore") != 1)
-        return {
-            {ErrorCode::missing_key, file, "no exploration: its first line has no `fettle_explore` 1; `fettle explore` writes such files"}};
+        return {{ErrorCode::missing_key, file,
+                 "not an exploration: its first line has no `fettle_explore` 1; `fettle explore` writes such files"}};
     int damaged = 0;
     while (std::getline(lines, line)) {
         if (line.empty()) continue;

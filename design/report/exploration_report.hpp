@@ -10,9 +10,9 @@
 
 namespace fettle::design::report {
 
-/// The design is the one that the file names, relative to the file's own folder; what it is needed for is left out, and told, where it is
-/// not there. A last line that was cut off is left out; lines that are none of a result are counted in a notice.
-/// @param options  `motion` counts for nothing.
+/// The design is the one that the file names, relative to the file's own folder; what it is needed for is left out, with a note, where it
+/// is not there. A last line that was cut off is left out; lines that are none of a result are counted in a notice.
+/// @param options  `motion` has no effect.
 /// @return the path of the report. Errors: a file that cannot be read, is no exploration, or has no result; a FILE.report.html of another
 /// program (one that `options.out` names is replaced).
 Result<std::string> write_exploration_report(const std::string& file, const ReportOptions& options = {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// What the report's picture is made of: meshes, each once, and where the bodies are at times. Lengths in mm, single precision: for the
-/// eye; what is certified is told in numbers, from doubles.
+/// eye; certified values are given as numbers, from doubles.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

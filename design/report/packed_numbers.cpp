@@ -4,6 +4,8 @@
 #include <bit>
 #include <nlohmann/json.hpp>
 
+#include "fettle/design/exports/base64.hpp"
+
 namespace fettle::design::report {
 
 namespace {
@@ -21,21 +23,10 @@ std::string bytes_of(const std::vector<Number>& numbers) {
 
 }  // namespace
 
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-        std::uint32_t word = 0;
-        for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-        for (std::size_t k = 0; k < 4; ++k) text += k <= count ? digits[word >> (18 - 6 * k) & 63] : '=';
-    }
-    return text;
+nlohmann::ordered_json packed(const std::vector<float>& numbers) { return {{"f32", exports::base64(bytes_of<std::uint32_t>(numbers))}}; }
+nlohmann::ordered_json packed(const std::vector<double>& numbers) { return {{"f64", exports::base64(bytes_of<std::uint64_t>(numbers))}}; }
+nlohmann::ordered_json packed(const std::vector<std::uint32_t>& numbers) {
+    return {{"u32", exports::base64(bytes_of<std::uint32_t>(numbers))}};
 }
-
-nlohmann::ordered_json packed(const std::vector<float>& numbers) { return {{"f32", base64(bytes_of<std::uint32_t>(numbers))}}; }
-nlohmann::ordered_json packed(const std::vector<double>& numbers) { return {{"f64", base64(bytes_of<std::uint64_t>(numbers))}}; }
-nlohmann::ordered_json packed(const std::vector<std::uint32_t>& numbers) { return {{"u32", base64(bytes_of<std::uint32_t>(numbers))}}; }
 
 }  // namespace fettle::design::report

@@ -5,14 +5,9 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
-#include <string>
-#include <string_view>
 #include <vector>
 
 namespace fettle::design::report {
-
-/// RFC 4648, with padding.
-std::string base64(std::string_view bytes);
 
 nlohmann::ordered_json packed(const std::vector<float>& numbers);
 nlohmann::ordered_json packed(const std::vector<double>& numbers);

@@ -57,7 +57,7 @@ void add_optimisation(Json& data, const ReportSource& source) {
     const Json starts = member(result, "starts"), optimality = member(result, "optimality");
     if (starts.is_array())
         data["notices"].push_back("The best of " + std::to_string(starts.size()) + " starts, seed " + member(result, "seed").dump() +
-                                  "; the table of starts tells of all.");
+                                  "; the table of starts has all.");
     data["optimality"] = optimality.is_object() ? Json{{"predicted_gain", member(optimality, "predicted_gain")},
                                                        {"worth", member(optimality, "worth")},
                                                        {"judged", member(optimality, "judged")}}

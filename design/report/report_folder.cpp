@@ -8,7 +8,7 @@
 #include "fettle/core/records/geometry_hash.hpp"
 #include "fettle/core/records/step_tables.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
@@ -38,8 +38,8 @@ Result<Json> read_result(const fs::path& folder) {
         return Error{ErrorCode::file_not_found, file.string(),
                      "is not there: a report is made of a folder that optimise, simulate or clearance wrote with --out"};
     Json result = parsed_json(*text);
-    if (result.is_discarded()) return Error{ErrorCode::parse, file.string(), "is no JSON"};
-    if (!kind_of(result)) return Error{ErrorCode::unsupported, file.string(), "is no answer of optimise, simulate or clearance"};
+    if (result.is_discarded()) return Error{ErrorCode::parse, file.string(), "is not JSON"};
+    if (!kind_of(result)) return Error{ErrorCode::unsupported, file.string(), "is not an answer of optimise, simulate or clearance"};
     return result;
 }
 
@@ -153,7 +153,8 @@ public:
         source_.tables = source_.kind == ReportKind::simulate ? read_tables(folder_) : StepTables{};
         source_.name = name_of(scene_path_, folder_);
         if (!source_.tables.joints.empty() && !scene.empty()) {
-            const auto read = core::scene::read_scene(scene_path_, reading::scene_read_options(options_.mesh_dirs, options_.programs));
+            const auto read =
+                core::scene_files::read_scene(scene_path_, reading::scene_read_options(options_.mesh_dirs, options_.programs));
             if (read) source_.linear = linear_motors(read->mechanism);
         }
         return {};

@@ -5,8 +5,8 @@
 ///   trajectory.json    bodies and motion
 ///   design.final.json, history.jsonl      of an optimisation
 ///   steps.csv, contacts.csv, drives.csv, joints.csv     forces and energies
-/// Others that are there are offered beside the page. Of an optimisation the motion of the design before (trajectory.start.json) and these
-/// tables are computed, and kept there, where they are missing: two simulations.
+/// The page links to other files that are there. For an optimisation the motion of the design before (trajectory.start.json) and these
+/// tables are computed where they are missing, in two simulations, and kept there.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,7 @@
 
 namespace fettle::design::report {
 
-/// Of a file of lines that a run was adding to when it ended.
+/// The note on a file of lines that a run was adding to when it ended.
 inline constexpr const char* cut_off = "The last line of the file was cut off, as a run that is killed leaves it: it was left out.";
 
 /// A design that has been optimised.
@@ -33,14 +33,14 @@ struct FinalDesign {
     VectorX values;                                   ///< of the parameters at the end
 };
 
-/// Of the folder, what need not be read.
+/// What of the folder need not be read.
 struct AtHand {
     std::optional<nlohmann::ordered_json> answer = {};  ///< that of result.json
     std::optional<Motion> motion = {};                  ///< of the folder's trajectory, with its scene's path
     std::optional<FinalDesign> design = {};             ///< of design.final.json
 };
 
-/// Of an optimisation that has just ended; both must outlive it.
+/// The values of an optimisation that has just ended; both must outlive it.
 AtHand at_hand(const reading::DesignFile& file, const problem::DesignProblem& problem, const studies::OptimiseOutcome& outcome);
 
 struct ReportOptions {

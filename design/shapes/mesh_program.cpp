@@ -155,7 +155,7 @@ Errors check_program(const MeshProgram& program, const std::vector<ShapeDimensio
                 named[static_cast<std::size_t>(found - known.begin())] = true;
             } else {
                 errors.push_back(
-                    {ErrorCode::unknown_key, "program", "{" + name + "} is no dimension; " + core::files::did_you_mean(name, known)});
+                    {ErrorCode::unknown_key, "program", "{" + name + "} is not a dimension; " + core::files::did_you_mean(name, known)});
             }
             return std::string();
         });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How finely a program wrote the coordinates of a mesh: told by the coordinates themselves, so that steps of differences can be chosen.
+/// How finely a program wrote the coordinates of a mesh: estimated from the coordinates themselves, so that steps of differences can be
+/// chosen.
 #pragma once
 
 #include "fettle/core/base/types.hpp"

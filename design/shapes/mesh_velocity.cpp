@@ -9,8 +9,8 @@
 #include <set>
 #include <vector>
 
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/geometry/distance.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 namespace fettle::design::shapes {
 
@@ -106,7 +106,7 @@ struct NormalSum {
 };
 
 Vector3 least_velocity(const NormalSum& sum) {
-    const SymmetricEigen<3> eigen = symmetric_eigen<3>(sum.matrix);
+    const core::linear::SymmetricEigen<3> eigen = core::linear::symmetric_eigen<3>(sum.matrix);
     Vector3 v = Vector3::Zero();
     for (int i = 0; i < 3; ++i) {  // directions that hardly any normal has are left at rest
         if (eigen.values[i] > 1e-3 * eigen.values[2]) v += eigen.vectors.col(i) * (eigen.vectors.col(i).dot(sum.right) / eigen.values[i]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// A part from anything that makes a mesh when it is given dimensions: a program (mesh_program.hpp), a function of Python's. Its derivative
 /// comes from rebuilt meshes: central differences in each dimension, of two widths, extrapolated where they differ by more than rounding
-/// explains (mesh_velocity.hpp says how vertices are told apart).
+/// explains (mesh_velocity.hpp says how vertices are distinguished).
 /// Meshes are kept by their dimensions, so that nothing is built twice; those beside a design are built in parallel.
 #pragma once
 
@@ -23,7 +23,7 @@ namespace fettle::design::shapes {
 using MeshMaker = std::function<Result<core::geometry::Mesh>(const std::vector<double>& values)>;
 
 struct RebuiltOptions {
-    double unit = 1;                      ///< that the maker writes coordinates in [m]: their rounding is told by their digits
+    double unit = 1;                      ///< that the maker writes coordinates in [m]: their rounding is estimated from their digits
     std::optional<double> rounding = {};  ///< of coordinates [m]; default: coordinate_rounding
     std::size_t kept = 256;               ///< meshes, of the last dimensions asked for
 };
@@ -39,7 +39,7 @@ public:
     Result<core::geometry::Mesh> mesh(const std::vector<double>& values) const override;
     /// Errors: what the maker says, here or beside; a topology that changes beside.
     Result<description::ShapeInstance> at(const std::vector<double>& values) const override;
-    /// A sentence for each dimension: the step of its differences, how vertices were told apart, how far the derivative may be off.
+    /// A sentence for each dimension: the step of its differences, how vertices were distinguished, how far the derivative may be off.
     std::vector<std::string> remarks(const std::vector<double>& values) const override;
 
 private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Shapes from dimensions: solids with fixed connectivity and the exact derivative of every vertex with respect to every
-/// dimension (docs/method.md section 11). Each is one closed, outward oriented mesh without self-intersection for every set of
+/// dimension (docs/method/shapes.md). Each is one closed, outward oriented mesh without self-intersection for every set of
 /// dimensions that `generate` accepts; dimensions that would break that are refused with what is allowed.
 /// How circles become polygons: unit_circle.hpp. The parts: engine_parts.hpp says how they go together.
 #pragma once

@@ -128,7 +128,7 @@ std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, i
 }
 
 HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) {
-    if (!core::files::is_safe_json_text(line)) throw std::runtime_error("is no JSON of a history");
+    if (!core::files::is_safe_json_text(line)) throw std::runtime_error("is not JSON of a history");
     const Json json = Json::parse(line);
     HistoryEntry entry;
     entry.model = json.value("model", std::string());

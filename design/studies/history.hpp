@@ -61,7 +61,7 @@ public:
     /// Why what was appended is not all on the disk (file_unwritable); nothing where it is.
     Errors unwritten() const;
 
-    /// Of the file that `fresh` renamed away; empty if there was none.
+    /// Name of the file that `fresh` renamed away; empty if there was none.
     const std::string& kept_as() const { return kept_as_; }
 
 private:

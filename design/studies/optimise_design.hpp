@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Optimises a design: optimiser, final evaluation with certificates, what limits it. In memory: nothing is read or written but the
-/// history, if one is given. Of a design file, with its files: optimise_file.hpp.
+/// history, if one is given. For a design file, with its files: optimise_file.hpp.
 #pragma once
 
 #include <cstdint>
@@ -48,8 +48,8 @@ struct OptimiseOutcome {
 /// Errors: the optimiser's name.
 Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, const OptimiseOptions& options = {});
 
-/// Which requirements a design meets, and not by the values of another model of the same motion: what a proof is worth there hangs on which
-/// of the two a real mechanism is like. None where the other is not usable.
+/// Which requirements a design meets, and not by the values of another model of the same motion: what a proof is worth there depends on
+/// which of the two a real mechanism is like. None where the other is not usable.
 std::vector<size_t> requirements_in_doubt(const description::Design& design, const problem::DesignEvaluation& own,
                                           const problem::DesignEvaluation& other);
 

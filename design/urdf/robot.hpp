@@ -50,7 +50,7 @@ struct Robot {
     std::vector<Joint> joints;
 };
 
-/// Of a frame in the world: that of the outer one in the world and its own in the outer one.
+/// The pose of a frame in the world, from that of the outer one in the world and its own in the outer one.
 inline core::kinematics::Pose composed(const core::kinematics::Pose& outer, const core::kinematics::Pose& inner) {
     return {outer.rotation * inner.rotation, core::kinematics::world_position(outer, inner.position)};
 }

@@ -93,7 +93,7 @@ private:
             geometry.scale = vector("scale", Vector3::Ones());
         } else {
             xml_.fail(ErrorCode::unsupported,
-                      "<" + std::string(name) + "> is no geometry that is read; there are box, cylinder, sphere, mesh");
+                      "<" + std::string(name) + "> is not a geometry that is read; known are box, cylinder, sphere, mesh");
         }
     }
 
@@ -140,7 +140,7 @@ private:
         const auto text = xml_.attribute(key);
         if (!text) return std::nullopt;
         const auto value = core::files::parsed_number(*text);
-        if (!value) xml_.fail(ErrorCode::parse, "the attribute `" + std::string(key) + "` is no number");
+        if (!value) xml_.fail(ErrorCode::parse, "the attribute `" + std::string(key) + "` is not a number");
         if (value && !(std::abs(*value) <= 1e30))
             xml_.fail(ErrorCode::not_finite, "the attribute `" + std::string(key) + "` is not finite, or beyond 1e30");
         return value;

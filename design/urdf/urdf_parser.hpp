@@ -2,7 +2,7 @@
 /// Reads a URDF file (ROS's unified robot description format) into a Robot. Taken: links (mass and inertia, collision, visual: box,
 /// cylinder, sphere, mesh), joints (type, origin, axis, limit, dynamics, mimic). Passed over: materials, transmissions, sensors, effort and
 /// velocity limits, safety controllers, Gazebo's elements.
-/// By the XML reader that 3MF has and not by ROS's liburdfdom: that tells faults on a console without file and line, and would bring a
+/// By the XML reader that 3MF has and not by ROS's liburdfdom: that reports faults on a console without file and line, and would bring a
 /// second XML reader without the limits of the first.
 #pragma once
 

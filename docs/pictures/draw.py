@@ -17,7 +17,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 DESIGN = "examples/slider_crank/slider_crank.design.json"
 PICTURES = ("scene", "parts", "play", "margins", "contact", "convergence")
 COLOURS = {}  # of parts, as `fettle draw` has them
-INK, GREY, NEAREST, ALARM = "#222222", "#888888", "#1f56c4", "#c2182f"  # the last two as design/exports/palette.hpp has them
+INK, GREY, LINE = "#1d2024", "#5c626b", "#e3e0d9"  # as the report's page has them (design/report/web/src/style.css)
+NEAREST, ALARM = "#1f56c4", "#c2182f"  # as design/exports/palette.hpp has them, and INK
 
 
 def svg(width, height, parts):
@@ -123,7 +124,7 @@ class Axes:
             self.parts.append(label(self.place(value, y[0])[0], bottom + 17, f"{value:g}", "middle", GREY))
         for value in y[2]:
             px, py = self.place(x[0], value)
-            self.parts += [label(px - 6, py + 4, f"{value:g}", "end", GREY), line([(px, py), (px + self.width, py)], "#e6e6e6", 1)]
+            self.parts += [label(px - 6, py + 4, f"{value:g}", "end", GREY), line([(px, py), (px + self.width, py)], LINE, 1)]
 
     def place(self, x, y):
         return (self.x0 + self.width * (x - self.x[0]) / (self.x[1] - self.x[0]),

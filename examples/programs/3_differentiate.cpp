@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A design made in memory, with a quantity of its own: the mean height of a brick on a table that a motor tilts, and its derivatives by the
-// brick's length and the motor's speed, through the whole simulation, beside differences of whole simulations.
+// A design made in memory, with a quantity of its own: the mean height of a brick on a table that a motor tilts, and its derivatives.
 #include <cstdio>
 
+#include "fettle/design/gradient_audit/difference_check.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
-#include "fettle/design/studies/difference_check.hpp"
 
 namespace core = fettle::core;
 using namespace fettle::design::description;
@@ -44,15 +43,16 @@ int main() {
         return fettle::design::shapes::GeneratedPart::create("box", {{"size_x", x}, {"size_y", y}, {"size_z", z}}).value();
     };
     if (!add_part(design, table, box(0.06, 0.06, 0.01)) || !add_part(design, brick, box(0.02, 0.012, 0.01))) return 3;
-    design.parameters = {{"length", 0.02, 0.015, 0.03, {}, {{"/bodies/brick/shape/dimensions/size_x"}}},
-                         {"speed", 0.7, 0.2, 1.0, {}, {{"/bodies/table/prescribed/ry/rate"}}}};
+    design.parameters = {{"length", 0.02, 0.015, 0.03, *fettle::find_unit("mm")}, {"speed", 0.7, 0.2, 1.0, *fettle::find_unit("rad/s")}};
+    const auto follows = [&](const char* place, const char* formula) { return set_number(design, place, formula).empty(); };
+    if (!follows("/bodies/brick/shape/dimensions/size_x", "length") || !follows("/bodies/table/prescribed/ry/rate", "speed")) return 3;
     design.objective = {{"height", 1, 1e-3, std::make_shared<MeanHeight>(1)}};  // in mm
 
     const auto problem = fettle::design::problem::DesignProblem::create(std::move(design));
     for (const auto& error : problem.errors()) std::printf("%s: %s\n", error.where.c_str(), error.message.c_str());
     if (!problem) return 3;
     const auto at = problem->evaluate(values_of(problem->design().parameters));
-    const auto check = fettle::design::studies::check_gradients(*problem, values_of(problem->design().parameters), at);
+    const auto check = fettle::design::gradient_audit::check_gradients(*problem, values_of(problem->design().parameters), at);
     std::printf("mean height %.6f mm\n", at.objective);
     for (const auto& row : check.rows)
         std::printf("d/d %s: %.9g, by differences %.9g\n", row.parameter.c_str(), row.adjoint, row.difference);

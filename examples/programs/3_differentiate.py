@@ -7,7 +7,7 @@ import fettle
 
 
 class MeanHeight(fettle.Quantity):
-    """Of a body's reference point over the motion."""
+    """Mean height of a body's reference point over the motion."""
 
     dimension = "length"
 
@@ -36,9 +36,11 @@ brick.pose.position = [0.003, 0.001, 0.00512]
 fettle.add_part(design, table, box(0.06, 0.06, 0.01))
 fettle.add_part(design, brick, box(0.02, 0.012, 0.01))
 design.parameters = [
-    fettle.Parameter("length", 0.02, 0.015, 0.03, "mm", [fettle.Move("/bodies/1/shape/dimensions/size_x")]),
-    fettle.Parameter("speed", 0.7, 0.2, 1.0, "rad/s", [fettle.Move("/bodies/0/prescribed/ry/rate")]),
+    fettle.Parameter("length", 0.02, 0.015, 0.03, "mm"),
+    fettle.Parameter("speed", 0.7, 0.2, 1.0, "rad/s"),
 ]
+design.set("/bodies/brick/shape/dimensions/size_x", "length")
+design.set("/bodies/table/prescribed/ry/rate", "speed")
 design.objective = [fettle.ObjectiveTerm("height", 1, 1e-3, MeanHeight(1))]  # in mm
 
 problem = fettle.DesignProblem(design)

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A shape of one's own, optimised: the heaviest square peg that keeps 0.3 mm of certified clearance to a wall, its head at least 1.2 times
-// as wide as its foot.
+// A shape of one's own, optimised: the heaviest square peg with 0.3 mm of certified clearance to a wall, its head 1.2 times its foot.
 #include <cstdio>
 
 #include "fettle/design/quantities/clearance.hpp"
@@ -42,8 +41,9 @@ int main() {
     const auto block = fettle::design::shapes::GeneratedPart::create("box", {{"size_x", 0.01}, {"size_y", 0.04}, {"size_z", 0.04}});
     if (!block || !add_part(design, peg, std::make_shared<Peg>()) || !add_part(design, wall, *block)) return 3;
     design.steps = 1;
-    design.parameters = {{"foot", 0.004, 0.002, 0.012, {}, {{"/bodies/0/shape/dimensions/foot"}}},
-                         {"top", 0.005, 0.002, 0.012, {}, {{"/bodies/0/shape/dimensions/top"}}}};
+    design.parameters = {{"foot", 0.004, 0.002, 0.012, *fettle::find_unit("mm")}, {"top", 0.005, 0.002, 0.012, *fettle::find_unit("mm")}};
+    for (const std::string name : {"foot", "top"})
+        if (!set_number(design, "/bodies/peg/shape/dimensions/" + name, name).empty()) return 3;
     using namespace fettle::design::quantities;
     design.objective = {{"mass", -1, 1e-3, std::make_shared<Mass>(design.scene, std::vector<int>{0})}};
     design.constraints = {

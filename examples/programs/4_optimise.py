@@ -29,9 +29,11 @@ wall.pose.position = [0.015, 0, 0]  # its face stands at x = 10 mm
 fettle.add_part(design, fettle.Body("peg"), Peg())
 fettle.add_part(design, wall, fettle.GeneratedPart("box", {"size_x": 0.01, "size_y": 0.04, "size_z": 0.04}))
 design.parameters = [
-    fettle.Parameter("foot", 0.004, 0.002, 0.012, "mm", [fettle.Move("/bodies/0/shape/dimensions/foot")]),
-    fettle.Parameter("top", 0.005, 0.002, 0.012, "mm", [fettle.Move("/bodies/0/shape/dimensions/top")]),
+    fettle.Parameter("foot", 0.004, 0.002, 0.012, "mm"),
+    fettle.Parameter("top", 0.005, 0.002, 0.012, "mm"),
 ]
+design.set("/bodies/peg/shape/dimensions/foot", "foot")
+design.set("/bodies/peg/shape/dimensions/top", "top")
 design.objective = [fettle.ObjectiveTerm("mass", -1, 1e-3, fettle.Mass([(0, "volume")]))]
 design.constraints = [fettle.Constraint("clearance", fettle.Bounds(lower=0.3e-3, margin=1e-7, unit=1e-3), fettle.Clearance(0, 1))]
 design.relations = [fettle.Relation("head", fettle.Bounds(lower=1.2, margin=1e-5), formula="top / foot")]

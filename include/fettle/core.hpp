@@ -5,7 +5,7 @@
 
 // A scene: as data, and read from its file.
 #include "fettle/core/scene/scene.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 // The model that is built from it, const from then on.
 #include "fettle/core/model/build_model.hpp"
 // Its motion: by dynamics, or where scripts or joints and motors say everything.
@@ -18,7 +18,7 @@
 #include "fettle/core/clearance/jointed_clearance.hpp"
 #include "fettle/core/clearance/range_clearance.hpp"
 // Files: trajectories and meshes, and whether a mesh is what it should be.
-#include "fettle/core/geometry/mesh_judgement.hpp"
+#include "fettle/core/solids/mesh_judgement.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/mesh_files/mesh_writer.hpp"
 #include "fettle/core/records/trajectory_io.hpp"

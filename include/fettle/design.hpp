@@ -6,6 +6,9 @@
 #include "fettle/design/description/design.hpp"
 #include "fettle/design/description/quantity.hpp"
 #include "fettle/design/description/shape.hpp"
+// Parts that are generated: the shapes that are there, by name, and any Shape at its dimensions.
+#include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/design/shapes/shape_generator.hpp"
 // Read from its file; scenes with parts that are generated.
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
@@ -20,7 +23,7 @@
 #include "fettle/design/quantities/stroke.hpp"
 // Values and gradients of it; optimised; gradients compared with differences.
 #include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/studies/difference_check.hpp"
+#include "fettle/design/gradient_audit/difference_check.hpp"
 #include "fettle/design/studies/optimise_design.hpp"
 #include "fettle/design/studies/optimise_file.hpp"
 // What `fettle clearance` asks: which pairs count, groups, findings.

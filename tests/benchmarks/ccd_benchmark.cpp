@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/contact/curved_ccd.hpp"
+#include "fettle/core/ccd/curved_ccd.hpp"
 #include "fettle/tests/benchmarks/ccd_files.hpp"
 #include "fettle/tests/support/ccd_queries.hpp"
 #include "fettle/tests/support/inclusion_ccd.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
 using namespace fettle;
-using namespace fettle::core::contact;
+using namespace fettle::core::ccd;
 using namespace fettle::tests::support;
 
 namespace {
@@ -57,15 +57,15 @@ std::vector<RigidQuery> passing_queries(int count) {
     std::vector<RigidQuery> all;
     while (static_cast<int>(all.size()) < count) {
         RigidQuery q;
-        q.type = uniform(random) < 0.5 ? PairType::point_triangle : PairType::edge_edge;
+        q.type = uniform(random) < 0.5 ? core::geometry::PairType::point_triangle : core::geometry::PairType::edge_edge;
         for (Vector3& x : q.X) x = 0.5 * vector();
         for (core::kinematics::PathSegment* p : {&q.a, &q.b}) {
             p->base = core::kinematics::rotation(vector());
             p->rotation_vector_step = 0.1 * uniform(random) * vector();
             p->position_step = 0.02 * vector();
         }
-        PairVertices x;
-        const std::size_t first_count = q.type == PairType::point_triangle ? 1 : 2;
+        core::geometry::PairVertices x;
+        const std::size_t first_count = q.type == core::geometry::PairType::point_triangle ? 1 : 2;
         for (std::size_t i = 0; i < 4; ++i) x[i] = world_position(pose_at(i < first_count ? q.a : q.b, 0.5), q.X[i]);
         // Apart along z by the gap, half way.
         double low = 1e9, high = -1e9;
@@ -131,7 +131,7 @@ void distance_case(const std::vector<RigidQuery>& queries) {
     std::vector<LinearQuery> at_rest;
     for (const RigidQuery& q : queries) {
         LinearQuery placed{q.type, {}, {}, {}};
-        const std::size_t first_count = q.type == PairType::point_triangle ? 1 : 2;
+        const std::size_t first_count = q.type == core::geometry::PairType::point_triangle ? 1 : 2;
         for (std::size_t i = 0; i < 4; ++i) placed.t0[i] = world_position(pose_at(i < first_count ? q.a : q.b, 0), q.X[i]);
         placed.t1 = placed.t0;
         at_rest.push_back(placed);

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/contact/curved_ccd.hpp"
+#include "fettle/core/ccd/curved_ccd.hpp"
 #include "fettle/tests/support/ccd_queries.hpp"
 #include "fettle/tests/support/inclusion_ccd.hpp"
 
@@ -18,9 +18,9 @@ namespace fettle::tests::benchmarks {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using core::contact::CurvedCcdOptions;
-using core::contact::DeviationBound;
-using core::contact::PairType;
+using core::ccd::CurvedCcdOptions;
+using core::ccd::DeviationBound;
+using core::geometry::PairType;
 using support::CcdQueries;
 using support::LinearQuery;
 using support::RigidQuery;
@@ -110,17 +110,17 @@ double query_time(Query&& query, double clock) {
 
 Tally run_file(const CcdQueries& queries, const Settings& settings, double clock, std::vector<Miss>& misses) {
     Tally tally;
-    const auto ccd = settings.by_inclusion ? &support::inclusion_ccd : &core::contact::linear_ccd;
+    const auto ccd = settings.by_inclusion ? &support::inclusion_ccd : &core::ccd::linear_ccd;
     for (std::size_t i = 0; i < queries.linear.size(); ++i) {
         const LinearQuery& q = queries.linear[i];
-        core::contact::LinearCcdResult r;
+        core::ccd::LinearCcdResult r;
         const double time = query_time([&] { r = ccd(q.type, q.t0, q.t1, settings.dmin, settings.ccd.linear); }, clock);
         tally.add(r.hit, q.truth, time);
         if (q.truth.value_or(false) && !r.hit) misses.push_back({queries.path, i});
     }
     for (const RigidQuery& q : queries.rigid) {
-        core::contact::CurvedCcdResult r;
-        const double time = query_time([&] { r = core::contact::curved_ccd(q.type, q.a, q.b, q.X, settings.dmin, settings.ccd); }, clock);
+        core::ccd::CurvedCcdResult r;
+        const double time = query_time([&] { r = core::ccd::curved_ccd(q.type, q.a, q.b, q.X, settings.dmin, settings.ccd); }, clock);
         tally.add(r.hit, std::nullopt, time);
     }
     return tally;
@@ -253,7 +253,7 @@ int run_ccd_files(int count, char** words) {
     app.add_option("--type", options.type, "Pairs of .csv files whose folder or name (vf, ee) does not say: vertex-face or edge-edge")
         ->check(CLI::IsMember({"vertex-face", "edge-edge"}));
     app.footer(
-        "Example:  ccd_benchmark ../shared/ccd/sample-queries --method inclusion --json\n"
+        "Example:  ccd_benchmark sample-queries --method inclusion --json\n"
         "CSV: 8 rows a query, xn,xd,yn,yd,zn,zd[,truth], vertices at t0 and at t1; truth also from STEM_mma_bool.json beside the file or\n"
         "in ../mma_bool. JSON: one pair of moving rigid bodies. The truth is that of contact, whatever --minimum-separation; counts of\n"
         "misses and false alarms are null (-) where a file has none. One thread. Exit code 1 if a contact was missed, 0 otherwise.");

@@ -3,7 +3,7 @@
 """Do the optimisers find optima, and at what price? Prints JSON lines, a summary last.
 
   optimisers.py starts DESIGN [--n 10] [--lists 1,2,3]        random starts: how many end optimal, at what, after how many simulations
-  optimisers.py table DESIGN [--seeds 0,1,2,3,4] [--budget N]   five optimisers: simulations and CPU seconds to come within 0.1% of the
+  optimisers.py table DESIGN [--seeds 0,1,2,3,4] [--budget N]   six optimisers: simulations and CPU seconds to come within 0.1% of the
                                                               best feasible design that any of them found
   optimisers.py mutations DESIGN RESULT [--n 50] [--seed 1]   one parameter of a converged design moved by up to 5% of its range and
                                                               held there, the rest tuned again: is any of them better by 0.1%?
@@ -14,6 +14,7 @@ Simulations are counted from history.jsonl: smoother models, noise and probes in
 import argparse
 import json
 import os
+import re
 import random
 import statistics
 import subprocess
@@ -23,6 +24,7 @@ import tempfile
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PROGRAM = os.path.join(ROOT, "build/release/bin/fettle")
 WITHIN = 1.001  # of the best value
+OPTIMISERS = ("sqp", "ipopt", "mma", "ccsaq", "slsqp", "cobyla")
 
 
 def optimise(design, out, *options):
@@ -89,7 +91,7 @@ def table(arguments, folder):
     if arguments.budget:
         design = copied(design, folder, lambda d: d.setdefault("optimiser", {}).update(max_evaluations=arguments.budget))
     runs = []
-    for optimiser in ("ipopt", "mma", "ccsaq", "slsqp", "cobyla"):
+    for optimiser in OPTIMISERS:
         for seed in arguments.seeds.split(","):
             out = os.path.join(folder, f"{optimiser}-{seed}")
             answer = optimise(design, out, "--optimiser", optimiser, "--seed", seed)
@@ -97,7 +99,7 @@ def table(arguments, folder):
             print(json.dumps({"optimiser": optimiser, "seed": seed, **{k: answer[k] for k in ("status", "objective", "evaluations")}}), flush=True)
     best = min((a["objective"] for _, _, a, _ in runs if a["status"] in ("optimal", "feasible")), default=None)
     summary = {"best": best}
-    for name in ("ipopt", "mma", "ccsaq", "slsqp", "cobyla"):
+    for name in OPTIMISERS:
         summary[name] = {}
         for optimiser, seed, answer, entries in runs:
             if optimiser != name:
@@ -152,17 +154,20 @@ def bank(arguments, _):
     parameters, design["parameters"] = design["parameters"], []
     constraints, design["constraints"] = design["constraints"], []
     objective, design["objective"] = design["objective"], []
+    variables, scene["variables"] = scene["variables"], {}
     for copy in range(arguments.copies):
         rename = lambda name: f"{name}_{copy}"
-        for body in json.loads(json.dumps(bodies)):
+        names = "|".join(re.escape(name) for name in variables)
+        renamed = lambda value: json.loads(re.sub(rf'(?<![\w"])({names})(?!\w)', rf"\1_{copy}", json.dumps(value)))
+        for name, value in variables.items():
+            scene["variables"][rename(name)] = renamed(value)
+        for body in renamed(bodies):
             body["name"] = rename(body["name"])
             position = body.get("position", [0, 0, 0])
             body["position"] = [position[0] + 60 * copy, *position[1:]]
             scene["bodies"].append(body)
         for parameter in json.loads(json.dumps(parameters)):
             parameter["name"] = rename(parameter["name"])
-            for move in parameter["moves"]:
-                move["body"] = rename(move["body"])
             design["parameters"].append(parameter)
         rise = 8 + 0.2 * copy  # no two alike
         for term in json.loads(json.dumps(constraints + objective)):

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the source paper's own program (rigid-ipc 23b6ba6, one thread, whole process) needs for its scenes:
-/// ../shared/scenes/reference_seconds.tsv.
+/// How long the source paper's own program (rigid-ipc 23b6ba6, one thread, whole process) takes for its scenes: docs/reference_seconds.tsv.
 #pragma once
 
 #include <string>
@@ -9,7 +8,7 @@
 namespace fettle::tests::benchmarks {
 
 struct ReferenceRun {
-    std::string scene;   ///< under ../shared/scenes/fixtures, without .json
+    std::string scene;   ///< under scenes/fixtures of the shared folder, without .json
     int steps = 0;       ///< the first so many
     double seconds = 0;  ///< of the processor, over these steps, start included
 

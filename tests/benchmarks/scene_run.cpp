@@ -13,7 +13,7 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/model/build_model.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/benchmarks/child_run.hpp"
 #include "fettle/tests/benchmarks/scene_row.hpp"
@@ -130,7 +130,7 @@ SceneRow run_here(const std::string& name, const std::string& text, const std::s
     row.scene = name;
     const core::base::ThreadLimit limit(options.threads);
     const double start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
-    const auto scene = core::scene::parse_scene(text, path);
+    const auto scene = core::scene_files::parse_scene(text, path);
     if (!scene) return refused(row, scene.errors());
     const auto model = core::model::build_model(*scene);
     if (!model) return refused(row, model.errors());

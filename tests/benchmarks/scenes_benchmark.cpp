@@ -5,8 +5,8 @@
 // the run is checked: status, finite poses, repeated runs of the same bits, no intersection by exact predicates at nodes and between,
 // peak memory. Exit code 1 if a check fails, or the program does not end "ok".
 //
-//   scenes_benchmark                              the scenes and steps of ../shared/scenes/reference_seconds.tsv
-//   scenes_benchmark pendulum/pendulum a.json     these, by name under ../shared/scenes/fixtures or by path; --steps N
+//   scenes_benchmark                              the scenes and steps of docs/reference_seconds.tsv
+//   scenes_benchmark pendulum/pendulum a.json     these, by name under $FETTLE_SHARED/scenes/fixtures or by path; --steps N
 //   scenes_benchmark --program-only ...           no phases and no checks: the whole program alone
 //   scenes_benchmark --all-fixtures --seconds 60  every scene there, to its own end or that much CPU time: hunts stalls and NaN
 //   scenes_benchmark --net 32                     cost per body and contact of n x n chain nets, n = 4, 8, .. 32
@@ -188,7 +188,7 @@ int main(int argc, char** argv) {
     const std::string baseline_file = FETTLE_SOURCE_DIR "/tests/benchmarks/scenes_baseline.json";
     Command command;
     CLI::App app("Runs, times and checks scenes; prints JSON rows.");
-    app.add_option("scenes", command.scenes, "names under ../shared/scenes/fixtures, or files");
+    app.add_option("scenes", command.scenes, "names under $FETTLE_SHARED/scenes/fixtures, or files");
     app.add_option("--steps", command.run.steps, "time steps; default the reference's, else the scene's own");
     app.add_option("--seconds", command.run.seconds, "CPU time per scene")->capture_default_str();
     app.add_option("--check-seconds", command.run.check_seconds, "CPU time for looking for intersections")->capture_default_str();
@@ -206,7 +206,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "no folder %s (set FETTLE_SHARED)\n", tests::support::shared_folder().c_str());
         return 3;
     }
-    command.references = read_reference_table(tests::support::shared_file("scenes/reference_seconds.tsv"));
+    command.references = read_reference_table(FETTLE_SOURCE_DIR "/docs/reference_seconds.tsv");
     command.program.program = program_of_this_build();
     if (command.largest_net > 0) command.program.mesh_dir = tests::support::shared_file("scenes/meshes");
     if (command.all_fixtures) command.run.repeat = 1;

@@ -19,11 +19,11 @@
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_judgement.hpp"
-#include "fettle/core/geometry/mesh_repair.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
+#include "fettle/core/solids/mesh_judgement.hpp"
+#include "fettle/core/solids/mesh_repair.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 
 using namespace fettle;
 using namespace fettle::core;
@@ -127,14 +127,14 @@ void run_phases(const std::string& name, const geometry::Mesh& mesh, std::option
     });
     phase("welding", [&] { return geometry::have_same_shape(geometry::weld_exactly(mesh), mesh); });
     phase("half edges", [&] { return geometry::sorted_half_edges(mesh).size() == 3 * mesh.triangles.size(); });
-    phase("closed", [&] { return geometry::bounds_a_solid(mesh) && geometry::is_nearly_closed(mesh.vertices, mesh.triangles); });
+    phase("closed", [&] { return solids::bounds_a_solid(mesh) && geometry::is_nearly_closed(mesh.vertices, mesh.triangles); });
     phase("volume moments", [&] {
         const double found = geometry::capped_solid_moments(mesh.vertices, mesh.triangles)(3, 3);
         return found > 0 && (!volume || std::abs(found - *volume) < 1e-3 * *volume);
     });
-    phase("repair", [&] { return geometry::repair_mesh(copy).empty(); });
-    phase("judgement", [&] { return geometry::judge_mesh(mesh, true).errors.empty(); });
-    phase("strict validity", [&] { return geometry::validate_mesh(mesh, {}).empty(); });
+    phase("repair", [&] { return solids::repair_mesh(copy).empty(); });
+    phase("judgement", [&] { return solids::judge_mesh(mesh, true).errors.empty(); });
+    phase("strict validity", [&] { return solids::validate_mesh(mesh, {}).empty(); });
     phase("hierarchy", [&] { return holds_its_elements(geometry::BodyHierarchy(mesh), mesh); });
     const scene::Scene scene = two_of(mesh);
     phase("model of two copies, with mesh and start check", [&] { return static_cast<bool>(model::build_model(scene)); });

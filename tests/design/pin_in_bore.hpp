@@ -23,14 +23,15 @@ inline std::string bore_design(const std::string& x, const std::string& y, const
   "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
   "parameters": [
     { "name": "x", "value": )" +
-           x + R"(, "lower": -0.25, "upper": 0.25, "moves": [{ "body": "pin", "position": [1, 0, 0] }] },
+           x + R"(, "lower": -0.25, "upper": 0.25 },
     { "name": "y", "value": )" +
-           y + R"(, "lower": -0.25, "upper": 0.25, "moves": [{ "body": "pin", "position": [0, 1, 0] }] },
-    { "name": "radius", "value": 5, "lower": 4.9, "upper": 5.02, "moves": [{ "body": "pin", "dimension": "radius" }] }
+           y + R"(, "lower": -0.25, "upper": 0.25 },
+    { "name": "radius", "value": 5, "lower": 4.9, "upper": 5.02 }
   ],
+  "set": { "/bodies/pin/position": ["= x", "= y", 0], "/bodies/pin/shape/dimensions/radius": "= radius" },
   )" + sums +
            R"(,
-  "optimiser": { "name": "ipopt", "max_evaluations": 60 }
+  "optimiser": { "name": "sqp", "max_evaluations": 60 }
 })";
 }
 

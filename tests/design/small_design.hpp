@@ -27,13 +27,20 @@ inline const char* small_scene = R"({
 inline const char* small_design = R"({
   "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
   "parameters": [
-    { "name": "height", "value": 10, "lower": 6, "upper": 14,
-      "moves": [{ "body": "cube", "dimension": "size_z" }, { "body": "cube", "position": [0, 0, 0.5], "offset": [0, 0, 0.12] }] },
-    { "name": "width", "value": 20, "lower": 15, "upper": 30, "moves": [{ "body": "cube", "dimension": "size_x" }] },
-    { "name": "place", "value": 3, "lower": -5, "upper": 20, "moves": [{ "body": "cube", "position": [1, 0, 0] }] },
-    { "name": "density", "value": 1000, "lower": 500, "upper": 2000, "unit": "kg/m^3", "moves": [{ "body": "cube", "density": true }] },
-    { "name": "speed", "value": 40, "lower": 10, "upper": 60, "unit": "deg/s", "moves": [{ "motor": "table", "rate": "ry" }] }
+    { "name": "height", "value": 10, "lower": 6, "upper": 14 },
+    { "name": "width", "value": 20, "lower": 15, "upper": 30 },
+    { "name": "place", "value": 3, "lower": -5, "upper": 20 },
+    { "name": "density", "value": 1000, "lower": 500, "upper": 2000, "unit": "kg/m^3" },
+    { "name": "speed", "value": 40, "lower": 10, "upper": 60, "unit": "deg/s" }
   ],
+  "set": {
+    "/bodies/cube/shape/dimensions/size_z": "= height",
+    "/bodies/cube/shape/dimensions/size_x": "= width",
+    "/bodies/cube/position/0": "= place",
+    "/bodies/cube/position/2": "= height / 2 + 0.12",
+    "/bodies/cube/density": "= density",
+    "/bodies/table/prescribed/ry/rate": "= speed"
+  },
   "objective": [
     { "type": "mass", "bodies": ["cube"], "weight": 1 },
     { "type": "marker_path", "body": "cube", "point": [3, 2, 1], "points": [[4, 2, 7], [8, 3, 6]], "times": [0.052, 0.1], "weight": 0.1 },

@@ -13,16 +13,16 @@
 #include "fettle/core/expression/parse_formula.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/geometry/mesh_judgement.hpp"
-#include "fettle/core/geometry/mesh_repair.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/model/check_scene.hpp"
 #include "fettle/core/records/continuation.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/solids/mesh_judgement.hpp"
+#include "fettle/core/solids/mesh_repair.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
@@ -83,9 +83,9 @@ void read_mesh_as(const std::string& name, std::string_view bytes) {
     auto mesh = core::mesh_files::read_mesh(path);
     if (name == "a.3mf") (void)core::mesh_files::read_mesh_parts(path, {1e-3, false});
     if (!mesh) return;
-    (void)core::geometry::validate_mesh(*mesh, {});
-    core::geometry::repair_mesh(*mesh);
-    (void)core::geometry::judge_mesh(*mesh, true);
+    (void)core::solids::validate_mesh(*mesh, {});
+    core::solids::repair_mesh(*mesh);
+    (void)core::solids::judge_mesh(*mesh, true);
 }
 
 void visit(const JsonNode& node) {
@@ -123,7 +123,7 @@ void read_scene(std::string_view bytes) {
     for (const bool strict : {false, true}) {
         core::scene::ReadOptions options = design::reading::scene_read_options();
         options.strict_meshes = strict;
-        const auto scene = core::scene::parse_scene(std::string(bytes), scratch().file("a.scene.json"), options);
+        const auto scene = core::scene_files::parse_scene(std::string(bytes), scratch().file("a.scene.json"), options);
         if (!scene || !is_small(*scene)) return;
         (void)core::model::check_scene(*scene, strict);
         if (!strict) (void)core::model::build_model(*scene);
@@ -166,7 +166,7 @@ void read_urdf(std::string_view bytes) {
     const auto robot = design::urdf::parse_urdf(bytes, "a.urdf");
     if (!robot) return;
     const auto scene = design::urdf::scene_of_robot(*robot, {scratch().file(""), {}, "a", false});
-    if (scene && bytes.size() < 10'000) (void)core::scene::parse_scene(scene->files.front().second, scratch().file("a.scene.json"));
+    if (scene && bytes.size() < 10'000) (void)core::scene_files::parse_scene(scene->files.front().second, scratch().file("a.scene.json"));
 }
 
 void read_expression(std::string_view bytes) {

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "fettle/core/model/build_model.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
@@ -19,7 +19,7 @@ struct Run {
     stepper::Simulation simulation;
 
     explicit Run(const std::string& name, double seconds) {
-        const auto scene = scene::read_scene(shared_file("scenes/fixtures/friction/" + name + ".json"));
+        const auto scene = scene_files::read_scene(shared_file("scenes/fixtures/friction/" + name + ".json"));
         REQUIRE(scene.has_value());
         auto built = model::build_model(*scene);
         REQUIRE(built.has_value());

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "fettle/core/model/build_model.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
@@ -47,17 +47,17 @@ model::Model wires(const Matrix3& rotation, const Vector3& position, const Vecto
 }
 
 /// Both wires' vertices at s of segment k of step t.
-contact::PairVertices vertices_at(const model::Model& model, const stepper::Trajectory& trajectory, int t, int k, double s) {
-    contact::PairVertices x;
+geometry::PairVertices vertices_at(const model::Model& model, const stepper::Trajectory& trajectory, int t, int k, double s) {
+    geometry::PairVertices x;
     for (int i = 0; i < 4; ++i) x[i] = world_position(pose_at(trajectory, t, k, s, i / 2), model.bodies[i / 2].mesh.vertices.col(i % 2));
     return x;
 }
 
 /// Is it certain that the wires do not meet between s0 and s1? By halves, until the distance in the middle exceeds the way from there.
 bool stay_apart(const model::Model& model, const stepper::Trajectory& trajectory, int t, int k, double s0, double s1, double speed) {
-    const contact::PairVertices x = vertices_at(model, trajectory, t, k, 0.5 * (s0 + s1));
+    const geometry::PairVertices x = vertices_at(model, trajectory, t, k, 0.5 * (s0 + s1));
     const double way = 0.5 * (s1 - s0) * speed;
-    if (!tests::exact_distance_at_most(contact::PairType::edge_edge, x, x, 0, way + 1e-14)) return true;
+    if (!tests::exact_distance_at_most(geometry::PairType::edge_edge, x, x, 0, way + 1e-14)) return true;
     if (s1 - s0 < 1e-13) return false;
     return stay_apart(model, trajectory, t, k, s0, 0.5 * (s0 + s1), speed) &&
            stay_apart(model, trajectory, t, k, 0.5 * (s0 + s1), s1, speed);
@@ -121,7 +121,7 @@ TEST_CASE("two wires do not pass through each other end-on") {
         {"name": "b", "vertices": [[0, 0, 0], [1, 0, 0]], "edges": [[0, 1]], "mass_per": "length", "density": 1, "rotation": [24, 15, 61],
          "position": [0.48031750995645456, 0.8665157256545014, -0.2654664501871178],
          "linear_velocity": [-22.395771348614076, -40.40304102903929, 12.377907937726317]}]})");
-    const auto scene = scene::read_scene(path);
+    const auto scene = scene_files::read_scene(path);
     REQUIRE(scene.has_value());
     const auto model = model::build_model(*scene);
     REQUIRE(model.has_value());

@@ -19,13 +19,13 @@
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/ccd/linear_ccd.hpp"
 #include "fettle/core/kinematics/path.hpp"
 
 namespace fettle::tests::support {
 
-using core::contact::PairType;
-using core::contact::PairVertices;
+using core::geometry::PairType;
+using core::geometry::PairVertices;
 
 struct LinearQuery {
     PairType type = PairType::point_triangle;

@@ -9,7 +9,7 @@
 
 namespace fettle::tests::support::ccd_queries_test {
 
-using namespace fettle::core::contact;
+using namespace fettle::core::ccd;
 namespace fs = std::filesystem;
 
 namespace {
@@ -47,21 +47,21 @@ TEST_CASE("rational coordinates are read exactly, whatever the size of their den
     REQUIRE(queries->linear.size() == 2);
     CHECK(queries->rigid.empty());
     const LinearQuery& q = queries->linear[1];
-    CHECK(q.type == PairType::point_triangle);
+    CHECK(q.type == core::geometry::PairType::point_triangle);
     CHECK(q.truth == true);
-    for (const PairVertices* x : {&q.t0, &q.t1})
+    for (const core::geometry::PairVertices* x : {&q.t0, &q.t1})
         for (const Vector3& v : *x) CHECK(v == Vector3(3 * 0x1p-111, 0x1.fffffffffffffp-8, -5));
 }
 
 TEST_CASE("the kind of pair and the truth come from names and files beside") {
     const Folder f;
     const std::string row = "1,2,0,1,-3,4";
-    CHECK(read_ccd_queries(f.write("q/12ee.csv", rows(row, 8)))->linear[0].type == PairType::edge_edge);
-    CHECK(read_ccd_queries(f.write("q/12vf.csv", rows(row, 8)))->linear[0].type == PairType::point_triangle);
-    CHECK(read_ccd_queries(f.write("edge-edge/data.csv", rows(row, 8)))->linear[0].type == PairType::edge_edge);
+    CHECK(read_ccd_queries(f.write("q/12ee.csv", rows(row, 8)))->linear[0].type == core::geometry::PairType::edge_edge);
+    CHECK(read_ccd_queries(f.write("q/12vf.csv", rows(row, 8)))->linear[0].type == core::geometry::PairType::point_triangle);
+    CHECK(read_ccd_queries(f.write("edge-edge/data.csv", rows(row, 8)))->linear[0].type == core::geometry::PairType::edge_edge);
     const std::string unnamed = f.write("q/data.csv", rows(row, 8));
     CHECK(only_error(read_ccd_queries(unnamed)).code == ErrorCode::unsupported);
-    CHECK(read_ccd_queries(unnamed, PairType::edge_edge)->linear[0].type == PairType::edge_edge);
+    CHECK(read_ccd_queries(unnamed, core::geometry::PairType::edge_edge)->linear[0].type == core::geometry::PairType::edge_edge);
 
     const std::string file = f.write("queries/1vf.csv", rows(row, 16));
     CHECK_FALSE(read_ccd_queries(file)->linear[0].truth.has_value());
@@ -109,7 +109,7 @@ TEST_CASE("rigid queries: both kinds, and their faults") {
     REQUIRE(queries);
     REQUIRE(queries->rigid.size() == 1);
     const RigidQuery& q = queries->rigid[0];
-    CHECK(q.type == PairType::point_triangle);
+    CHECK(q.type == core::geometry::PairType::point_triangle);
     CHECK(q.a.position_step == Vector3(5, 0, 0));
     CHECK(q.b.rotation_vector_t0 == Vector3(0, 0, 1));
     CHECK(q.b.rotation_vector_step == Vector3(0, 0, 2));

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
 namespace fettle::tests::support::chain_net_test {
@@ -14,7 +14,7 @@ TEST_CASE("the generated net of 4 x 4 is the paper's", "[support]") {
                                      std::pair{"codimensional/edges/chain-net-4x4", "codimensional/edges/link.obj"}}) {
         INFO(name);
         const std::string path = shared_file(std::string("scenes/fixtures/") + name + ".json");
-        const auto theirs = core::scene::read_scene(path), ours = core::scene::parse_scene(chain_net_scene(4, mesh), path);
+        const auto theirs = core::scene_files::read_scene(path), ours = core::scene_files::parse_scene(chain_net_scene(4, mesh), path);
         REQUIRE(theirs.has_value());
         REQUIRE(ours.has_value());
         CHECK(ours->timestep == theirs->timestep);
@@ -37,7 +37,7 @@ TEST_CASE("a net of n x n has its bodies and its links", "[support]") {
     FETTLE_NEEDS_SHARED();
     const std::string path = (shared_folder() / "scenes/fixtures/chain/chain-net/generated.json").string();
     for (const int n : {3, 8}) {
-        const auto scene = core::scene::parse_scene(chain_net_scene(n), path);
+        const auto scene = core::scene_files::parse_scene(chain_net_scene(n), path);
         REQUIRE(scene.has_value());
         CHECK(static_cast<int>(scene->bodies.size()) == n * n - 4 + 2 * (n - 2) * (n - 1));
     }

@@ -9,8 +9,8 @@
 
 namespace fettle::tests {
 
-using core::contact::PairType;
-using core::contact::PairVertices;
+using core::geometry::PairType;
+using core::geometry::PairVertices;
 using Number = Rational;
 
 namespace {

@@ -7,19 +7,19 @@
 /// power of two to whole numbers, of 128 bits where those suffice (10 us a query on a small grid).
 #pragma once
 
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/ccd/linear_ccd.hpp"
 
 namespace fettle::tests {
 
 /// Do the primitives touch at some t in [0, 1]? Any finite doubles; exact.
-bool exact_linear_contact(core::contact::PairType type, const core::contact::PairVertices& t0, const core::contact::PairVertices& t1);
+bool exact_linear_contact(core::geometry::PairType type, const core::geometry::PairVertices& t0, const core::geometry::PairVertices& t1);
 
 /// The same without the filter: slow, for the test of the other.
-bool exact_linear_contact_by_algebra(core::contact::PairType type, const core::contact::PairVertices& t0,
-                                     const core::contact::PairVertices& t1);
+bool exact_linear_contact_by_algebra(core::geometry::PairType type, const core::geometry::PairVertices& t0,
+                                     const core::geometry::PairVertices& t1);
 
 /// Is the distance at time t at most `distance` (both exact doubles)? Exact: squared distances are compared as rationals.
-bool exact_distance_at_most(core::contact::PairType type, const core::contact::PairVertices& t0, const core::contact::PairVertices& t1,
+bool exact_distance_at_most(core::geometry::PairType type, const core::geometry::PairVertices& t0, const core::geometry::PairVertices& t1,
                             double t, double distance);
 
 }  // namespace fettle::tests

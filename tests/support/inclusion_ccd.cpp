@@ -11,10 +11,10 @@ namespace fettle::tests::support {
 
 namespace {
 
-using core::contact::LinearCcdOptions;
-using core::contact::LinearCcdResult;
-using core::contact::PairType;
-using core::contact::PairVertices;
+using core::ccd::LinearCcdOptions;
+using core::ccd::LinearCcdResult;
+using core::geometry::PairType;
+using core::geometry::PairVertices;
 
 constexpr double inclusion_rounding = 36 * 0x1p-52;
 /// Halving stops here whatever the tolerance: middles of boxes stay exact.
@@ -170,7 +170,7 @@ private:
 
 /// Time before which primitives that start apart cannot have met: the first gap over the fastest relative speed of two vertices.
 double first_possible_contact(PairType type, const PairVertices& t0, const PairVertices& t1, double dmin) {
-    const double gap = (distance_lower_bound(type, t0) - dmin) * (1 - 0x1p-50);
+    const double gap = (core::ccd::distance_lower_bound(type, t0) - dmin) * (1 - 0x1p-50);
     if (!(gap > 0)) return 0;
     double speed = 0;
     const std::size_t first_count = type == PairType::point_triangle ? 1 : 2;

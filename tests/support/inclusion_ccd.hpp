@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Linear CCD by inclusion-based bisection over (t, u, v): the oracle of core/contact/linear_ccd.hpp where exact arithmetic takes too long,
+/// Linear CCD by inclusion-based bisection over (t, u, v): the oracle of core/ccd/linear_ccd.hpp where exact arithmetic takes too long,
 /// and what ccd_benchmark compares it with. Independent of it; measured on the public queries (one thread): 0 misses, 280 us a query on
 /// sample-queries, 200 us on scalable, at most 0.14 s.
 /// Source: Wang et al. 2021, A Large-Scale Benchmark and an Inclusion-Based Algorithm for Continuous Collision Detection.
@@ -19,14 +19,14 @@
 /// larger constant and 2 for the shift: err = 36 * 2^-52 = 72u for both.
 #pragma once
 
-#include "fettle/core/contact/linear_ccd.hpp"
+#include "fettle/core/ccd/linear_ccd.hpp"
 
 namespace fettle::tests::support {
 
 /// As linear_ccd, but options.tolerance is the size of a box's image, so that hits are within sqrt(3) (tolerance + dmin), and past
 /// options.max_iterations boxes the answer is a hit at the time proven so far.
-core::contact::LinearCcdResult inclusion_ccd(core::contact::PairType type, const core::contact::PairVertices& t0,
-                                             const core::contact::PairVertices& t1, double dmin,
-                                             const core::contact::LinearCcdOptions& options = {});
+core::ccd::LinearCcdResult inclusion_ccd(core::geometry::PairType type, const core::geometry::PairVertices& t0,
+                                         const core::geometry::PairVertices& t1, double dmin,
+                                         const core::ccd::LinearCcdOptions& options = {});
 
 }  // namespace fettle::tests::support

@@ -13,8 +13,8 @@ namespace fettle::tests::support {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using core::contact::PairType;
-using core::contact::PairVertices;
+using core::geometry::PairType;
+using core::geometry::PairVertices;
 using core::kinematics::Pose;
 
 /// Bodies that move further than this share of their elements' size in a segment are culled anew for each instant.

@@ -8,8 +8,8 @@
 namespace fettle::tests::support {
 namespace {
 
-using core::contact::PairType;
-using core::contact::PairVertices;
+using core::geometry::PairType;
+using core::geometry::PairVertices;
 
 constexpr double dot_rounding = 1e-13;  // of a dot product of three terms, relative to its factors' size
 

@@ -18,7 +18,7 @@ from .exploration import Exploration, Unwritten, explore, read_exploration, swep
 
 EXIT_DONE, EXIT_VIOLATED, EXIT_BAD_INPUT, EXIT_INTERNAL = 0, 1, 3, 4
 EXIT_SIGNAL = 128  # and the number of the signal that asked for the end
-FORMS = "NAME=COUNT or NAME=LOW:HIGH:COUNT is wanted"
+FORMS = "NAME=COUNT or NAME=LOW:HIGH:COUNT is expected"
 
 
 class Parser(argparse.ArgumentParser):
@@ -38,7 +38,7 @@ def number_of(word: str, text: str, kind: Callable[[str], Any], where: str) -> A
 
 
 def check_near_bounds(parameter: Any, values: Sequence[float], where: str) -> None:
-    """As the problem checks them (description::check_values), but told in the parameter's own unit, in which they were given."""
+    """Checks values as the problem does (description::check_values), but reports them in the parameter's own unit, in which they were given."""
     lower, upper, unit = parameter.lower, parameter.upper, parameter.unit
 
     def in_unit(value: float) -> str:
@@ -59,7 +59,7 @@ def check_near_bounds(parameter: Any, values: Sequence[float], where: str) -> No
 
 
 def swept(text: str, design: Any) -> Dict[str, Union[int, List[float]]]:
-    """Of NAME=COUNT, or NAME=LOW:HIGH:COUNT in the parameter's own unit: {name: count, or values in SI}."""
+    """The values of NAME=COUNT, or NAME=LOW:HIGH:COUNT in the parameter's own unit: {name: count, or values in SI}."""
     name, _, values = text.rpartition("=")
     where = f"--sweep {text}"
     parts = values.split(":")
@@ -83,7 +83,7 @@ def swept(text: str, design: Any) -> Dict[str, Union[int, List[float]]]:
 
 
 def sweep_of(texts: Sequence[str], design: Any) -> Dict[str, Union[int, List[float]]]:
-    """Of all --sweep. Raises Error with every fault that was found."""
+    """The values of all --sweep. Raises Error with every fault that was found."""
     sweep: Dict[str, Union[int, List[float]]] = {}
     faults: List[Fault] = []
     for text in texts:
@@ -182,7 +182,7 @@ def error_line(where: str, fault: Fault) -> str:
 
 
 def input_errors(faults: Sequence[Fault], as_json: bool) -> int:
-    """As the other commands tell them."""
+    """Reports faults of the input as the other commands do."""
     options = ("sweep", "samples", "starts", "seed", "workers", "dask")
     places = [("--" if fault.where.split("/")[0] in options else "") + fault.where for fault in faults]
     if as_json:
@@ -194,7 +194,7 @@ def input_errors(faults: Sequence[Fault], as_json: bool) -> int:
 
 
 def internal_error(fault: Exception, as_json: bool) -> int:
-    """A fault of this program, as the other commands tell theirs."""
+    """Reports a fault of this program as the other commands do."""
     message = f"{type(fault).__name__}: {fault}"
     if as_json:
         put_errors([Fault("internal", "", message)])
@@ -283,7 +283,7 @@ def run_told(words: Optional[Sequence[str]]) -> int:
     except Error as fault:
         return input_errors(fault.errors, as_json)
     except MemoryError:
-        message = "what was asked for takes more memory than there is; ask for fewer designs at a time, or give the program more"
+        message = "the request needs more memory than there is; ask for fewer designs at a time, or give the program more"
         return input_errors([Fault("out_of_memory", "memory", message)], as_json)
     except OSError as fault:
         code = "file_not_found" if isinstance(fault, FileNotFoundError) else "file_unreadable"

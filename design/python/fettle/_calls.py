@@ -23,7 +23,7 @@ ALLOWED = {
 
 
 def parameters_of(message: str) -> Dict[str, Tuple[str, bool]]:
-    """Of each parameter that pybind11's message names: its type, and whether it may be left out."""
+    """For each parameter that pybind11's message names: its type, and whether it may be left out."""
     found = re.search(r"^ *1\. \((.*)\) -> ", message, re.MULTILINE)
     parts, depth = [""], 0
     for character in found.group(1) if found else "":
@@ -42,7 +42,7 @@ def parameters_of(message: str) -> Dict[str, Tuple[str, bool]]:
 
 
 def takes(kind: str, value: Any) -> bool:
-    """Could a parameter of that type take it? True where that cannot be told."""
+    """Could a parameter of that type take it? True where that is not known."""
     if kind.startswith("Optional["):
         return value is None or takes(kind[len("Optional[") : -1], value)
     if kind.startswith("fettle._fettle."):
@@ -80,7 +80,7 @@ def shown(value: Any) -> str:
 
 
 def faults_of(message: str, given: Tuple[Any, ...], named: Dict[str, Any]) -> List[Fault]:
-    """Of a call that pybind11 has refused with that message."""
+    """The faults of a call that pybind11 has refused with that message."""
     parameters = parameters_of(message)
     function = message.partition("(")[0]
     faults = []
@@ -97,13 +97,13 @@ def faults_of(message: str, given: Tuple[Any, ...], named: Dict[str, Any]) -> Li
         if isinstance(value, int) and "int" in (kind, kind[len("Optional[") : -1]):
             faults.append(Fault("out_of_range", name, f"{value} is not allowed: {-GREATEST - 1} to {GREATEST} is"))
         else:
-            faults.append(Fault("wrong_type", name, f"{shown(value)}: {allowed(kind)} is wanted".replace(", is", " is")))
+            faults.append(Fault("wrong_type", name, f"{shown(value)}: {allowed(kind)} is expected".replace(", is", " is")))
     for name, (kind, optional) in parameters.items():
         if name not in values and not optional:
-            faults.append(Fault("missing_key", name, f"is missing: {allowed(kind)} is wanted".replace(", is", " is")))
+            faults.append(Fault("missing_key", name, f"is missing: {allowed(kind)} is expected".replace(", is", " is")))
     if not faults:
         wanted = ", ".join(f"{name}: {kind}" for name, (kind, _) in parameters.items())
-        faults.append(Fault("wrong_type", function, f"these arguments do not fit; wanted are ({wanted})"))
+        faults.append(Fault("wrong_type", function, f"these arguments do not fit; expected are ({wanted})"))
     return faults
 
 

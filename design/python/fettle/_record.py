@@ -45,7 +45,7 @@ def did_you_mean(word: str, known: Sequence[str]) -> str:
 
 
 class Given(float):
-    """A number that was given with a unit, where only the whole tells which dimension is wanted."""
+    """A number that was given with a unit, where only the whole record determines its dimension."""
 
     __slots__ = ("dimension",)
     dimension: str
@@ -68,7 +68,7 @@ def units() -> Mapping[str, str]:
 
 
 def _number(text: str, dimension: str, where: str) -> float:
-    """Of a text with a unit; dimension "any": the unit says which."""
+    """The SI value of a text with a unit; dimension "any": the unit determines it."""
     if dimension != "any":
         return _fettle.parse_quantity(text, dimension, where)
     unit = re.sub(r"^\s*[-+.\d]*([eE][-+]?\d+)?\s*", "", text).strip()
@@ -92,7 +92,7 @@ def _has_text(values: Iterable[Any]) -> bool:
 
 
 def number(dimension: str, default: Any = dataclasses.MISSING, *, factory: Any = dataclasses.MISSING, of_unit: bool = False) -> Any:
-    """A member that numbers with units may be given for. dimension: its own, "any" where the whole tells it, "unit" where the record's
+    """A member that numbers with units may be given for. dimension: its own, "any" where the whole record determines it, "unit" where the record's
     `unit` does. of_unit: the name of a unit alone is one of it."""
     metadata = {"dimension": dimension, "of_unit": of_unit}
     if factory is not dataclasses.MISSING:
@@ -108,12 +108,12 @@ def _numbers(kind: type) -> Dict[str, Mapping[str, Any]]:
 
 
 def faults_of(value: Any, dimension: str, where: str) -> List[Fault]:
-    """Of numbers that were given with a unit and are of another dimension; "" is one that no unit has."""
+    """The faults of numbers whose unit is of another dimension; "" is one that no unit has."""
     if isinstance(value, (list, tuple)):
         return [fault for each in value for fault in faults_of(each, dimension, where)]
     if not isinstance(value, Given) or value.dimension == dimension:
         return []
-    wanted = f"{dimension.replace('_', ' ')} is wanted" if dimension else "there is no unit for what is wanted; give the number in SI"
+    wanted = f"{dimension.replace('_', ' ')} is expected" if dimension else "there is no unit for what is wanted; give the number in SI"
     return [Fault("wrong_type", where, f"a unit of {value.dimension.replace('_', ' ')} was given, {wanted}")]
 
 
@@ -150,7 +150,7 @@ def few_lines(text: str) -> str:
 
 
 def cell(value: Any) -> str:
-    """Of a table, as HTML; what is a record shows its members."""
+    """A cell of a table, as HTML; a record shows its members."""
     if isinstance(value, Record):
         return html.escape(repr(value))
     return value if isinstance(value, str) and not value else html.escape(value if isinstance(value, str) else short(value))

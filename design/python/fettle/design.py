@@ -4,7 +4,10 @@ Shapes and quantities of one's own derive from Shape and Quantity.
 
     design = fettle.Design(scene=fettle.Scene(timestep=0.01), steps=50)
     fettle.add_part(design, fettle.Body("pin"), fettle.GeneratedPart("pin", {"radius": 5e-3}))
-    design.parameters.append(fettle.Parameter("radius", "5mm", "4mm", "6mm", "mm", [fettle.Move("/bodies/pin/shape/dimensions/radius")]))
+    radius = fettle.Parameter("radius", "5mm", "4mm", "6mm", "mm")
+    design.parameters.append(radius)
+    design.set("/bodies/pin/shape/dimensions/radius", radius)
+    design.set("/bodies/pin/position", [0, 0, 2 * radius + "0.5 mm"])
 """
 import dataclasses
 import math
@@ -17,10 +20,11 @@ from . import _fettle
 from ._record import Given, Number, Record, did_you_mean, faults_of, number
 from .errors import Error, Fault
 from .results import Measurement
-from .scene import Body, Mesh, MeshProgram, PathLike, Scene, Vector
+from .scene import Body, BoundNumber, Mesh, MeshProgram, PathLike, Scene, Vector
 
 Array = NDArray[np.float64]
 Which = Union[int, str]  # a body, by its number or its name
+Operand = Union["_fettle.Formula", "Parameter", float, str]  # a text: a number with a unit
 
 
 class Shape:
@@ -125,7 +129,7 @@ class Quantity:
 
     def deviations(self, simulated: "_fettle.Simulated") -> ArrayLike:
         """(m,) numbers whose squares sum up to the value (SI, so in the square root of its unit), in an order that does not change; empty,
-        where it is no such sum. Given them, the optimisers "ipopt" and "gauss_newton" know the curvature of the objective."""
+        where it is no such sum. Given them, the optimisers "sqp" and "gauss_newton" know the curvature of the objective."""
         return ()
 
     def deviation_gradient(self, simulated: "_fettle.Simulated", i: int) -> QuantityGradient:
@@ -163,7 +167,7 @@ class Clearance(Record):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Mass(Record):
-    """Of bodies, as (body, kind), kind as in Body.mass_kind [kg]."""
+    """Mass of bodies, given as (body, kind), kind as in Body.mass_kind [kg]."""
 
     bodies: Sequence[Tuple[Which, str]]
 
@@ -222,7 +226,7 @@ class ContactLoad(Record):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Energy(Record):
-    """Of all bodies, joints and springs at the steps' ends [J]; `over` as in JointLoad."""
+    """Energy of all bodies, joints and springs at the steps' ends [J]; `over` as in JointLoad."""
 
     kind: str  #: "kinetic", "potential", "spring", "total"
     over: str = "end"
@@ -232,19 +236,48 @@ AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, MarkerSpeed, 
 AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
 
 
+class _Arithmetic:
+    """A parameter in formulas: crank + coupler * fettle.cos(phi) is a Formula."""
+
+    __slots__ = ()
+
+    def _as_formula(self) -> "_fettle.Formula":
+        parameter: Any = self
+        return _fettle.formula(parameter)
+
+    def __add__(self, other: Operand) -> "_fettle.Formula":
+        return self._as_formula() + other
+
+    def __radd__(self, other: Operand) -> "_fettle.Formula":
+        return _fettle.formula(other) + self._as_formula()
+
+    def __sub__(self, other: Operand) -> "_fettle.Formula":
+        return self._as_formula() - other
+
+    def __rsub__(self, other: Operand) -> "_fettle.Formula":
+        return _fettle.formula(other) - self._as_formula()
+
+    def __mul__(self, other: Operand) -> "_fettle.Formula":
+        return self._as_formula() * other
+
+    def __rmul__(self, other: Operand) -> "_fettle.Formula":
+        return _fettle.formula(other) * self._as_formula()
+
+    def __truediv__(self, other: Operand) -> "_fettle.Formula":
+        return self._as_formula() / other
+
+    def __rtruediv__(self, other: Operand) -> "_fettle.Formula":
+        return _fettle.formula(other) / self._as_formula()
+
+    def __pow__(self, other: Operand) -> "_fettle.Formula":
+        return self._as_formula() ** other
+
+    def __neg__(self) -> "_fettle.Formula":
+        return -self._as_formula()
+
+
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class Move(Record):
-    """A number of the scene that a parameter moves: scale p + offset, summed over all moves of that place. Places are JSON pointers, with
-    bodies, joints, springs, dampers, motors and loads by number or name: "/bodies/pin/shape/dimensions/radius", "/bodies/pin/position/2",
-    "/joints/0/point_a/0", "/motors/drive/speed"; the library's core/scene/place.hpp lists them."""
-
-    place: str = ""
-    scale: float = 1.0
-    offset: float = 0.0
-
-
-@dataclasses.dataclass(eq=False, repr=False, slots=True)
-class Parameter(Record):
+class Parameter(Record, _Arithmetic):
     """value, lower, upper in SI, or as texts with units of `unit`'s dimension; `unit` is what people read it in."""
 
     name: str = ""
@@ -252,7 +285,6 @@ class Parameter(Record):
     lower: Number = number("unit", 0.0)
     upper: Number = number("unit", 0.0)
     unit: str = ""
-    moves: List[Move] = dataclasses.field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.value, self.lower, self.upper = self.value, self.lower, self.upper  # now that the unit is known
@@ -296,7 +328,7 @@ class Relation(Record):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class OptimiserSettings(Record):
-    name: str = "ipopt"
+    name: str = "sqp"
     max_evaluations: int = 100
     tolerance: float = 1e-4
 
@@ -310,10 +342,29 @@ class Design(Record):
     steps: int = 0
     clearance_tolerance: Number = number("length", 1e-9)  #: [m]
     parameters: List[Parameter] = dataclasses.field(default_factory=list)
+    numbers: List[BoundNumber] = dataclasses.field(default_factory=list)  #: of the scene, that follow from parameters; see set()
     objective: List[ObjectiveTerm] = dataclasses.field(default_factory=list)
     constraints: List[Constraint] = dataclasses.field(default_factory=list)
     relations: List[Relation] = dataclasses.field(default_factory=list)
     optimiser: OptimiserSettings = dataclasses.field(default_factory=OptimiserSettings)
+
+    def set(self, place: str, value: "Operand | Sequence[Operand]") -> None:
+        """Lets a number of the scene, or the numbers of a vector, follow from parameters (BoundNumber says what a place is). A text is a
+        formula of the parameters' names; numbers without a unit count in SI.
+
+            design.set("/bodies/rod/position", [crank + rod * fettle.cos(phi), 0, 0])
+            design.set("/bodies/pin/shape/dimensions/radius", "bore - gap")
+        """
+        if isinstance(value, (list, tuple, np.ndarray)):
+            for k, entry in enumerate(value):
+                self.set(f"{place}/{k}", entry)
+            return
+        component: Any = value
+        if isinstance(component, str):
+            formula = _fettle.Formula(component, {parameter.name: parameter.unit or "1" for parameter in self.parameters})
+        else:
+            formula = _fettle.formula(component)
+        self.numbers = [number for number in self.numbers if number.place != place] + [BoundNumber(place, formula)]
 
     def _prepared(self) -> "Design":
         """As the library takes it: bodies by number. Raises Error where a name is no body's, or a number was given in a unit of another
@@ -357,7 +408,7 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault]) -> Any:
 
 
 def _faults_of_units(design: Design) -> List[Fault]:
-    """Of numbers with units in objective and constraints: their quantity says which dimension is wanted."""
+    """The faults of numbers with units in objective and constraints: their quantity determines the dimension."""
     faults: List[Fault] = []
     measured: List[Tuple[Any, str, Dict[str, Any]]] = [
         (term.quantity, f"objective term `{term.name}`", {"unit": term.unit}) for term in design.objective

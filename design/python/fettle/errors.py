@@ -22,12 +22,12 @@ class Error(ValueError):
 
     @property
     def code(self) -> str:
-        """Of the first fault."""
+        """Code of the first fault."""
         return self.errors[0].code
 
     @property
     def where(self) -> str:
-        """Of the first fault."""
+        """Place of the first fault."""
         return self.errors[0].where
 
     def __str__(self) -> str:
@@ -44,10 +44,10 @@ class EvaluationError(RuntimeError):
 
     @property
     def code(self) -> str:
-        """Of the first fault."""
+        """Code of the first fault."""
         return self.errors[0].code
 
     @property
     def where(self) -> str:
-        """Of the first fault."""
+        """Place of the first fault."""
         return self.errors[0].where

@@ -251,7 +251,7 @@ class _LocalPool:
 
 
 def _dask_client(address: str) -> Any:
-    """Of a running scheduler. An address that is none, or where nobody answers, is an error within DASK_SECONDS."""
+    """A client of a running scheduler. A wrong address, or one where nobody answers, is an error within DASK_SECONDS."""
     try:
         from distributed import Client
         from distributed.comm.addressing import get_address_host_port
@@ -301,7 +301,7 @@ class Exploration:
         return sorted(met, key=lambda r: float(r["objective"]))[:count]
 
     def column(self, name: str) -> NDArray[np.float64]:
-        """Of every result: "objective", "violation", or a parameter's, term's or constraint's value; NaN where there is none."""
+        """One value of every result: "objective", "violation", or a parameter's, term's or constraint's value; NaN where there is none."""
 
         def value(result: Result) -> float:
             for group in (result, result.get("parameters", {}), result.get("terms", {}), result.get("constraints", {})):
@@ -350,7 +350,7 @@ def _is_shallow(value: Any, levels: int = DEEPEST) -> bool:
 
 
 def _is_result(record: Any) -> bool:
-    """Has a line what is told of a result, each of its type?"""
+    """Does a line have the members of a result, each of its type?"""
 
     def numbers(value: Any) -> bool:
         return isinstance(value, dict) and all(x is None or isinstance(x, (int, float)) for x in value.values())
@@ -387,7 +387,7 @@ def read_exploration(path: PathLike) -> Exploration:
     whole = [(number, line) for number, line in enumerate(lines[:-1], 1) if line]  # what follows the last line feed was cut off
     records = [_record(f"{path}:{number}", line, is_header=k == 0) for k, (number, line) in enumerate(whole)]
     if not records or not isinstance(records[0], dict) or records[0].get("fettle_explore") != VERSION:
-        raise _fail("missing_key", str(path), f"no exploration: its first line has no `fettle_explore` {VERSION}")
+        raise _fail("missing_key", str(path), f"not an exploration: its first line has no `fettle_explore` {VERSION}")
     return Exploration(records[0], records[1:])
 
 

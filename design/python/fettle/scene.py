@@ -12,6 +12,7 @@ from typing import Any, Dict, List, Literal, Optional, Sequence, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _fettle
 from ._record import Number, Record, faults_of, number, short
 from .errors import Error, Fault
 
@@ -126,6 +127,34 @@ class Inertial(Record):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
+class Orientation(Record):
+    """A rotation as a file writes it, which a body's pose has its rotation from: three angles, R = Rz(c) Ry(b) Rx(a), or a rotation
+    vector."""
+
+    kind: Literal["angles", "vector"] = "angles"
+    numbers: Vector = number("angle", factory=_zero)  #: [rad]
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class Variable(Record):
+    """A named number of a scene's file. What follows from others has a formula of them; a design can move the rest."""
+
+    name: str = ""
+    formula: "_fettle.Formula" = dataclasses.field(default_factory=lambda: _fettle.formula(0.0))
+    value: float = 0.0  #: SI
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class BoundNumber(Record):
+    """A number of a scene that follows from variables or parameters. Places are JSON pointers, with bodies, joints, springs, dampers, motors
+    and loads by number or name: "/bodies/pin/shape/dimensions/radius", "/bodies/pin/position/2", "/joints/0/point_a/0",
+    "/motors/drive/speed"; the library's core/scene/place.hpp lists them."""
+
+    place: str = ""
+    formula: "_fettle.Formula" = dataclasses.field(default_factory=lambda: _fettle.formula(0.0))
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Body(Record):
     """A rigid part. `prescribed`: px py pz rx ry rz in world axes, None: free."""
 
@@ -143,6 +172,7 @@ class Body(Record):
     material: str = ""
     mu: Optional[float] = None
     pose: Pose = dataclasses.field(default_factory=Pose)
+    orientation: Orientation = dataclasses.field(default_factory=Orientation)
     linear_velocity: Vector = number("speed", factory=_zero)  #: [m/s]
     angular_velocity: Vector = number("angular_speed", factory=_zero)  #: [rad/s]
     prescribed: List[Optional[MotionCurve]] = dataclasses.field(default_factory=lambda: [None] * 6)
@@ -258,6 +288,8 @@ class Scene(Record):
     integrator: Literal["implicit_euler", "bdf2", "newmark", "quasi_static"] = "implicit_euler"
     velocity_tolerance: Optional[Number] = number("speed", None)  #: [m/s]
     max_newton_iterations: int = 3000
+    variables: List[Variable] = dataclasses.field(default_factory=list)
+    numbers: List[BoundNumber] = dataclasses.field(default_factory=list)  #: that follow from variables
     warnings: List[str] = dataclasses.field(default_factory=list)
 
     def body(self, name: str) -> int:
@@ -288,12 +320,12 @@ _EFFORTS = {"length": "force", "angle": "torque"}
 def _unless(found: Any, wanted: type, where: str) -> List[Fault]:
     if isinstance(found, wanted):
         return []
-    return [Fault("wrong_type", where, f"{short(found)}, of type {type(found).__name__}: a fettle.{wanted.__name__} is wanted")]
+    return [Fault("wrong_type", where, f"{short(found)}, of type {type(found).__name__}: a fettle.{wanted.__name__} is expected")]
 
 
 def _unless_all(found: Any, wanted: type, where: str) -> List[Fault]:
     if not isinstance(found, (list, tuple)):
-        return [Fault("wrong_type", where, f"{short(found)}, of type {type(found).__name__}: a list of fettle.{wanted.__name__} is wanted")]
+        return [Fault("wrong_type", where, f"{short(found)}, of type {type(found).__name__}: a list of fettle.{wanted.__name__} is expected")]
     return [fault for k, each in enumerate(found) for fault in _unless(each, wanted, f"{where}/{k}")]
 
 

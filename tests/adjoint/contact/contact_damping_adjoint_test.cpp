@@ -60,7 +60,7 @@ core::contact::ContactDamping damping_of(const Step& step) {
 }
 
 ContactSet contacts_of(const Step& step) {
-    return find_contacts(step.model, core::contact::find_candidates(step.model, step.end, 0), step.end);
+    return core::contact::find_contacts(step.model, core::ccd::find_candidates(step.model, step.end, 0), step.end);
 }
 
 // Coordinates: the vertices of both bodies, then the entries of both start matrices.

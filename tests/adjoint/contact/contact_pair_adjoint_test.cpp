@@ -18,13 +18,13 @@ using adjoint::contact::mollifier_eps_gradient;
 using adjoint::contact::pair_forces_eps_derivative;
 using core::contact::BarrierParameters;
 using core::contact::ContactPair;
-using core::contact::PairType;
+using core::geometry::PairType;
 
 constexpr double dhat = 1e-2;
 
 BarrierParameters parameters(double dmin) { return core::contact::barrier_parameters(dhat, dmin, 1e4, 1e-4); }
 
-ContactPair edge_pair(const core::contact::PairVertices& x, double eps) {
+ContactPair edge_pair(const core::geometry::PairVertices& x, double eps) {
     ContactPair pair;
     pair.type = PairType::edge_edge;
     pair.x = x;
@@ -36,8 +36,8 @@ ContactPair edge_pair(const core::contact::PairVertices& x, double eps) {
 // Two edges about 0.1 m long, crossing at `angle`, a gap apart.
 ContactPair crossing(double angle, double gap, double slide = 0) {
     const double c = std::cos(angle), s = std::sin(angle);
-    const core::contact::PairVertices x{Vector3(-0.05, 0, 0), Vector3(0.06, 0.001, 0), Vector3(-0.05 * c + slide, -0.05 * s, gap),
-                                        Vector3(0.04 * c + slide, 0.04 * s, gap + 1e-4)};
+    const core::geometry::PairVertices x{Vector3(-0.05, 0, 0), Vector3(0.06, 0.001, 0), Vector3(-0.05 * c + slide, -0.05 * s, gap),
+                                         Vector3(0.04 * c + slide, 0.04 * s, gap + 1e-4)};
     // Undeformed lengths a little different from the present ones, as eps and c are independent here.
     return edge_pair(x, core::contact::mollifier_scale * 0.11 * 0.11 * 0.088 * 0.092);
 }

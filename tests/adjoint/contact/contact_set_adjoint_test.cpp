@@ -16,7 +16,7 @@ using namespace fettle::tests;
 
 namespace {
 
-using core::contact::PairType;
+using core::geometry::PairType;
 using core::kinematics::Pose;
 using core::model::Model;
 
@@ -27,7 +27,7 @@ struct Scene {
 };
 
 core::contact::ContactSet contacts_of(const Model& model, const std::vector<Pose>& poses) {
-    const auto candidates = core::contact::find_candidates(model, poses, 0);
+    const auto candidates = core::ccd::find_candidates(model, poses, 0);
     return core::contact::find_contacts(model, candidates, poses);
 }
 

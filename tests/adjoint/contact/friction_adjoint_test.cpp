@@ -16,7 +16,7 @@ using namespace fettle::tests;
 namespace {
 
 using core::contact::ContactSet;
-using core::contact::PairType;
+using core::geometry::PairType;
 using core::kinematics::Pose;
 using core::model::Model;
 
@@ -31,7 +31,7 @@ struct Scene {
 };
 
 ContactSet contacts_of(const Model& model, const std::vector<Pose>& poses) {
-    return find_contacts(model, core::contact::find_candidates(model, poses, 0), poses);
+    return core::contact::find_contacts(model, core::ccd::find_candidates(model, poses, 0), poses);
 }
 
 // A box over another, near enough to touch; both turned together, so that no axis is special. It has slid by `slide` since the slip

@@ -170,7 +170,7 @@ void check_scene(const SweepScene& scene, bool differences) {
         CAPTURE(scene.name, to_string(kind));
         const Vector3 derivative = check_sweeps(scene, simulation.trajectory, seeds, direction);
         const bool unknown = kind == ParameterKind::velocity_start && still;
-        if (unknown) CHECK(derivative.norm() == 0);  // it knows no velocities
+        if (unknown) CHECK(derivative.norm() == 0);  // it has no velocities
         if (kind == ParameterKind::vertices || kind == ParameterKind::pose_start || kind == ParameterKind::gravity)
             CHECK(derivative.norm() > 0);
         const bool unfelt = kind == ParameterKind::friction && derivative.norm() < 1e-12;  // what is only pushed along goes as it is pushed

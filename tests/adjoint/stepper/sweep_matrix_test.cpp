@@ -89,7 +89,7 @@ core::model::Body falling_body(Sort sort, double gap) {
 double contact_gap(const core::model::Model& model) {
     std::vector<core::kinematics::Pose> poses;
     for (const core::model::Body& body : model.bodies) poses.push_back(body.pose_start);
-    const auto contacts = core::contact::find_contacts(model, core::contact::find_candidates(model, poses, 0), poses);
+    const auto contacts = core::contact::find_contacts(model, core::ccd::find_candidates(model, poses, 0), poses);
     double least = INFINITY;
     for (const auto& list : contacts.pairs)
         for (const auto& pair : list.contacts) least = std::min(least, std::sqrt(pair.closest.distance_squared));

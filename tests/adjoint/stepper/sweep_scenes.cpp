@@ -164,10 +164,10 @@ std::vector<ParameterKind> kinds_of(const SweepScene& scene) {
 ContactCount count_contacts(const Model& model, const core::stepper::Trajectory& trajectory) {
     ContactCount count;
     for (std::size_t t = 1; t < trajectory.poses.size(); ++t) {
-        const auto candidates = core::contact::find_candidates(model, trajectory.poses[t], 0);
+        const auto candidates = core::ccd::find_candidates(model, trajectory.poses[t], 0);
         for (const auto& list : core::contact::find_contacts(model, candidates, trajectory.poses[t]).pairs)
             for (const core::contact::ContactPair& pair : list.contacts) {
-                if (pair.type == core::contact::PairType::point_triangle)
+                if (pair.type == core::geometry::PairType::point_triangle)
                     ++count.vertex_face;
                 else if (fettle::adjoint::contact::is_mollified(pair))
                     ++count.mollified;

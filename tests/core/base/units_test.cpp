@@ -52,7 +52,7 @@ TEST_CASE("a quantity has a dimension, and another one's unit is refused", "[bas
     const Error length = parse_quantity("30mm", Dimension::mass, "a#/x").errors().at(0);
     CHECK(length.code == ErrorCode::wrong_type);
     CHECK(length.where == "a#/x");
-    CHECK(length.message.find("\"mm\" is a unit of length, a mass is wanted") != std::string::npos);
+    CHECK(length.message.find("\"mm\" is a unit of length, a mass is expected") != std::string::npos);
     CHECK(parse_quantity("30 stone", Dimension::mass).errors().at(0).code == ErrorCode::out_of_range);
     CHECK(parse_quantity("30", Dimension::mass).errors().at(0).code == ErrorCode::out_of_range);
     CHECK_FALSE(si_per_unit("kg", Dimension::length));

@@ -5,7 +5,7 @@
 
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/model/build_model.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/tests/core/clearance/clearance_models.hpp"
 
 namespace fettle::core::clearance::clash_test {
@@ -250,7 +250,8 @@ TEST_CASE("A cup in a fixture, which has no word for sheets, is not taken for on
         "faces": [[0,2,1],[0,3,2],[0,1,5],[0,5,4],[1,2,6],[1,6,5],[2,3,7],[2,7,6],[3,0,4],[3,4,7]]})";
     const std::string part = R"({"vertices": [[0.1,0.1,0.1],[0.2,0.1,0.1],[0.1,0.2,0.1],[0.1,0.1,0.2]],
         "faces": [[0,2,1],[0,1,3],[0,3,2],[1,2,3]]})";
-    const auto scene = core::scene::parse_scene(R"({"rigid_body_problem": {"rigid_bodies": [)" + cup + ", " + part + "]}}", "cup.json");
+    const auto scene =
+        core::scene_files::parse_scene(R"({"rigid_body_problem": {"rigid_bodies": [)" + cup + ", " + part + "]}}", "cup.json");
     REQUIRE(scene);
     CHECK(scene->bodies[0].mass_kind == core::scene::MassKind::area);
     const auto built = core::model::build_model(*scene);

@@ -94,7 +94,7 @@ TEST_CASE("shares of areas add up to the contacts' weights", "[area_weight]") {
         const model::Model model = boxes(Vector3(0.02 * unit(random), 0.02 * unit(random), unit(random)), trial % 2 == 0 ? 0 : 0.01);
         std::vector<kinematics::Pose> poses;
         for (const model::Body& body : model.bodies) poses.push_back(body.pose_start);
-        const Candidates candidates = find_candidates(model, poses, 0);
+        const ccd::Candidates candidates = ccd::find_candidates(model, poses, 0);
         const ContactSet set = find_contacts(model, candidates, poses);
         const ContactAreas areas = contact_areas(model, candidates, poses);
         REQUIRE(static_cast<int>(areas.shares.size()) == set.count);
@@ -127,7 +127,7 @@ TEST_CASE("edges of the same area are told", "[area_weight]") {
     model.bodies[1].pose_start = make_pose({0, 0, 0.4}, {0, 0, 0.052});
     model.bodies.pop_back();
     std::vector<kinematics::Pose> poses{model.bodies[0].pose_start, model.bodies[1].pose_start};
-    const Candidates candidates = find_candidates(model, poses, 0);
+    const ccd::Candidates candidates = ccd::find_candidates(model, poses, 0);
     REQUIRE(find_contacts(model, candidates, poses).count > 0);
     CHECK_FALSE(contact_areas(model, candidates, poses).equal.empty());
 }

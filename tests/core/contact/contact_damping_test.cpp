@@ -3,10 +3,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/energy/incremental_potential.hpp"
 #include "fettle/core/energy/start_history.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
@@ -52,7 +52,7 @@ std::vector<kinematics::Pose> poses_at(const Setup& s, const VectorX& y) {
 }
 
 ContactSet contacts_at(const Setup& s, const std::vector<kinematics::Pose>& poses) {
-    return find_contacts(s.model, find_candidates(s.model, poses, 0.3), poses);
+    return find_contacts(s.model, ccd::find_candidates(s.model, poses, 0.3), poses);
 }
 
 double value(const Setup& s, const VectorX& y) {
@@ -86,7 +86,7 @@ int mollified(const ContactSet& contacts) {
     int count = 0;
     for (const BodyPairContacts& list : contacts.pairs)
         for (const ContactPair& pair : list.contacts)
-            count += pair.type == PairType::edge_edge && edge_cross_squared(pair.x) < pair.mollifier_eps;
+            count += pair.type == geometry::PairType::edge_edge && edge_cross_squared(pair.x) < pair.mollifier_eps;
     return count;
 }
 
@@ -121,7 +121,7 @@ TEST_CASE("contact damping's derivatives agree with differences, for every integ
             CHECK(check_gradient([&](const VectorX& y) { return value(s, y); }, s.y, d.gradient, sweep).relative_error < 1e-7);
             const auto gradient = [&](const VectorX& y) { return derivatives(s, y).gradient; };
             CHECK(check_jacobian(gradient, s.y, d.hessian, sweep).relative_error < 1e-6);
-            const VectorX projected = symmetric_eigenvalues<Eigen::Dynamic>(derivatives(s, s.y, HessianKind::projected).hessian);
+            const VectorX projected = linear::symmetric_eigenvalues<Eigen::Dynamic>(derivatives(s, s.y, HessianKind::projected).hessian);
             CHECK(projected.minCoeff() >= -1e-12 * projected.maxCoeff());
         }
 }
@@ -131,7 +131,7 @@ TEST_CASE("contact damping is projected when it opens, and then the true one is 
     const Vector3 apart(0, 0, 0.03);
     s.y.head<3>() += apart;
     const auto least = [&](HessianKind kind) {
-        return symmetric_eigenvalues<Eigen::Dynamic>(derivatives(s, s.y, kind).hessian).minCoeff();
+        return linear::symmetric_eigenvalues<Eigen::Dynamic>(derivatives(s, s.y, kind).hessian).minCoeff();
     };
     const double size = derivatives(s, s.y).hessian.norm();
     CHECK(least(HessianKind::exact) < -1e-3 * size);

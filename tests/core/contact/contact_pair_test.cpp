@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Derivatives of one pair's potential against central differences, for every kind of closest feature, with and without mollifier.
 #include "fettle/core/contact/contact_pair.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
@@ -21,19 +21,19 @@ struct Case {
     bool mollified;
 };
 
-ContactPair make_pair(PairType type, const PairVertices& x, double rest_scale) {
+ContactPair make_pair(geometry::PairType type, const geometry::PairVertices& x, double rest_scale) {
     ContactPair pair;
     pair.type = type;
     pair.x = x;
     pair.closest = closest_points(type, x);
-    if (type == PairType::edge_edge)
+    if (type == geometry::PairType::edge_edge)
         pair.mollifier_eps = mollifier_scale * rest_scale * (x[1] - x[0]).squaredNorm() * (x[3] - x[2]).squaredNorm();
     return pair;
 }
 
 std::vector<Case> cases() {
-    const auto pt = PairType::point_triangle;
-    const auto ee = PairType::edge_edge;
+    const auto pt = geometry::PairType::point_triangle;
+    const auto ee = geometry::PairType::edge_edge;
     const Vector3 t0(0, 0, 0), t1(1, 0.1, 0), t2(0.2, 0.9, 0.05);
     std::vector<Case> out{
         {"face", make_pair(pt, {Vector3(0.4, 0.3, 0.07), t0, t1, t2}, 1), 2, false},
@@ -60,7 +60,7 @@ const Vector3 first_position(0.3, -0.2, 0.5), second_position(-0.6, 0.4, -0.3);
 
 ContactPair moved(const ContactPair& pair, const Vector12& motion) {
     ContactPair out = pair;
-    const int n = first_count(pair.type);
+    const int n = geometry::first_count(pair.type);
     for (int i = 0; i < 4; ++i) {
         const Vector3& q = i < n ? first_position : second_position;
         const Vector6 m = i < n ? motion.head<6>() : motion.tail<6>();
@@ -99,7 +99,7 @@ TEST_CASE("the cases are what they say", "[contact_pair]") {
         CHECK(c.pair.closest.free_count == c.free_count);
         CHECK(c.pair.closest.distance_squared < parameters.activation * parameters.activation);
         CHECK(c.pair.closest.distance_squared > parameters.dmin * parameters.dmin);
-        if (c.pair.type == PairType::edge_edge) CHECK((edge_cross_squared(c.pair.x) < c.pair.mollifier_eps) == c.mollified);
+        if (c.pair.type == geometry::PairType::edge_edge) CHECK((edge_cross_squared(c.pair.x) < c.pair.mollifier_eps) == c.mollified);
     }
 }
 
@@ -161,11 +161,11 @@ TEST_CASE("the projected Hessian is positive semi-definite and close to the exac
     for (const Case& c : cases()) {
         INFO(c.name);
         const Matrix12 projected = in_both_bodies(derivatives(c.pair, HessianKind::projected).hessian);
-        const Vector12 eigenvalues = symmetric_eigenvalues<12>(projected);
+        const Vector12 eigenvalues = linear::symmetric_eigenvalues<12>(projected);
         CHECK(eigenvalues[0] >= -1e-12 * eigenvalues[11]);
         // At least the exact one everywhere: exact <= projected.
         const Matrix12 exact = in_both_bodies(derivatives(c.pair, HessianKind::exact).hessian);
-        CHECK(symmetric_eigenvalues<12>(projected - exact)[0] >= -1e-10 * eigenvalues[11]);
+        CHECK(linear::symmetric_eigenvalues<12>(projected - exact)[0] >= -1e-10 * eigenvalues[11]);
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A plane face is one contact however it is cut: against the distance to the polygon, differences, and other ways to cut it.
 #include "fettle/core/contact/counted_contacts.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -81,14 +81,14 @@ Measured measure(const model::Model& model, const Vector3& x) {
     const Pose& sheet = model.bodies[0].pose_start;
     const std::vector<Pose> poses{sheet, {Matrix3::Identity(), world_position(sheet, x)}};
     const BarrierParameters barrier = barrier_parameters(model.dhat, 0, 3, 1);
-    const ContactSet set = find_contacts(model, find_candidates(model, poses, 0), poses);
+    const ContactSet set = find_contacts(model, ccd::find_candidates(model, poses, 0), poses);
     Measured out;
     out.potential = barrier_potential(set, barrier);
     out.count = set.count;
     for (const BodyPairContacts& list : set.pairs)
         for (const ContactPair& pair : list.contacts)
             for (int i = 0; i < 4; ++i)
-                if ((i < first_count(pair.type) ? list.first : list.second) == 1)
+                if ((i < geometry::first_count(pair.type) ? list.first : list.second) == 1)
                     out.force += sheet.rotation.transpose() * pair_forces(pair, barrier)[i];
     return out;
 }
@@ -149,7 +149,7 @@ TEST_CASE("the projected Hessian stays semi-definite where a corner counts again
     const Pose& sheet = model.bodies[0].pose_start;
     const BarrierParameters parameters = barrier_parameters(model.dhat, 0, 3, 1);
     const std::vector<Pose> poses{sheet, {Matrix3::Identity(), world_position(sheet, Vector3(0.56, 0.57, 0.05))}};
-    const ContactSet set = find_contacts(model, find_candidates(model, poses, 0), poses);
+    const ContactSet set = find_contacts(model, ccd::find_candidates(model, poses, 0), poses);
     int against = 0;
     for (const BodyPairContacts& list : set.pairs)
         for (const ContactPair& pair : list.contacts) {
@@ -159,8 +159,8 @@ TEST_CASE("the projected Hessian stays semi-definite where a corner counts again
             add_pair_derivatives(pair, parameters, HessianKind::exact, poses[list.first].position, poses[list.second].position, exact);
             const Matrix12 above = in_both_bodies(projected.hessian), gap = above - in_both_bodies(exact.hessian);
             const double size = above.norm();
-            CHECK(symmetric_eigenvalues<12>(above)[0] >= -1e-12 * size);
-            CHECK(symmetric_eigenvalues<12>(gap)[0] >= -1e-10 * size);
+            CHECK(linear::symmetric_eigenvalues<12>(above)[0] >= -1e-12 * size);
+            CHECK(linear::symmetric_eigenvalues<12>(gap)[0] >= -1e-10 * size);
             against += pair.weight < 0;
         }
     CHECK(against == 1);
@@ -195,7 +195,7 @@ TEST_CASE("contacts with the same closest features are one, of the same potentia
         if (k % 5 == 0) turn.setZero();
         if (k % 7 == 0) turn.z() = unit(random);
         const std::vector<Pose> poses{{}, make_pose(turn, shift)};
-        const Candidates candidates = find_candidates(merged, poses, 0);
+        const ccd::Candidates candidates = ccd::find_candidates(merged, poses, 0);
         const ContactSet few = find_contacts(merged, candidates, poses), many = find_contacts(apart, candidates, poses);
         if (many.count == 0 || !(many.minimum_distance > 0)) continue;
         CAPTURE(k, shift.transpose(), turn.transpose(), few.count, many.count);
@@ -206,7 +206,7 @@ TEST_CASE("contacts with the same closest features are one, of the same potentia
         CHECK((g_few - g_many).norm() <= 1e-9 * g_many.norm() + 1e-20);
         CHECK((h_few - h_many).norm() <= 1e-8 * h_many.norm() + 1e-20);
         const Matrix12 projected = derivatives(few, poses, HessianKind::projected).second;
-        const double least = symmetric_eigenvalues<12>(projected.transpose())[0];
+        const double least = linear::symmetric_eigenvalues<12>(projected.transpose())[0];
         CHECK(least >= -1e-12 * projected.norm());
         fewer += 2 * few.count < many.count;
     }
@@ -234,7 +234,7 @@ TEST_CASE("what is counted as planned has the bits of what is counted anew", "[c
             poses[b] = {make_pose(0.1 * size * turn, {}).rotation * base.rotation, base.position + size * shift};
         }
         if (k % 30 == 0) poses[1] = poses[2] = {};  // corners over corners, exactly
-        const Candidates candidates = find_candidates(model, poses, 0.01);
+        const ccd::Candidates candidates = ccd::find_candidates(model, poses, 0.01);
         std::vector<std::vector<int>> keys;
         for (const auto& of : plans.pairs) keys.push_back(of.plan.is_usable ? of.plan.key : std::vector<int>{-1});
         const ContactSet with = find_contacts(model, candidates, poses, &plans), without = find_contacts(model, candidates, poses);
@@ -287,7 +287,7 @@ TEST_CASE("two boxes face to face: their diagonals do not matter", "[counted_con
         model.dhat = 0.05;
         const std::vector<Pose> poses{{}, make_pose(Vector3(0.01, -0.02, 0.3), Vector3(0.2, 0.1, 1.03))};
         model.bodies = {make_body("low", box, poses[0]), make_body("high", box, poses[1])};
-        const ContactSet set = find_contacts(model, find_candidates(model, poses, 0), poses);
+        const ContactSet set = find_contacts(model, ccd::find_candidates(model, poses, 0), poses);
         CHECK(set.count > 4);
         return barrier_potential(set, barrier_parameters(model.dhat, 0, 1, 1));
     };

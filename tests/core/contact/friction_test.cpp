@@ -2,7 +2,7 @@
 // Friction: the mollifier against its formula and its limits, the potential's derivatives against differences, and the force against
 // Coulomb's law for a contact that slides and for one that sticks.
 #include "fettle/core/contact/friction.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -34,7 +34,7 @@ Scene make_scene(double slid) {
     s.model.friction.mu = MatrixX::Constant(1, 1, 0.4);
     s.model.friction.eps_v = 0.01;
     for (const model::Body& body : s.model.bodies) s.lagged_at.push_back(body.pose_start);
-    const Candidates candidates = find_candidates(s.model, s.lagged_at, 0.3);
+    const ccd::Candidates candidates = ccd::find_candidates(s.model, s.lagged_at, 0.3);
     const ContactSet contacts = find_contacts(s.model, candidates, s.lagged_at);
     REQUIRE(contacts.count > 10);
     std::vector<Matrix34> reference;
@@ -119,9 +119,9 @@ TEST_CASE("friction's gradient and Hessian agree with differences", "[friction]"
         const MatrixX symmetric = 0.5 * (difference + difference.transpose());
         CHECK((symmetric - d.hessian).norm() < 2e-4 * d.hessian.norm());
         const MatrixX majoriser = derivatives_at(s, s.poses, HessianKind::projected).gauss_newton - d.gauss_newton;
-        CHECK(symmetric_eigenvalues(majoriser).minCoeff() >= -1e-12 * d.gauss_newton.norm());
+        CHECK(linear::symmetric_eigenvalues(majoriser).minCoeff() >= -1e-12 * d.gauss_newton.norm());
         CHECK((slid > 0) == (majoriser.norm() > 1e-6 * d.gauss_newton.norm()));  // stiffer only where something slides
-        const double least = symmetric_eigenvalues(d.gauss_newton).minCoeff();
+        const double least = linear::symmetric_eigenvalues(d.gauss_newton).minCoeff();
         CHECK(least >= -1e-12 * d.gauss_newton.norm());
     }
 }
@@ -160,7 +160,7 @@ TEST_CASE("the share of the load that slides is that of the contacts beyond the 
 TEST_CASE("pairs without friction are left out", "[friction]") {
     Scene s = make_scene(0);
     s.model.friction.mu(0, 0) = 0;
-    const Candidates candidates = find_candidates(s.model, s.lagged_at, 0.3);
+    const ccd::Candidates candidates = ccd::find_candidates(s.model, s.lagged_at, 0.3);
     const ContactSet contacts = find_contacts(s.model, candidates, s.lagged_at);
     std::vector<Matrix34> reference(2, Matrix34::Zero());
     CHECK(lag_friction(s.model, contacts, s.lagged_at, barrier_parameters(0.2, 0, 2e4, 4e-4), reference, 0.02).pairs.empty());

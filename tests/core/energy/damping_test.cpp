@@ -92,7 +92,7 @@ TEST_CASE("damping's and gravity's derivatives agree with differences", "[dampin
         const auto points_at = [&](const VectorX& y) {
             return std::vector<kinematics::ChartPoint>{{problem.poses_t0[0].position + y.head<3>(), y.tail<3>()}};
         };
-        const contact::Candidates none = contact::find_candidates(model, problem.poses_t0, 0);
+        const ccd::Candidates none = ccd::find_candidates(model, problem.poses_t0, 0);
         const auto value = [&](const VectorX& y) {
             const auto points = points_at(y);
             return energy::incremental_potential(problem, points, poses_of(problem, points), {});

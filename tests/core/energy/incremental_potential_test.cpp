@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Gradient and Hessian of a whole step's potential in chart coordinates, away from the chart's origin, against central differences.
 #include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -45,8 +45,8 @@ Setup setup() {
     return s;
 }
 
-contact::Candidates all_candidates(const Setup& s, const std::vector<kinematics::Pose>& poses) {
-    return contact::find_candidates(s.model, poses, 0.3);
+ccd::Candidates all_candidates(const Setup& s, const std::vector<kinematics::Pose>& poses) {
+    return ccd::find_candidates(s.model, poses, 0.3);
 }
 
 std::vector<kinematics::ChartPoint> moved(std::vector<kinematics::ChartPoint> points, int dof, double h) {
@@ -63,7 +63,7 @@ std::vector<kinematics::ChartPoint> moved(std::vector<kinematics::ChartPoint> po
 TEST_CASE("gradient and Hessian of the incremental potential agree with differences", "[incremental_potential]") {
     const Setup s = setup();
     const auto poses = poses_of(s.problem, s.points);
-    const contact::Candidates candidates = all_candidates(s, poses);
+    const ccd::Candidates candidates = all_candidates(s, poses);
     const auto derivatives_at = [&](const std::vector<kinematics::ChartPoint>& points, contact::HessianKind kind) {
         const auto at = poses_of(s.problem, points);
         return chart_derivatives(s.problem, points, at, contact::find_contacts(s.model, candidates, at), kind);
@@ -95,17 +95,17 @@ TEST_CASE("gradient and Hessian of the incremental potential agree with differen
     Eigen::Matrix<double, 12, 12> p;
     p << projected.hessian.diagonal[0], projected.hessian.off_diagonal.at(0).block, projected.hessian.off_diagonal.at(0).block.transpose(),
         projected.hessian.diagonal[1];
-    CHECK(symmetric_eigenvalues(p).minCoeff() >= -1e-12 * p.norm());
+    CHECK(linear::symmetric_eigenvalues(p).minCoeff() >= -1e-12 * p.norm());
 }
 
 TEST_CASE("the potential does not depend on where the candidates were found", "[incremental_potential]") {
     const Setup s = setup();
     const auto poses = poses_of(s.problem, s.points);
-    const auto potential = [&](const contact::Candidates& candidates) {
+    const auto potential = [&](const ccd::Candidates& candidates) {
         return incremental_potential(s.problem, s.points, poses, contact::find_contacts(s.model, candidates, poses));
     };
     CHECK(potential(all_candidates(s, poses)) ==
-          potential(contact::find_candidates(s.model, s.problem.poses_t0, 3)));  // to the last bit: sums are ordered by primitives
+          potential(ccd::find_candidates(s.model, s.problem.poses_t0, 3)));  // to the last bit: sums are ordered by primitives
 }
 
 }  // namespace fettle::core::energy::incremental_potential_test

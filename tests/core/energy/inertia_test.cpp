@@ -3,10 +3,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/base/factorisations.hpp"
 #include "fettle/core/energy/incremental_potential.hpp"
 #include "fettle/core/energy/mass_matrix.hpp"
 #include "fettle/core/energy/start_history.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
@@ -54,7 +54,7 @@ TEST_CASE("the mass matrix of a box is the textbook's", "[inertia]") {
     const Matrix3 R = kinematics::rotation(Vector3(0.3, 1, -2));
     const Matrix6 turned = mass_matrix(R, box.moments);
     CHECK((turned.bottomRightCorner<3, 3>() - R * expected.bottomRightCorner<3, 3>() * R.transpose()).norm() < 1e-12 * expected.norm());
-    CHECK(symmetric_eigenvalues<6>(mass_matrix(R, brick().moments)).minCoeff() > 0);
+    CHECK(linear::symmetric_eigenvalues<6>(mass_matrix(R, brick().moments)).minCoeff() > 0);
 }
 
 TEST_CASE("inertia's derivatives agree with differences", "[inertia]") {

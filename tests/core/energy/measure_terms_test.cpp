@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Laws of measures, and the term that they make, against central differences; a damped oscillation against its exponential.
 #include "fettle/core/energy/measure_terms.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -79,7 +79,7 @@ TEST_CASE("the term's gradient and Hessian agree with differences, its projected
          {scene::Integrator::implicit_euler, scene::Integrator::bdf2, scene::Integrator::quasi_static}) {
         const model::Model model = loose_bars(integrator);
         const StepProblem problem = step_problem(model, start_history(model), model.kappa);
-        const contact::Candidates none;
+        const ccd::Candidates none;
         const auto points_at = [&](const VectorX& y) {
             std::vector<kinematics::ChartPoint> out;
             for (int i = 0; i < 2; ++i) out.push_back({problem.poses_t0[i].position + y.segment<3>(6 * i), y.segment<3>(6 * i + 3)});
@@ -113,7 +113,7 @@ TEST_CASE("the term's gradient and Hessian agree with differences, its projected
         CHECK(check_gradient(value, y, gradient(y)).relative_error < 1e-7);
         CHECK(check_jacobian(gradient, y, whole(y, contact::HessianKind::exact)).relative_error < 1e-7);
         const MatrixX projected = whole(y, contact::HessianKind::projected);
-        CHECK(symmetric_eigenvalues(projected).minCoeff() > -1e-12 * projected.norm());
+        CHECK(linear::symmetric_eigenvalues(projected).minCoeff() > -1e-12 * projected.norm());
     }
 }
 

@@ -123,7 +123,7 @@ TEST_CASE("numbers carry units: as much of one as is there") {
     CHECK(value("2 * 15 mm") == 0.03);
 }
 
-TEST_CASE("a number without a unit counts in the file's unit of what it stands beside") {
+TEST_CASE("a number without a unit counts in the file's unit of the quantity beside it") {
     CHECK(value("a + 2") == 2.5 + 0.002);
     CHECK(value("2 * (1 + 0.5) - a") == 0.003 - 2.5);
     CHECK(value("phi + 90") == Approx(0.6 + std::acos(0.0)));
@@ -134,8 +134,9 @@ TEST_CASE("a number without a unit counts in the file's unit of what it stands b
     CHECK(value_of<double>(*length("3 * 4"), {}) == 0.012);
     CHECK(value_of<double>(*length("3 * 4 m"), {}) == 12);
     CHECK(length("3 * 4")->dimension.is_number() == false);
-    CHECK(length("n").errors()[0].message.find("a number, a length is wanted; multiply it by a unit, such as `1 m`") != std::string::npos);
-    CHECK(length("a * b").errors()[0].message.find("an area, a length is wanted") != std::string::npos);
+    CHECK(length("n").errors()[0].message.find("a number, a length is expected; multiply it by a unit, such as `1 m`") !=
+          std::string::npos);
+    CHECK(length("a * b").errors()[0].message.find("an area, a length is expected") != std::string::npos);
     CHECK(parse_formula_of("a * b", scope(), Dimension::area, 1e-6));
 }
 
@@ -239,12 +240,12 @@ TEST_CASE("constant powers need no logarithm; what is not defined is not finite"
     CHECK(std::isnan(evaluate(parsed("sqrt(n - 1)"), p).value));
 }
 
-TEST_CASE("every fault of a formula is told, with its place") {
+TEST_CASE("every fault of a formula is reported with its place") {
     const Fault faults[] = {
         {"", ErrorCode::parse, "the formula ends"},
-        {"a +", ErrorCode::parse, "character 4: a number, a parameter or `(` is wanted, but the formula ends"},
-        {"(a", ErrorCode::parse, "`)` is wanted, but the formula ends"},
-        {"a b", ErrorCode::parse, "character 3: an operator is wanted before `b`"},
+        {"a +", ErrorCode::parse, "character 4: a number, a parameter or `(` is expected, but the formula ends"},
+        {"(a", ErrorCode::parse, "`)` is expected, but the formula ends"},
+        {"a b", ErrorCode::parse, "character 3: an operator is expected before `b`"},
         {"a / b <= 0.35", ErrorCode::parse, "in `lower` and `upper`"},
         {"if(a, b, c)", ErrorCode::parse, "takes a comparison"},
         {"floor(n)", ErrorCode::wrong_type, "`floor` jumps"},
@@ -256,10 +257,10 @@ TEST_CASE("every fault of a formula is told, with its place") {
         {"2 mmm", ErrorCode::parse, "no such unit"},
         {"2 s^2", ErrorCode::parse, "write parentheses"},
         {"a # b", ErrorCode::parse, "before `# b`"},
-        {"1e99 * a", ErrorCode::parse, "no number that can be used"},
+        {"1e99 * a", ErrorCode::parse, "this number cannot be used"},
         {"'crank radius / a", ErrorCode::parse, "closing quote"},
         {"min(a)", ErrorCode::parse, "two values or more"},
-        {"sqrt(a, b)", ErrorCode::parse, "`)` is wanted before `, b)`"},
+        {"sqrt(a, b)", ErrorCode::parse, "`)` is expected before `, b)`"},
         {"a / 'crank raduis'", ErrorCode::out_of_range, "character 5: there is no parameter `crank raduis`; did you mean `crank radius`?"},
         {"sqr(a)", ErrorCode::out_of_range, "there is no function `sqr`; did you mean `sqrt`?"},
         {"a + n", ErrorCode::wrong_type, "character 3: a length and a number cannot be added; give the number a unit"},

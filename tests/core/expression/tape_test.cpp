@@ -25,10 +25,10 @@ T sample(const T& x, const T& y) {
 
 TEST_CASE("what is recorded gives the same numbers again, at other inputs too") {
     Tape tape;
-    const Number x = tape.input(1.25), y = tape.input(2.5);
+    const Number x = tape.input(1.25), y = tape.input(2.25);
     const Number z = sample(x, y);
-    CHECK(z.value == sample(1.25, 2.5));
-    for (const auto& inputs : {std::array{1.25, 2.5}, std::array{3.0, 0.75}}) {
+    CHECK(z.value == sample(1.25, 2.25));
+    for (const auto& inputs : {std::array{1.25, 2.25}, std::array{3.0, 0.75}}) {
         const std::vector<double> at = values<double>(tape.nodes(), inputs);
         CHECK(at[static_cast<std::size_t>(z.node)] == sample(inputs[0], inputs[1]));
     }
@@ -36,9 +36,9 @@ TEST_CASE("what is recorded gives the same numbers again, at other inputs too") 
 
 TEST_CASE("gradients forwards and backwards are those of differences, on both sides of kinks") {
     Tape tape;
-    const Number x = tape.input(1.25), y = tape.input(2.5);
+    const Number x = tape.input(1.25), y = tape.input(2.25);
     const Number z = sample(x, y);
-    for (const auto& inputs : {std::array{1.25, 2.5}, std::array{3.0, 0.75}}) {
+    for (const auto& inputs : {std::array{1.25, 2.25}, std::array{3.0, 0.75}}) {
         const std::vector<double> at = values<double>(tape.nodes(), inputs);
         const VectorX forwards = gradients(tape.nodes(), at, 2).col(z.node);
         std::vector<double> weights(at.size(), 0);

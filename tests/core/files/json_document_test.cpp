@@ -51,7 +51,7 @@ TEST_CASE("Faults of syntax that are common are told in plain words", "[scene]")
                                                         {R"({"a": 1 "b": 2})", "a comma is missing before this entry"},
                                                         {R"({"a": [1 2]})", "a comma is missing before this entry"},
                                                         {R"({"a" 1})", "a colon is missing"},
-                                                        {"{a: 1}", "a key is wanted, which is text in double quotes"},
+                                                        {"{a: 1}", "a key is expected, which is text in double quotes"},
                                                         {R"({"a": True})", "JSON writes true, false and null"},
                                                         {R"({"a": 1)", "the text ends too early"},
                                                         {R"({"a": "x)", "a text has no closing quote"},

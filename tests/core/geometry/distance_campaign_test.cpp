@@ -11,10 +11,10 @@
 
 namespace fettle::core::geometry::distance_campaign_test {
 
-using core::contact::PairType;
-using core::contact::PairVertices;
 using core::geometry::ClosestPoints;
 using core::geometry::edge_edge_closest;
+using core::geometry::PairType;
+using core::geometry::PairVertices;
 using core::geometry::point_triangle_closest;
 
 namespace {

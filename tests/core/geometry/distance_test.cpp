@@ -10,9 +10,9 @@
 
 namespace fettle::core::geometry::distance_test {
 
-using core::contact::PairType;
-using core::contact::PairVertices;
 using core::geometry::ClosestPoints;
+using core::geometry::PairType;
+using core::geometry::PairVertices;
 
 namespace {
 

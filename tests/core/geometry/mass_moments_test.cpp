@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::core::geometry::mass_moments_test {
@@ -107,7 +107,7 @@ TEST_CASE("solid moments agree with Monte Carlo") {
     std::uniform_real_distribution<double> uniform(0, 1);
     for (int i = 0; i < count; ++i) {
         const Vector3 x = low + Vector3(uniform(random), uniform(random), uniform(random)).cwiseProduct(high - low);
-        if (!point_in_solid(x, mesh.vertices, mesh.triangles)) continue;
+        if (!solids::point_in_solid(x, mesh.vertices, mesh.triangles)) continue;
         const Matrix4 sample = box_volume * x.homogeneous() * x.homogeneous().transpose();
         sum += sample;
         sum_of_squares += sample.cwiseProduct(sample);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The factor by blocks against a dense one, on random graphs of bodies with prescribed coordinates.
 #include "fettle/core/linear/block_cholesky.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>

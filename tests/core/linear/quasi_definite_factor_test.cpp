@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The saddle-point system against a dense solution, definiteness on the rows, dependent rows.
 #include "fettle/core/linear/quasi_definite_factor.hpp"
-#include "fettle/core/base/factorisations.hpp"
+#include "fettle/core/linear/factorisations.hpp"
 
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>

@@ -10,11 +10,11 @@
 #include <thread>
 
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/import_format.hpp"
 #include "fettle/core/mesh_files/import_process.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/mesh_files/mesh_writer.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/text.hpp"
@@ -44,7 +44,7 @@ void check_box(const std::string& path, const Vector3& size, double unit = 1) {
     const auto mesh = read_mesh(path, {unit, true});
     REQUIRE(mesh);
     CHECK(mesh->vertices.cols() == 8);
-    CHECK(geometry::validate_mesh(*mesh, {}).empty());
+    CHECK(solids::validate_mesh(*mesh, {}).empty());
     const Vector3 found = mesh->vertices.rowwise().maxCoeff() - mesh->vertices.rowwise().minCoeff();
     CHECK((found - size).norm() < 1e-6 * size.norm());
     CHECK(geometry::solid_moments(mesh->vertices, mesh->triangles)(3, 3) == Approx(size.prod()).epsilon(1e-6));
@@ -81,7 +81,7 @@ TEST_CASE("COLLADA, glTF, 3DS and AMF: each in its own unit, with the axes of th
         const auto mesh = read_mesh(folder.write("a.amf", amf(attributes)), {17, true});
         REQUIRE(mesh);
         CHECK(mesh->vertices.maxCoeff() == Approx(unit).epsilon(1e-12));
-        CHECK(geometry::validate_mesh(*mesh, {}).empty());
+        CHECK(solids::validate_mesh(*mesh, {}).empty());
     }
     CHECK(contains(read_mesh(folder.write("a.amf", amf("unit=\"ell\""))).errors().front().message, "the unit `ell` must be millimeter"));
 }
@@ -109,8 +109,8 @@ TEST_CASE("What a file makes of assimp is an error: a wrong index, no end, no me
     CHECK(contains(fault(folder.write("a.glb", "glTF")), "cannot be read as a mesh"));
     for (const char* empty : {"a.3ds", "empty.glb", "empty.gltf", "empty.dae", "empty.amf"})
         CHECK(contains(fault(folder.write(empty, "")), "is empty; export or download it again"));
-    CHECK(contains(fault(folder.write("junk.gltf", "This is a letter.")), "what is in it is not of the kind that its name says"));
-    CHECK(contains(fault(folder.write("junk.dae", "junk")), "it is damaged, or no XML"));
+    CHECK(contains(fault(folder.write("junk.gltf", "This is a letter.")), "its contents are not of the kind that its name says"));
+    CHECK(contains(fault(folder.write("junk.dae", "junk")), "it is damaged or not XML"));
     const std::string path = folder.write("a.gltf", endless);  // by what is in it, not by its name
     const ImportOutcome slow = run_importer(path, {1, 1 << 30, 1 << 30});
     CHECK(slow.end == ImportOutcome::End::out_of_time);

@@ -10,8 +10,8 @@
 #include <map>
 
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/raw_mesh.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/support/intersection_oracle.hpp"
 #include "fettle/tests/support/shared_files.hpp"
@@ -91,7 +91,7 @@ TEST_CASE("OBJ: forms of indices, names, unit") {
     CHECK(mesh.vertices(0, 1) == 0.001);
     CHECK(mesh.triangles == std::vector<Triangle>{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
     CHECK(mesh.shell_names == std::vector<std::string>{"lid"});
-    CHECK(core::geometry::validate_mesh(mesh, {}).empty());
+    CHECK(core::solids::validate_mesh(mesh, {}).empty());
     CHECK(volume(mesh) == Approx(1e-9 / 6).epsilon(1e-14));
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("OBJ: polygons are cut inside their outline, with its orientation") {
         "f 6 5 4 3 2 1\nf 7 8 9 10 11 12\nf 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12\n";
     const Mesh mesh = read_mesh(folder.write("l.obj", text)).value();
     CHECK(mesh.triangles.size() == 2 * 4 + 6 * 2);
-    CHECK(core::geometry::validate_mesh(mesh, {}).empty());
+    CHECK(core::solids::validate_mesh(mesh, {}).empty());
     CHECK(volume(mesh) == Approx(3).epsilon(1e-14));
     // The same from every side: turned so that the concave corner comes first, and mirrored to the other planes.
     const std::string turned = "v 0 0 0\nv 0 2 0\nv 0 2 1\nv 0 1 1\nv 0 1 2\nv 0 0 2\nf 4 5 6 1 2 3\n";
@@ -179,7 +179,7 @@ TEST_CASE("OFF: header forms, comments, colours") {
         INFO(header);
         const Mesh mesh = read_mesh(folder.write("a.off", header + body)).value();
         CHECK(mesh.vertices(0, 1) == 1.000000000000001);
-        CHECK(core::geometry::validate_mesh(mesh, {}).empty());
+        CHECK(core::solids::validate_mesh(mesh, {}).empty());
     }
     CHECK(read_mesh(folder.write("q.off", "OFF 4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")).value().triangles.size() == 2);
 }
@@ -209,7 +209,7 @@ TEST_CASE("STL: text and binary, welded") {
     for (const Mesh& mesh : {from_text, from_binary}) {
         CHECK(mesh.vertices.cols() == 8);
         CHECK(mesh.edges.size() == 18);
-        CHECK(core::geometry::validate_mesh(mesh, {}).empty());
+        CHECK(core::solids::validate_mesh(mesh, {}).empty());
         CHECK(volume(mesh) == Approx(1).epsilon(1e-14));
     }
     CHECK(from_text.shell_names == std::vector<std::string>{"brick"});
@@ -228,7 +228,7 @@ TEST_CASE("3MF: its own unit, its build transform") {
         REQUIRE(mesh.vertices.cols() == 4);
         CHECK(mesh.vertices.row(0).minCoeff() == Approx(10 * metres));
         CHECK(mesh.vertices.row(0).maxCoeff() == Approx(12 * metres));
-        CHECK(core::geometry::validate_mesh(mesh, {}).empty());
+        CHECK(core::solids::validate_mesh(mesh, {}).empty());
         CHECK(mesh.shell_names == std::vector<std::string>{"wheel"});
     }
     const Error unknown = only_error(folder.file_3mf("u.3mf", model_3mf("unit=\"furlong\"")));
@@ -337,8 +337,8 @@ TEST_CASE("errors say what is wrong and where") {
     check("a.off", "OFF 1 1 0\n0 0 0\n3 0 1 2\n", ErrorCode::out_of_range, "a.off:3", "`1` is not a vertex index in 0 to 0");
     check("a.off", "OFF BINARY\n", ErrorCode::unsupported, "a.off", "binary");
     check("a.off", "hello\n", ErrorCode::parse, "a.off:1", "OFF");
-    check("a.ply", "garbage", ErrorCode::parse, "a.ply", "it is no PLY file");
-    check("a.stl", "garbage", ErrorCode::parse, "a.stl", "is no STL file, or a damaged one");
+    check("a.ply", "garbage", ErrorCode::parse, "a.ply", "it is not a PLY file");
+    check("a.stl", "garbage", ErrorCode::parse, "a.stl", "is not an STL file, or is damaged");
     check("a.glb", "garbage", ErrorCode::parse, "a.glb", "cannot be read as a mesh");
 }
 
@@ -370,8 +370,8 @@ TEST_CASE("every mesh of the paper's scenes loads, and is judged as CGAL judges 
         const auto mesh = read_mesh(entry.path());
         REQUIRE(mesh);
         CHECK(mesh->codimensional_points.empty());
-        if (!core::geometry::is_closed(*mesh)) not_closed.push_back(mesh->name);
-        const auto pairs = core::geometry::self_intersections(*mesh, 1000);
+        if (!core::solids::is_closed(*mesh)) not_closed.push_back(mesh->name);
+        const auto pairs = core::solids::self_intersections(*mesh, 1000);
         if (!pairs.empty()) intersecting[mesh->name] = static_cast<int>(pairs.size());
 
         // The oracle knows no shared vertices: compare the pairs without any.

@@ -9,11 +9,11 @@
 #include <fstream>
 #include <random>
 
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/mesh_files/mesh_writer.hpp"
 #include "fettle/core/mesh_files/millimetres.hpp"
 #include "fettle/core/mesh_files/zip_archive.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/text.hpp"
@@ -141,7 +141,7 @@ TEST_CASE("STL: read by us and by assimp alike, in millimetres, rounded as it sa
     REQUIRE(read);
     REQUIRE(read->vertices.cols() == 16);
     CHECK(read->triangles.size() == 24);
-    CHECK(geometry::validate_mesh(*read, {}).empty());
+    CHECK(solids::validate_mesh(*read, {}).empty());
     const aiScene* scene = aiImportFile(folder.file("a.stl").c_str(), 0);
     REQUIRE(scene != nullptr);
     int corners = 0;

@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/text.hpp"
 
@@ -54,7 +54,7 @@ struct Read {
 void check_tetrahedron(const Result<Mesh>& mesh) {
     REQUIRE(mesh);
     CHECK(mesh->vertices.cols() == 4);
-    CHECK(geometry::validate_mesh(*mesh, {}).empty());
+    CHECK(solids::validate_mesh(*mesh, {}).empty());
     CHECK(geometry::solid_moments(mesh->vertices, mesh->triangles)(3, 3) == Approx(0.125 / 6).epsilon(1e-14));
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("PLY: what a file says is checked before it is used") {
     CHECK(contains(read.fault(good + "99999999 0 2 1\n 1 2 3 4 5 6 7 8\n"), "ends after 0 of the 4 elements `face`"));
     CHECK(contains(read.fault(good + "-3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"), "is not a whole number"));
     CHECK(contains(read.fault("ply\nformat ascii 1.0\n"), "a.ply:3: ends inside its header (there is no `end_header`)"));
-    CHECK(contains(read.fault("ply"), "it is no PLY file"));
+    CHECK(contains(read.fault("ply"), "it is not a PLY file"));
     CHECK(contains(read.fault("ply\nend_header\n"), "no line `format`"));
     CHECK(contains(read.fault("ply\nformat ascii 2.0\nend_header\n"), "must be 1.0"));
     CHECK(contains(read.fault("ply\nformat middle_endian 1.0\nend_header\n"), "must be ascii, binary_little_endian"));

@@ -59,15 +59,15 @@ TEST_CASE("STL: what is cut short, damaged or something else is told as that") {
     CHECK(contains(read.fault("solid a\n" + facet), "a.stl:9: ends without `endsolid`: the file is cut short"));
     CHECK(contains(read.fault("solid a\n" + facet.substr(0, 60)), "ends inside the facet that begins on line 2: the file is cut short"));
     CHECK(contains(read.fault("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n"),
-                   "a.stl:4: `zero` stands where a number is wanted"));
+                   "a.stl:4: `zero` stands where a number is expected"));
     CHECK(contains(read.fault("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nendloop\n"),
-                   "`endloop` stands where `vertex` is wanted"));
-    CHECK(contains(read.fault("solid a\n" + facet + "hello\n"), "`hello` stands where `facet` or `endsolid` is wanted"));
-    CHECK(contains(read.fault("junk"), "is no STL file, or a damaged one"));
+                   "`endloop` stands where `vertex` is expected"));
+    CHECK(contains(read.fault("solid a\n" + facet + "hello\n"), "`hello` stands where `facet` or `endsolid` is expected"));
+    CHECK(contains(read.fault("junk"), "is not an STL file, or is damaged"));
     CHECK(contains(read.fault("junk"), "its 4 bytes are fewer than the 84"));
     CHECK(contains(read.fault("solid of another kind of file\n"), "ends without `endsolid`"));
     CHECK(contains(read.fault("solid a\nendsolid a\n"), "has no vertices"));
-    CHECK(contains(read.fault("solid of another kind of file"), "is no STL file, or a damaged one"));
+    CHECK(contains(read.fault("solid of another kind of file"), "is not an STL file, or is damaged"));
     const geometry::Mesh box = tests::support::box_mesh(Vector3::Zero(), {0.01, 0.02, 0.03});
     const std::string bytes = stl_bytes({{"box", &box}});
     // A header that begins like a text, before numbers: without a line end, and with one that happens to be the last byte.

@@ -6,10 +6,10 @@
 #include <random>
 
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/mesh_files/raw_mesh.hpp"
 #include "fettle/core/mesh_files/xml_reader.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/text.hpp"
 
@@ -96,7 +96,7 @@ TEST_CASE("3MF: zip64 entries are read, in double precision, with names") {
     REQUIRE(mesh);
     CHECK(mesh->vertices(0, 1) == 0.1234567890123456);
     CHECK(mesh->shell_names == std::vector<std::string>{"wheel & axle"});
-    CHECK(geometry::validate_mesh(*mesh, {}).empty());
+    CHECK(solids::validate_mesh(*mesh, {}).empty());
 }
 
 TEST_CASE("3MF: a mirrored item stays a solid, support is left out, other parts are followed") {
@@ -139,7 +139,7 @@ TEST_CASE("3MF: what is wrong is told, and nothing is taken on trust") {
     bad_number.replace(bad_number.find("y=\"1\""), 5, "y=\"a\"");
     const Error number = only_error(parsed(bad_number));
     CHECK(contains(number.where, "a.3mf/3D/3dmodel.model:4"));
-    CHECK(contains(number.message, "`y` of a <vertex> is no number"));
+    CHECK(contains(number.message, "`y` of a <vertex> is not a number"));
     // Components that place components a hundred times each would fill any memory.
     std::string bomb = wheel;
     for (int level = 2; level < 9; ++level) {

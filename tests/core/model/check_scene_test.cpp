@@ -79,7 +79,7 @@ TEST_CASE("A size or a density that is hardly meant is a warning, with its place
     scene::Scene heavy = scene_of({box("rod", 0.058, 0)});
     heavy.gravity = Vector3(0, 0, -9810);
     CHECK(build_model(heavy)->warnings == std::vector<std::string>{"a.scene.json#/gravity: gravity is 9810 m/s^2, which is hardly meant; "
-                                                                   "is it in mm/s^2? m/s^2 are wanted, whatever the unit of lengths "
+                                                                   "is it in mm/s^2? m/s^2 are expected, whatever the unit of lengths "
                                                                    "(9.81 on the Earth)"});
     scene::Scene unwritten = scene_of({box("rod", 58, 0)});  // of a program: it is named once
     unwritten.path.clear();

@@ -208,7 +208,7 @@ TEST_CASE("poses: every fault in a CSV has its line", "[stepper][poses]") {
     CHECK(mentions(of("time,body,px[mm],py[mm],pz[mm],r11,r12,r13,r21,r22,r23,r31,r32,r33\n0,crank,0,0,0,2,0,0,0,2,0,0,0,2\n"),
                    "not a rotation: R^T R is off the identity by 3"));
     CHECK(mentions(of(csv("")), "no row of poses"));
-    CHECK(mentions(of(""), "empty; a header row is wanted, such as time,body,px[mm]"));
+    CHECK(mentions(of(""), "empty; a header row is expected, such as time,body,px[mm]"));
     CHECK(mentions(faults(read_poses(folder.path / "none.csv", model)), "none.csv"));
     const auto file = folder.write("mm.csv", csv("0,crank,0,0,0,1,0,0,0\n"));
     CHECK(mentions(faults(read_poses(file, model, 1.0)), "in another unit by --poses-unit"));
@@ -224,8 +224,8 @@ TEST_CASE("poses: every fault in a JSON has its pointer", "[stepper][poses]") {
                                                               "\", \"times\": " + times + ", \"bodies\": " + bodies + "}"),
                                  model));
     };
-    CHECK(mentions(of("[0,1]", R"({"crank": [[0,0,0,1,0,0,0]]})"), "bad.json#/bodies/crank: 1 poses, 2 wanted"));
-    CHECK(mentions(of("[0]", R"({"crank": [[0,0,0,1,0,0]]})"), "bad.json#/bodies/crank/0: 6 numbers, 7 wanted"));
+    CHECK(mentions(of("[0,1]", R"({"crank": [[0,0,0,1,0,0,0]]})"), "bad.json#/bodies/crank: 1 poses, 2 expected"));
+    CHECK(mentions(of("[0]", R"({"crank": [[0,0,0,1,0,0]]})"), "bad.json#/bodies/crank/0: 6 numbers, 7 expected"));
     CHECK(mentions(of("[0]", R"({"crank": [[0,0,0,1,0,0,1]]})"), "bad.json#/bodies/crank/0: the quaternion"));
     CHECK(mentions(of("[0]", R"({"cranc": [[0,0,0,1,0,0,0]]})"), "bad.json#/bodies/cranc: the scene has no body"));
     CHECK(mentions(of("[0,0]", R"({"crank": [[0,0,0,1,0,0,0],[0,0,0,1,0,0,0]]})"), "bad.json#/times/1: time 0 does not come after 0"));

@@ -8,13 +8,13 @@
 #include "fettle/core/kinematics/rotation.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/core/scene/scene_workshop.hpp"
+#include "fettle/tests/core/scene_files/scene_workshop.hpp"
 
 namespace fettle::core::scene::inertial_test {
 
 namespace {
 
-using namespace test_support;
+using namespace scene_files::test_support;
 
 // Of a box with these edges, by the textbook.
 Inertial box_of(const Vector3& edges, double mass, const Vector3& centre) {

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 
 namespace fettle::core::scene::place_test {
 
@@ -37,7 +37,7 @@ const char* text = R"({
 })";
 
 Scene shop() {
-    auto scene = parse_scene(text, "a.scene.json");
+    auto scene = scene_files::parse_scene(text, "a.scene.json");
     if (!scene) UNSCOPED_INFO(scene.errors()[0].where << ": " << scene.errors()[0].message);
     REQUIRE(scene);
     scene->bodies[0].shape = ShapeSpec{"box", {{"size_x", 0.02}, {"size_y", 0.03}}, {}};
@@ -122,8 +122,8 @@ TEST_CASE("what has no place is told with the name of the part, or the nearest t
                                         std::pair("/joints/slide/preload", "`slide` has a `rest`"),
                                         std::pair("/springs/along/damping", "`along` has no `damping`"),
                                         std::pair("/springs/across/limits/0", "`across` has no `limits`"),
-                                        std::pair("/joints/hinge/pitch", "`hinge` is no screw"),
-                                        std::pair("/joints/hinge/ratio", "`hinge` is no gear"),
+                                        std::pair("/joints/hinge/pitch", "`hinge` is not a screw"),
+                                        std::pair("/joints/hinge/ratio", "`hinge` is not a gear"),
                                         std::pair("/motors/push/torque/values/5", "no such value"),
                                         std::pair("/motors/push/angle/values/0", "nothing at `angle/values/0`"),
                                         std::pair("/loads/1/force/0", "there is no load of that number"),
@@ -135,8 +135,8 @@ TEST_CASE("what has no place is told with the name of the part, or the nearest t
                                         std::pair("/bodies/pin/densty", "did you mean `density`?"),
                                         std::pair("/materials/wood/mu", "material `wood` has no `mu`"),
                                         std::pair("/contact/kappa", "nothing at `contact/kappa` that can be moved"),
-                                        std::pair("gravity", "a place in a scene is wanted"),
-                                        std::pair("", "a place in a scene is wanted"),
+                                        std::pair("gravity", "a place in a scene is expected"),
+                                        std::pair("", "a place in a scene is expected"),
                                         std::pair("/bodies", "nothing at `bodies`"),
                                         std::pair("/bodies/", "there is no body ``"),
                                         std::pair("/bodies/0", "nothing at ``"),

@@ -93,7 +93,7 @@ model::Model balanced(const Meeting& meeting, const Case& c) {
 
 // E over heights above the start, the least of a golden section between 0 (there) and where nothing touches any more.
 double least_on_the_vertical(const model::Model& model, const energy::StepProblem& problem, double gap) {
-    const contact::Candidates candidates = contact::find_candidates(model, problem.poses_t0, 4 * model.dhat);
+    const ccd::Candidates candidates = ccd::find_candidates(model, problem.poses_t0, 4 * model.dhat);
     const auto value = [&](double rise) {
         std::vector<kinematics::ChartPoint> points;
         for (const kinematics::Pose& pose : problem.poses_t0) points.push_back({pose.position, Vector3(Vector3::Zero())});
@@ -135,7 +135,7 @@ Solve solve(const Meeting& meeting, const Case& c, bool to_rounding) {
 
 double potential(const Solve& s, const std::vector<kinematics::ChartPoint>& points) {
     const auto poses = poses_of(s.problem, points);
-    const contact::Candidates candidates = contact::find_candidates(s.model, poses, s.model.dhat);
+    const ccd::Candidates candidates = ccd::find_candidates(s.model, poses, s.model.dhat);
     return energy::incremental_potential(s.problem, points, poses, contact::find_contacts(s.model, candidates, poses));
 }
 

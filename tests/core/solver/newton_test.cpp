@@ -90,7 +90,7 @@ TEST_CASE("a solve to rounding balances the forces", "[newton]") {
     CHECK(result.contacts.count > 0);
     // Its residual is that of the potential's differences.
     const auto problem = energy::step_problem(model, energy::start_history(model), model.kappa);
-    const contact::Candidates candidates = contact::find_candidates(model, result.poses, model.dhat);
+    const ccd::Candidates candidates = ccd::find_candidates(model, result.poses, model.dhat);
     const auto value = [&](const VectorX& d) {
         auto points = result.path.back();
         points[0].position += d.head<3>();
@@ -177,7 +177,7 @@ TEST_CASE("the direction solves the Newton system and descends", "[newton]") {
     Iterate at;
     for (const auto& pose : problem.poses_t0) at.points.push_back({pose.position, Vector3(Vector3::Zero())});
     at.poses = problem.poses_t0;
-    at.contacts = contact::find_contacts(model, contact::find_candidates(model, at.poses, model.dhat), at.poses);
+    at.contacts = contact::find_contacts(model, ccd::find_candidates(model, at.poses, model.dhat), at.poses);
     REQUIRE(at.contacts.count > 0);
     const auto direction = newton_direction(problem, at, targets_of(model), {contact::HessianKind::projected, {}}, 1, workspace);
     REQUIRE(direction);

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/contact/safe_step.hpp"
+#include "fettle/core/ccd/safe_step.hpp"
 #include "fettle/tests/core/stepper/physics_models.hpp"
 
 namespace fettle::core::stepper::step_test {
@@ -73,9 +73,9 @@ TEST_CASE("the stored path is clear, however fast the impact", "[step]") {
         std::vector<kinematics::PathSegment> segments;
         for (std::size_t i = 0; i < model.bodies.size(); ++i)
             segments.push_back(path_between(start.history.poses[i].rotation, result.path.nodes[k][i], result.path.nodes[k + 1][i]));
-        contact::Candidates candidates;
-        contact::cover(model, segments, model.dhat, candidates);
-        CHECK(contact::is_path_clear(model, candidates, segments));
+        ccd::Candidates candidates;
+        ccd::cover(model, segments, model.dhat, candidates);
+        CHECK(ccd::is_path_clear(model, candidates, segments));
     }
     CHECK(result.state.history.poses[0].position.z() > 0.1);
 }

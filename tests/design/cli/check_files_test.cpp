@@ -344,7 +344,7 @@ TEST_CASE("check files: options of a certificate are not passed over where there
     const std::string scene = folder.file("small.scene.json");
     const Answer minimum = run("validate " + scene + " --minimum 0.3mm", true);
     CHECK(minimum.code == 3);
-    CHECK(minimum.says("ask fettle clearance"));
+    CHECK(minimum.says("use fettle clearance"));
     CHECK(run("validate " + scene + " --trajectory x.json").code == 3);
     CHECK(run("draw " + scene + " --trajectory x.json --out " + folder.file("x.png")).code == 3);
     CHECK(run("export " + scene + " --arrange plate --to " + folder.file("x.glb")).code == 3);

@@ -92,7 +92,7 @@ TEST_CASE("clearance: usage that is wrong is refused with what to do") {
     refused("--minimum 0.3", "--minimum");
     refused("--minimum -1mm", "a clearance is not negative");
     refused("--process fdn", "did you mean \"fdm\"?");
-    refused("--minimum 1mm --pairs slide-pin1", "is no pair");
+    refused("--minimum 1mm --pairs slide-pin1", "is not a pair");
     refused("--minimum 1mm --pairs slide:pin3", "did you mean \"pin1\"?");
     refused("--minimum 1mm --pairs 'x*:pin1'", "no name matches");
     refused("--minimum 1mm --pairs slide:slide", "with itself");

@@ -241,7 +241,7 @@ TEST_CASE("kinematic: joints that motors do not determine are refused by name, l
     // Bounds are of joints met at all times, and so is the certificate.
     CHECK(pair["joint_charge"].get<double>() > 0);
     CHECK(pair["joint_charge"].get<double>() < 1e-4);
-    CHECK(followed.says("bounds are of joints met at all times"));
+    CHECK(followed.says("bounds hold for joints met at all times"));
     const std::string proof = folder.file("fit.certificate.json");
     CHECK(run(command + "--kinematic --steps 50 --pairs post:left_hand --certificate " + proof).code == 0);
     const Answer valid = run("validate " + proof + " --json");
@@ -249,7 +249,7 @@ TEST_CASE("kinematic: joints that motors do not determine are refused by name, l
     const Json claim = valid.json()["pairs"][0];
     CHECK(claim["lower"].get<double>() > 0);
     CHECK(claim["upper"].get<double>() - claim["lower"].get<double>() > 2 * pair["joint_charge"].get<double>());
-    CHECK(run("validate " + proof).says("over the motion, of joints met at all times"));
+    CHECK(run("validate " + proof).says("over the motion, for joints met at all times"));
     Json doctored = Json::parse(contents(proof));
     for (Json& deviation : doctored["joints"]["deviations"]) deviation = 0;
     const Answer rejected =
@@ -270,7 +270,7 @@ TEST_CASE("kinematic: joints that motors do not determine are refused by name, l
         const std::string junit = folder.file("j.xml");
         CHECK(run("validate " + file + " --junit " + junit).code == 0);  // accepted; of the bodies it says nothing
         CHECK(contents(junit).find("<failure type=\"undecided\"") != std::string::npos);
-        CHECK(contents(junit).find("between whose nodes joints may have the bodies elsewhere") != std::string::npos);
+        CHECK(contents(junit).find("between whose nodes the joints may put the bodies elsewhere") != std::string::npos);
         CHECK(contents(junit).find("it has no joints") != std::string::npos);
     }
     scene["motors"][0]["name"] = "other";  // a name is none of the mathematics; a joint's place is

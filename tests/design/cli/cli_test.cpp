@@ -58,7 +58,7 @@ TEST_CASE("validate: what is usable, and every fault with its place") {
     CHECK(faulty.json()["errors"][0]["where"].get<std::string>().find("#/parameters/0/lower") != std::string::npos);
 
     CHECK(run("validate /nowhere/x.scene.json").code == 3);
-    const DesignFolder touching(small_design, replaced(small_scene, "[3, 1, 5.12]", "[3, 1, 4]"));
+    const DesignFolder touching(small_design, replaced(small_scene, "\"position\": [0, 0, -5]", "\"position\": [0, 0, -4]"));
     const Answer intersecting = run("validate " + touching.design() + " --json");
     CHECK(intersecting.code == 3);
     CHECK(intersecting.json()["errors"][0]["code"] == "bodies_intersect");
@@ -155,8 +155,9 @@ TEST_CASE("gradient --check tells which contacts are about to change") {
     const DesignFolder folder(R"({
   "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
   "parameters": [
-    { "name": "lift", "value": 5, "lower": 0, "upper": 10, "moves": [{ "body": "block", "position": [0, 0, 1], "offset": [0, 0, 0.12] }] }
+    { "name": "lift", "value": 5, "lower": 0, "upper": 10 }
   ],
+  "set": { "/bodies/block/position/2": "= lift + 0.12" },
   "objective": [{ "type": "mass", "bodies": ["block"] }]
 })",
                               R"({
@@ -183,6 +184,24 @@ TEST_CASE("gradient --check tells which contacts are about to change") {
     CHECK(text.find("at t = 0.001 s 'table' and 'block' begin to touch, a face of 'table' on a vertex of 'block', near (") !=
           std::string::npos);
     CHECK(text.find("12 contacts in all: if lift falls by 0.01 to 0.1 mm") != std::string::npos);
+}
+
+TEST_CASE("optimise: \"ipopt\" is Ipopt's own optimiser, \"sqp\" the one that a design has by itself") {
+    const std::string settings = R"({ "name": "mma", "max_evaluations": 8 })",
+                      own_settings = R"({ "name": "ipopt", "max_evaluations": 20 })";
+    const DesignFolder folder(replaced(small_design, settings, own_settings));
+    const auto answer = [&](const std::string& options) {
+        return run("optimise " + folder.design() + options + " --json --no-report --out " + folder.file("out")).json();
+    };
+    const Json own = answer(""), by_steps = answer(" --optimiser sqp");
+    for (const Json& each : {own, by_steps}) {
+        CAPTURE(each.dump());
+        CHECK(each.at("constraint_violation") == 0);
+        CHECK(each.at("objective").get<double>() < each.at("objective_start").get<double>());
+    }
+    CHECK(own.at("evaluations").get<int>() <= 20);
+    CHECK(own.at("parameters") != by_steps.at("parameters"));
+    CHECK(run("optimisers").says("the default"));
 }
 
 TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
@@ -216,7 +235,7 @@ TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     CHECK(cut.at("left_out").size() == 3);
     const std::string told = run("gradient " + folder.design() + " --check --check-parameters 2").out;
     CHECK(told.find("left out: ") != std::string::npos);
-    for (const Json& name : cut.at("left_out")) CHECK(told.find("not looked at: " + name.get<std::string>()) == std::string::npos);
+    for (const Json& name : cut.at("left_out")) CHECK(told.find("not examined: " + name.get<std::string>()) == std::string::npos);
     CHECK(cut.at("check_simulations").get<int>() <= 58);
     CHECK(run("gradient " + folder.design() + " --check", true).out.find("the check takes up to 94 simulations") != std::string::npos);
     CHECK(g.contains("forward_seconds"));

@@ -34,13 +34,19 @@ const std::string turned_scene = R"({
 const std::string turned_design = R"({
   "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
   "parameters": [
-    { "name": "own", "value": 2, "lower": 1, "upper": 3, "unit": "N mm", "moves": [{ "body": "wheel", "torque": [0, 0, 1] }] },
-    { "name": "free", "value": 1, "lower": 0, "upper": 2, "unit": "N mm",
-      "moves": [{ "body": "rotor", "torque": [1, 0, 0.5], "offset": ["0.2 N mm", 0, 0] }] },
-    { "name": "driven", "value": 3, "lower": 2, "upper": 4, "unit": "N mm", "moves": [{ "motor": "drive", "value": 1 }] },
-    { "name": "length", "value": 80, "lower": 60, "upper": 90, "moves": [{ "body": "wheel", "dimension": "size_x" }] },
-    { "name": "stop", "value": 6, "lower": 5.5, "upper": 7, "unit": "deg", "moves": [{ "joint": "axle", "upper_limit": true }] }
+    { "name": "own", "value": 2, "lower": 1, "upper": 3, "unit": "N mm" },
+    { "name": "free", "value": 1, "lower": 0, "upper": 2, "unit": "N mm" },
+    { "name": "driven", "value": 3, "lower": 2, "upper": 4, "unit": "N mm" },
+    { "name": "length", "value": 80, "lower": 60, "upper": 90 },
+    { "name": "stop", "value": 6, "lower": 5.5, "upper": 7, "unit": "deg" }
   ],
+  "set": {
+    "/bodies/wheel/torque/2": "= own",
+    "/bodies/rotor/torque": ["= free + 0.2 N mm", 0, "= free / 2"],
+    "/motors/drive/torque/values/1": "= driven",
+    "/bodies/wheel/shape/dimensions/size_x": "= length",
+    "/joints/axle/limits/1": "= stop"
+  },
   "objective": [
     { "type": "marker_speed", "body": "wheel", "point": [30, 0, 0], "over": "mean", "weight": 1 },
     { "type": "energy", "of": "total", "over": "mean", "weight": 1 }

@@ -45,10 +45,10 @@ TEST_CASE("messages: options and words that are not taken name what was probably
     refused("simulate a b", {"\"b\" is one word too many: `simulate` takes SCENE"});
     refused("simulate", {"SCENE is missing: Scene or design", "see fettle simulate --help"});
     refused("export " + crank, {"--to is missing"});
-    refused("simulate " + crank + " --steps", {"--steps: a whole number is wanted after it"});
-    refused("clearance " + crank + " --process", {"--process: a value is wanted after it"});
+    refused("simulate " + crank + " --steps", {"--steps: a whole number is expected after it"});
+    refused("clearance " + crank + " --process", {"--process: a value is expected after it"});
     refused("simulate " + crank + " --steps 99999999999", {"99999999999 is out of range: a whole number of at most 2147483647"});
-    refused("simulate " + crank + " --steps 2.5", {"a whole number is wanted, found \"2.5\""});
+    refused("simulate " + crank + " --steps 2.5", {"a whole number is expected, found \"2.5\""});
     refused("simulate " + crank + " --steps 3 --time 1", {"--steps", "--time", "do not go together"});
     refused("", {"no command was given"});
     for (const std::string before : {"", "--quiet ", "--threads 1 "})
@@ -119,7 +119,7 @@ TEST_CASE("messages: a file that cannot be written is told by the name it was gi
 
 TEST_CASE("messages: an empty value, as of a variable that is not set, is no option left out") {
     for (const std::string option : {"--minimum", "--pairs", "--process", "--out", "--certificate"})
-        refused("clearance " + crank + " " + option + " ''", {option + ": a value is wanted, found an empty text"});
+        refused("clearance " + crank + " " + option + " ''", {option + ": a value is expected, found an empty text"});
 }
 
 TEST_CASE("messages: steps of no motion are refused, not passed over") {
@@ -174,7 +174,7 @@ TEST_CASE("messages: what is not there is said so before anything is asked of it
     refused("clearance " + folder.path.string() + " --ranges", {"is a folder: --ranges wants a scene or design"});
 }
 
-TEST_CASE("messages: a trajectory where a scene or design is wanted is called one") {
+TEST_CASE("messages: a trajectory where a scene or design is expected is called one") {
     const DesignFolder folder;
     REQUIRE(run("simulate " + folder.file("small.scene.json") + " --steps 1 --no-report --out " + folder.file("out")).code == 0);
     const std::string path = folder.file("out/trajectory.json");
@@ -199,7 +199,7 @@ TEST_CASE("messages: lengths are in the file's unit, and one step is one step") 
 
 TEST_CASE("messages: each evaluation says which requirement it misses, by how much, and what it is for") {
     const DesignFolder folder;
-    const Answer answer = run("optimise " + folder.design() + " --optimiser ipopt --no-report --out " + folder.file("out"), true);
+    const Answer answer = run("optimise " + folder.design() + " --optimiser sqp --no-report --out " + folder.file("out"), true);
     CAPTURE(answer.out);
     CHECK(answer.says("meets every requirement"));
     CHECK(answer.says("the best so far"));
@@ -252,7 +252,7 @@ TEST_CASE("what is met as written and not with the play taken up is in doubt, an
     const description::Design& design = problem.design();
     studies::OptimiseOutcome outcome;
     outcome.report.status = optimisers::OptimiserStatus::optimal;
-    outcome.report.message = "ipopt: no change near by promises a gain above the tolerance";
+    outcome.report.message = "sqp: no change near by promises a gain above the tolerance";
     outcome.start = outcome.report.point = description::values_of(design.parameters);
     outcome.report.best.usable = outcome.final.usable = outcome.play_taken_up.usable = true;
     outcome.report.feasible = true;

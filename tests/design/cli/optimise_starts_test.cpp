@@ -122,7 +122,7 @@ TEST_CASE("--starts: a link where a log goes is not followed, and runs that leav
     CHECK(contents(theirs) == R"({"my": "numbers"})");
 
     const std::string none = folder.file("none");
-    folder.write("none/start-0", "a file where a folder is wanted");
+    folder.write("none/start-0", "a file where a folder is expected");
     const Answer failed = run("optimise " + folder.file("quick.design.json") + " --starts 1 --no-report --json --out " + none);
     CHECK(failed.code == 3);
     CHECK(failed.json().at("starts").at(0).at("status") == "failed");

@@ -128,7 +128,7 @@ TEST_CASE("files of other kinds are told what is read") {
 TEST_CASE("options out of range are told in words") {
     const Answer words = run("simulate a.scene.json --steps five", true);
     CHECK(words.code == 3);
-    CHECK(words.says("--steps: a whole number is wanted, found \"five\""));
+    CHECK(words.says("--steps: a whole number is expected, found \"five\""));
     CHECK(words.out.size() < 200);
     CHECK(run("simulate a.scene.json --time 1e160", true).says("--time: 1e160 is out of range: a number of at most 1e30"));
     CHECK(run("simulate a.scene.json --time nan", true).code == 3);
@@ -145,7 +145,7 @@ TEST_CASE("a body without density has no mass to sum") {
 }
 
 TEST_CASE("the README of scenes shows keys that are read") {
-    const std::string text = contents("core/scene/README.md");
+    const std::string text = contents("core/scene_files/README.md");
     const std::size_t begin = text.find("```json\n") + 8, end = text.find("```", begin);
     REQUIRE(end != std::string::npos);
     const Folder folder;

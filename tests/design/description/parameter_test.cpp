@@ -26,7 +26,7 @@ TEST_CASE("units of parameters: file values and SI values go both ways bit for b
 
 TEST_CASE("values far outside their bounds, and those that are no numbers, are told by name") {
     const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
-    const std::vector<Parameter> parameters{{"height", 8e-3, 6e-3, 12e-3, *fettle::find_unit("mm"), {}}, {"share", 0.5, 0, 1, {}, {}}};
+    const std::vector<Parameter> parameters{{"height", 8e-3, 6e-3, 12e-3, *fettle::find_unit("mm")}, {"share", 0.5, 0, 1, {}}};
     const auto errors_at = [&](double height, double share) { return check_values(parameters, Eigen::Vector2d(height, share)); };
     CHECK(errors_at(8e-3, 0.5).empty());
     CHECK(errors_at(0.1e-3, 1.9).empty());  // differences and searches may look beyond

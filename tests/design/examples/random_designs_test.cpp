@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "fettle/design/gradient_audit/difference_check.hpp"
 #include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/difference_check.hpp"
 #include "fettle/design/studies/random_start.hpp"
 
 namespace fettle::design::examples::random_designs_test {
@@ -26,7 +26,7 @@ DesignProblem short_slider_crank() {
 }
 
 // Directional derivative of the objective along `way`, by differences of whole simulations; infinite error where one fails.
-studies::DifferenceEstimate difference_along(const DesignProblem& problem, const VectorX& p, const VectorX& way) {
+gradient_audit::DifferenceEstimate difference_along(const DesignProblem& problem, const VectorX& p, const VectorX& way) {
     std::vector<double> differences;
     for (double s = 1e-4; s > 1e-6; s /= 4) {
         const DesignEvaluation ahead = problem.evaluate(p + s * way, {false, {}, {}}),
@@ -34,7 +34,7 @@ studies::DifferenceEstimate difference_along(const DesignProblem& problem, const
         if (!ahead.usable || !behind.usable) return {0, INFINITY, 0};
         differences.push_back((ahead.objective - behind.objective) / (2 * s));
     }
-    return studies::ridders_estimate(differences, 4);
+    return gradient_audit::ridders_estimate(differences, 4);
 }
 
 }  // namespace

@@ -156,7 +156,7 @@ TEST_CASE("the slider-crank's loop is followed without dynamics, as with") {
     for (const Json& note : report.at("notes")) {
         const auto text = note.get<std::string>();
         told = told || (text.find("part by at most") != std::string::npos &&
-                        text.find("bounds are of joints met at all times") != std::string::npos);
+                        text.find("bounds hold for joints met at all times") != std::string::npos);
     }
     CHECK(told);
     CHECK(kinematic.pair("crank", "piston")["joint_charge"].get<double>() > 0);

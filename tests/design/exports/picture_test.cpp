@@ -5,9 +5,10 @@
 #include <zlib.h>
 
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "fettle/core/mesh_files/xml_reader.hpp"
-#include "fettle/design/exports/small_letters.hpp"
+#include "fettle/design/exports/png_writer.hpp"
 #include "fettle/design/exports/svg_writer.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/text.hpp"
@@ -52,7 +53,19 @@ unsigned big_endian(const std::string& bytes, std::size_t at) {
     return out;
 }
 
-/// Chunks in order, checksums checked; filter "left" undone.
+/// The byte that a row's filter adds to the one at hand; PNG specification, section 9: of the pixels on the left, above, and above on the
+/// left.
+int predicted(char filter, int left, int up, int corner) {
+    if (filter == 0) return 0;
+    if (filter == 1) return left;
+    if (filter == 2) return up;
+    if (filter == 3) return (left + up) / 2;
+    REQUIRE(filter == 4);
+    const int p = left + up - corner, to_left = std::abs(p - left), to_up = std::abs(p - up), to_corner = std::abs(p - corner);
+    return to_left <= to_up && to_left <= to_corner ? left : to_up <= to_corner ? up : corner;
+}
+
+/// Checksums checked; 8 bits a channel, three channels, not interlaced.
 Image decoded(const std::string& png) {
     REQUIRE(png.substr(0, 8) == "\x89PNG\r\n\x1a\n");
     Image image;
@@ -75,15 +88,25 @@ Image decoded(const std::string& png) {
     REQUIRE(uncompress(reinterpret_cast<Bytef*>(rows.data()), &length, reinterpret_cast<const Bytef*>(packed.data()), packed.size()) ==
             Z_OK);
     REQUIRE(length == rows.size());
-    for (std::size_t at = 0; at < rows.size(); at += row) {
-        CHECK(rows[at] == 1);
-        Colour left{};
-        for (std::size_t x = at + 1; x < at + row; x += 3) {
-            for (std::size_t k = 0; k < 3; ++k) left[k] = static_cast<unsigned char>(left[k] + static_cast<unsigned char>(rows[x + k]));
-            image.pixels.push_back(left);
+    image.pixels.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+    for (int y = 0; y < image.height; ++y) {
+        const std::size_t begin = static_cast<std::size_t>(y) * row;
+        for (int x = 0; x < image.width; ++x) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const int left = x > 0 ? image.at(x - 1, y)[k] : 0, up = y > 0 ? image.at(x, y - 1)[k] : 0,
+                          corner = x > 0 && y > 0 ? image.at(x - 1, y - 1)[k] : 0;
+                const auto difference = static_cast<unsigned char>(rows[begin + 1 + 3 * static_cast<std::size_t>(x) + k]);
+                image.at(x, y)[k] = static_cast<unsigned char>(difference + predicted(rows[begin], left, up, corner));
+            }
         }
     }
     return image;
+}
+
+std::vector<PictureLine> lines_of(const Picture& picture) {
+    std::vector<PictureLine> out;
+    for (const PartEdges& edges : picture.edges) out.insert(out.end(), edges.lines.begin(), edges.lines.end());
+    return out;
 }
 
 }  // namespace
@@ -101,21 +124,22 @@ TEST_CASE("Picture: what is in front hides what is behind, wherever it stands in
 
 TEST_CASE("Picture: of a cube seen from the front four edges, of one seen askew nine, none of what is hidden") {
     Assembly assembly = two_boxes();
-    const auto length = [](const std::vector<PictureLine>& lines) {
+    const auto length = [](const Picture& picture) {
         double sum = 0;
-        for (const PictureLine& line : lines) sum += (line.to - line.from).norm();
+        for (const PictureLine& line : lines_of(picture)) sum += (line.to - line.from).norm();
         return sum;
     };
     const Picture front = drawn(assembly, seen_from("front"));
-    CHECK(length(front.edges) >= 4 * 168 * 0.99);
-    for (const PictureLine& line : front.edges)  // along the border of the square from 16 to 184, not where the hidden box is
+    CHECK(length(front) >= 4 * 168 * 0.99);
+    for (const PictureLine& line : lines_of(front))  // along the border of the square from 16 to 184, not where the hidden box is
         for (const Vector2& p : {line.from, line.to}) CHECK((p - Vector2(100, 100)).cwiseAbs().maxCoeff() == Approx(84).margin(1.5));
     assembly.parts.pop_back();
     assembly.keyframes = {{0, true, {Pose{}}}};
     const Picture askew = drawn(assembly, seen_from("iso"));
-    CHECK(askew.edges.size() == 9);
-    const double edge = askew.scale_pixels > 0 ? length(askew.edges) / 9 : 0;
-    for (const PictureLine& line : askew.edges) CHECK((line.to - line.from).norm() == Approx(edge).epsilon(0.05));  // all axes equally long
+    CHECK(lines_of(askew).size() == 9);
+    const double edge = askew.scale_pixels > 0 ? length(askew) / 9 : 0;
+    for (const PictureLine& line : lines_of(askew))
+        CHECK((line.to - line.from).norm() == Approx(edge).epsilon(0.05));  // all axes equally long
 }
 
 TEST_CASE("Picture: flat facets of a curved face have no edges between them below the crease") {
@@ -124,7 +148,7 @@ TEST_CASE("Picture: flat facets of a curved face have no edges between them belo
     options.crease = M_PI / 2 + 0.1;  // a cube's own corners are below it: outlines alone are left
     assembly.parts.pop_back();
     assembly.keyframes = {{0, true, {Pose{}}}};
-    CHECK(drawn(assembly, options).edges.size() == 6);
+    CHECK(lines_of(drawn(assembly, options)).size() == 6);
 }
 
 TEST_CASE("Views: right-handed, by name and by angles, with any axis up") {
@@ -176,7 +200,7 @@ TEST_CASE("Picture: what is marked is cut free of what hides it, and shown near 
         CHECK(reddish_within(picture, picture.hole + 2, 400) == 0);
         REQUIRE(picture.inset.size() == 1);
         CHECK(count(picture.inset.front().surfaces, is_reddish) > 1000);
-        const Image image = inked(picture);
+        const Image image = decoded(png_bytes(picture));
         const int x = static_cast<int>(picture.inset_place.x()) + 20, y = static_cast<int>(picture.inset_place.y()) + 20;
         CHECK(is_reddish(image.at(x, y)));
         CHECK((middle_of(*picture.marker) - picture.inset_place).norm() > picture.hole);
@@ -235,12 +259,13 @@ TEST_CASE("Picture: marker, legend and scale, as PNG and as SVG") {
     CHECK(picture.scale_text == "200 mm");  // a sixth of 200 pixels at 84 pixels per metre is 0.397 m
     CHECK(picture.scale_pixels == Approx(16.8));
 
-    const Image image = inked(picture), read = decoded(png_bytes(image));
-    CHECK(read.width == 200);
-    CHECK(read.height == 200);
-    CHECK(read.pixels == image.pixels);
+    const Image image = decoded(png_bytes(picture)), surfaces = decoded(png_bytes(picture.surfaces));
+    CHECK(image.width == 200);
+    CHECK(image.height == 200);
+    CHECK(surfaces.pixels == picture.surfaces.pixels);
     const Colour marked = image.at(120, 99);  // between its ends
     CHECK(marked == nearest);
+    CHECK(surfaces.at(120, 99) != nearest);
 
     const std::string svg = svg_text(picture);
     core::mesh_files::XmlReader xml(svg, "svg");
@@ -252,28 +277,78 @@ TEST_CASE("Picture: marker, legend and scale, as PNG and as SVG") {
         circles += xml.name() == "circle" ? 1 : 0;
     });
     CHECK(xml.errors().empty());
-    CHECK(paths == 3);
+    CHECK(paths == 4);  // edges of the one that is seen, marker, scale and what is white round it
     CHECK(texts == 5);
-    CHECK(circles == 2);
+    CHECK(circles == 4);
     CHECK(contains(svg, "a:b &lt;0.1 mm"));
     CHECK(contains(svg, "href=\"data:image/png;base64,iVBORw0KGgo"));
 }
 
-TEST_CASE("Base64 and letters") {
-    CHECK(base64("") == "");
-    CHECK(base64("f") == "Zg==");
-    CHECK(base64("fo") == "Zm8=");
-    CHECK(base64("foo") == "Zm9v");
-    CHECK(base64("foobar") == "Zm9vYmFy");
-    CHECK(base64("\xff\xfe") == "//4=");
-    CHECK(text_width("abc", 2) == 36);
-    CHECK(text_width("\xc3\xa4", 1) == 6);
-    Image image{12, 10, std::vector<Colour>(120, Colour{255, 255, 255})};
-    write_text(image, 0, 0, "I", {0, 0, 0}, 1);
-    int black = 0;
-    for (const Colour& c : image.pixels) black += c[0] == 0 ? 1 : 0;
-    CHECK(black == 11);                                    // a stem of 7 and two serifs
-    write_text(image, -3, -3, "WWWWWWWWW", {0, 0, 0}, 3);  // what lies outside is left out
+TEST_CASE("Picture: words are written in letters, whatever bytes they have") {
+    PictureOptions options = seen_from("front");
+    const auto title = [&](const std::string& words) {
+        Assembly none;
+        none.keyframes = {{0, true, {}}};
+        options.title = words;
+        const Picture picture = drawn(none, options);
+        CHECK(png_bytes(picture) == png_bytes(picture));
+        const Image image = decoded(png_bytes(picture));
+        double darkness = 0;
+        for (int y = 10; y < 40; ++y)
+            for (int x = 0; x < 200; ++x) darkness += 1 - image.at(x, y)[0] / 255.0;
+        return darkness;
+    };
+    CHECK(title("") == 0);
+    const double one = title("rod");
+    CHECK(one > 20);
+    CHECK(one < 0.5 * text_width("rod", title_letters) * title_letters.size);
+    CHECK(title("rod rod") == Approx(2 * one).epsilon(0.05));
+    CHECK(title("K\xc3\xb6rper") > one);
+    CHECK(title("\xff") > 0);  // shown as \xff
+    CHECK(title(std::string(1000, 'W')) > one);
+    const Picture picture = drawn(two_boxes(), options);
+    const std::string own = png_bytes(picture, "/no/fonts");  // cairo's letters: others, and nothing else is
+    CHECK(own != png_bytes(picture));
+    const Image a = decoded(own), b = decoded(png_bytes(picture));
+    int apart = 0;
+    for (int y = 90; y < 170; ++y)
+        for (int x = 0; x < 200; ++x) apart += a.at(x, y) == b.at(x, y) ? 0 : 1;
+    CHECK(apart == 0);
+    CHECK(text_width("\xc3\xa4", plain_letters) == text_width("a", plain_letters));
+}
+
+TEST_CASE("Picture: of faces that lie in each other the first part's is seen, all of it") {
+    Assembly assembly = two_boxes();
+    assembly.parts[1].mesh = box_mesh({-0.9, -1, -0.8}, {0.7, 0.3, 0.6});  // its front lies in the other's
+    for (const char* view : {"front", "20,30"}) CHECK(count(drawn(assembly, seen_from(view)).surfaces, is_reddish) == 0);
+}
+
+TEST_CASE("Picture: a face below the crease is lit smoothly, one above it is not") {
+    Assembly assembly;  // a polygon of 24, seen from the side
+    AssemblyPart part{"drum", part_colour(0), {}, Vector3::Zero(), false};
+    constexpr int sides = 24;
+    part.mesh.vertices.resize(3, 2 * sides);
+    for (int i = 0; i < sides; ++i) {
+        const double angle = 2 * M_PI * (i + 0.5) / sides;
+        part.mesh.vertices.col(i) = Vector3(std::cos(angle), std::sin(angle), -1);
+        part.mesh.vertices.col(sides + i) = Vector3(std::cos(angle), std::sin(angle), 1);
+        const int next = (i + 1) % sides;
+        part.mesh.triangles.push_back({i, next, sides + next});
+        part.mesh.triangles.push_back({i, sides + next, sides + i});
+    }
+    core::geometry::build_connectivity(part.mesh);
+    assembly.parts = {part};
+    assembly.keyframes = {{0, true, {Pose{}}}};
+    const auto shades = [&](double crease) {
+        PictureOptions options = seen_from("front");
+        options.crease = crease;
+        const Picture picture = drawn(assembly, options);
+        std::set<Colour> found;
+        for (int x = 30; x < 170; ++x) found.insert(picture.surfaces.at(x, 100));
+        return found.size();
+    };
+    CHECK(shades(0.6) > 30);
+    CHECK(shades(0.1) < 30);
 }
 
 TEST_CASE("Picture: nothing at all, and a point, are pictures too") {
@@ -286,7 +361,7 @@ TEST_CASE("Picture: nothing at all, and a point, are pictures too") {
     Assembly one;
     one.parts = {point};
     one.keyframes = {{0, true, {Pose{}}}};
-    CHECK(inked(drawn(one, seen_from("top"))).pixels.size() == 40000);
+    CHECK(decoded(png_bytes(drawn(one, seen_from("top")))).pixels.size() == 40000);
 }
 
 }  // namespace fettle::design::exports::picture_test

@@ -39,7 +39,7 @@ Problem outside_of_ellipse(double x, double y) {
 }  // namespace
 
 TEST_CASE("the smallest change that meets a constraint is the one along the shortest way, in shares of the ranges") {
-    for (const char* name : {"ipopt", "slsqp", "cobyla"}) {
+    for (const char* name : {"sqp", "ipopt", "slsqp", "cobyla"}) {
         CAPTURE(name);
         const Problem problem = outside_of_ellipse(0.6, 0.4);  // 0.06 and 0.08 of the ranges: on a ray at 0.1 from the middle
         const Problem repair = nearest_to(problem.start, problem);
@@ -56,7 +56,7 @@ TEST_CASE("the smallest change that meets a constraint is the one along the shor
 
 TEST_CASE("what meets every constraint is left as it is, after one evaluation") {
     const Problem problem = outside_of_ellipse(3, 1);
-    const OptimiserReport report = optimise(nearest_to(problem.start, problem), **make_optimiser("ipopt"), {});
+    const OptimiserReport report = optimise(nearest_to(problem.start, problem), **make_optimiser("sqp"), {});
     CHECK(report.status == OptimiserStatus::optimal);
     CHECK(report.point == problem.start);
     CHECK(report.evaluations == 1);
@@ -67,7 +67,7 @@ TEST_CASE("a design is nearest to what it is asked to be near to, wherever the r
     Problem problem = outside_of_ellipse(0.6, 0.4);
     const VectorX origin = problem.start;
     problem.start = Vector2(-3, 2);  // feasible, and far: not the end
-    const OptimiserReport report = optimise(nearest_to(origin, problem), **make_optimiser("ipopt"), {});
+    const OptimiserReport report = optimise(nearest_to(origin, problem), **make_optimiser("sqp"), {});
     CHECK(report.feasible);
     CHECK(std::sqrt(report.best.objective) == Approx(0.1).epsilon(1e-2));
 }

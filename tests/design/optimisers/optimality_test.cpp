@@ -73,7 +73,7 @@ TEST_CASE("where what promises a gain cannot be evaluated, nothing is called opt
         if (!e.usable) e.reason = "too thin";
         return e;
     };
-    for (const std::string& name : {"ipopt", "slsqp", "mma", "cobyla"}) {
+    for (const std::string& name : {"sqp", "ipopt", "slsqp", "mma", "cobyla"}) {
         INFO(name);
         const OptimiserReport report = run(p, name, tight(80));
         CHECK(report.status == OptimiserStatus::feasible);
@@ -92,11 +92,11 @@ TEST_CASE("noise above the tolerance makes no optimum; below it, it does no harm
     OptimiserOptions options;
     options.tolerance = 1e-4;
     options.max_evaluations = 80;
-    const OptimiserReport rough = run(rough_bowl(1e-3), "ipopt", options);
+    const OptimiserReport rough = run(rough_bowl(1e-3), "sqp", options);
     CHECK(rough.status == OptimiserStatus::feasible);
     CHECK(rough.optimality.roughest == 0);
     CHECK(rough.optimality.noise_in_objective == Approx(1e-3 * std::sqrt(0.5)).epsilon(0.7));
-    const OptimiserReport smooth = run(rough_bowl(1e-6), "ipopt", options);
+    const OptimiserReport smooth = run(rough_bowl(1e-6), "sqp", options);
     CHECK(smooth.status == OptimiserStatus::optimal);
     CHECK(smooth.best.objective == Approx(1).margin(2e-4));
 }
@@ -188,25 +188,25 @@ OptimiserOptions usual(int evaluations) {
 }  // namespace
 
 TEST_CASE("an objective's kink is found, and called optimal, where its branches are known") {
-    const OptimiserReport report = run(largest_room(true), "ipopt", usual(40));
+    const OptimiserReport report = run(largest_room(true), "sqp", usual(40));
     INFO(report.message << ", " << report.evaluations << " evaluations, at " << report.point.transpose());
     CHECK(report.status == OptimiserStatus::optimal);
     CHECK(report.point.norm() < 1e-3);
     CHECK(report.optimality.predicted_gain <= report.optimality.worth);
-    const OptimiserReport blind = run(largest_room(false), "ipopt", usual(40));
+    const OptimiserReport blind = run(largest_room(false), "sqp", usual(40));
     INFO("blind: " << blind.message << ", " << blind.evaluations << " evaluations, at " << blind.point.transpose());
     CHECK((blind.status != OptimiserStatus::optimal || blind.evaluations > report.evaluations));
 }
 
 TEST_CASE("branches of a constraint hold a step that one of them would let go") {
-    const OptimiserReport report = run(least_room(true, 0.4), "ipopt", usual(40));
+    const OptimiserReport report = run(least_room(true, 0.4), "sqp", usual(40));
     INFO(report.message << ", " << report.evaluations << " evaluations, at " << report.point.transpose());
     CHECK(report.status == OptimiserStatus::optimal);
     // The vertex of the planes next to -x: a linear programme, found at once.
     CHECK(report.best.objective == Approx(2 - 0.6 / std::cos(M_PI / 16) * std::cos(0.1 + M_PI / 16 - M_PI / 8)).margin(3e-3));
     CHECK(report.optimality.multipliers[0] > 0.9);  // both planes' together
 
-    const OptimiserReport centred = run(least_room(true, 1), "ipopt", usual(40));
+    const OptimiserReport centred = run(least_room(true, 1), "sqp", usual(40));
     INFO("centred: " << centred.message << ", " << centred.evaluations << " evaluations, at " << centred.point.transpose());
     CHECK(centred.status == OptimiserStatus::optimal);
     CHECK(centred.point.norm() < 1e-4);

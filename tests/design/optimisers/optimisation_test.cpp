@@ -23,6 +23,8 @@ double violation_of(const Problem& problem, const VectorX& c) {
     return v;
 }
 
+bool takes_equalities(const std::string& name) { return name == "sqp" || name == "ipopt" || name == "slsqp"; }
+
 // Hock and Schittkowski 71: f = 17.0140173 at (1, 4.7429994, 3.8211503, 1.3794082). |x|^2 = 40 holds there as <= 40 too: the minimum
 // over >= 40 lies lower, at the start.
 Problem hock_schittkowski_71(bool equality) {
@@ -60,7 +62,7 @@ Problem hock_schittkowski_71(bool equality) {
 TEST_CASE("each optimiser reaches Hock and Schittkowski 71's published optimum") {
     for (const std::string& name : optimiser_names()) {
         const bool derivative_free = name == "cobyla";
-        const bool equality = name == "ipopt" || name == "slsqp";
+        const bool equality = takes_equalities(name);
         const OptimiserReport report = run(hock_schittkowski_71(equality), name, tight(derivative_free ? 2000 : 300));
         INFO(name << ": " << to_string(report.status) << ", " << report.message << ", " << report.evaluations << " evaluations, optimality "
                   << report.optimality.predicted_gain);
@@ -74,7 +76,7 @@ TEST_CASE("each optimiser reaches Hock and Schittkowski 71's published optimum")
 TEST_CASE("each optimiser keeps relations between the variables, as it does constraints") {
     for (const std::string& name : optimiser_names()) {
         // Hock and Schittkowski 71 with its product as a relation.
-        const bool equality = name == "ipopt" || name == "slsqp";
+        const bool equality = takes_equalities(name);
         Problem p = hock_schittkowski_71(equality);
         p.relation_lower = p.constraint_lower.head(1).eval();
         p.relation_upper = p.constraint_upper.head(1).eval();
@@ -107,7 +109,7 @@ TEST_CASE("a point at which a relation is no number is a failure") {
     p.relations = [](const VectorX& x) {  // a relation that ends at x0 = 0.6, short of the optimum
         return Rows{VectorX::Constant(1, std::sqrt(0.6 - x[0])), MatrixX::Zero(1, 2)};
     };
-    const OptimiserReport report = run(p, "ipopt", tight(100));
+    const OptimiserReport report = run(p, "sqp", tight(100));
     CHECK(report.best.usable);
     CHECK(report.failures > 0);
     CHECK(report.point[0] <= 0.6);
@@ -125,7 +127,7 @@ TEST_CASE("a failing evaluation is overcome, not believed") {
 }
 
 TEST_CASE("a start that cannot be evaluated ends the run with its reason") {
-    const OptimiserReport report = run(disc_with_cliff(-5), "ipopt");
+    const OptimiserReport report = run(disc_with_cliff(-5), "sqp");
     CHECK(report.status == OptimiserStatus::start_failed);
     CHECK(report.message.find("beyond the cliff") != std::string::npos);
     CHECK(report.evaluations == 6);  // and five points on the way to the middle of the bounds
@@ -225,7 +227,7 @@ TEST_CASE("the first point evaluated is the start, exactly") {
     VectorX first;
     OptimiserOptions options = tight(1);
     options.on_evaluation = [&](int, const VectorX& x, const Evaluation&, bool) { first = x; };
-    run(p, "ipopt", options);
+    run(p, "sqp", options);
     CHECK(first == p.start);
 }
 
@@ -243,7 +245,7 @@ TEST_CASE("smoother models are gone through first, and only the problem itself i
     int last = 0;
     OptimiserOptions options = tight(100);
     options.on_evaluation = [&](int number, const VectorX&, const Evaluation&, bool) { last = number; };
-    const OptimiserReport report = run(p, "ipopt", options);
+    const OptimiserReport report = run(p, "sqp", options);
     CHECK(report.status == OptimiserStatus::optimal);
     CHECK(report.best.objective == Approx(17.0140173).epsilon(1e-6));
     CHECK(report.start.objective == Approx(16.0));
@@ -257,7 +259,7 @@ TEST_CASE("smoother models are gone through first, and only the problem itself i
     // Stopped among the smoother models, the start is what is known of the problem itself.
     int asked = 0;
     options.should_stop = [&] { return ++asked > 3; };
-    const OptimiserReport stopped = run(p, "ipopt", options);
+    const OptimiserReport stopped = run(p, "sqp", options);
     CHECK(stopped.status == OptimiserStatus::interrupted);
     CHECK(stopped.point == p.start);
     CHECK(stopped.best.objective == Approx(16.0));
@@ -266,7 +268,7 @@ TEST_CASE("smoother models are gone through first, and only the problem itself i
 
     // A model that cannot be evaluated is left out.
     p.smoother[0].evaluate = [](const VectorX&) { return Evaluation{}; };
-    const OptimiserReport without = run(p, "ipopt", options);
+    const OptimiserReport without = run(p, "sqp", options);
     CHECK(without.status == OptimiserStatus::optimal);
 }
 

@@ -8,11 +8,14 @@
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
+#include "fettle/tests/design/linear_numbers.hpp"
 #include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::design::problem::closed_forms_test {
 
 namespace {
+
+using fettle::tests::design_support::follow;
 
 using namespace fettle::tests::mechanisms;
 using namespace fettle::design::description;
@@ -72,14 +75,24 @@ private:
     }
 };
 
-Parameter parameter(const std::string& name, double value, const std::string& place) {
+// A parameter that is the number at a place.
+struct Moved {
+    std::string name;
+    double value = 0;
+    std::string place;
+};
+
+void add_parameter(Design& design, const Moved& moved) {
     Parameter p;
-    p.name = name;
-    p.value = value;
-    p.lower = value - 10 * std::abs(value);
-    p.upper = value + 10 * std::abs(value);
-    p.moves = {{place}};
-    return p;
+    p.name = moved.name;
+    p.value = moved.value;
+    p.lower = p.value - 10 * std::abs(p.value);
+    p.upper = p.value + 10 * std::abs(p.value);
+    design.parameters.push_back(p);
+    follow(design, moved.name, moved.place);
+}
+void add_parameters(Design& design, const std::vector<Moved>& all) {
+    for (const Moved& moved : all) add_parameter(design, moved);
 }
 
 DesignEvaluation evaluated(Design design, const std::vector<std::shared_ptr<const Quantity>>& quantities) {
@@ -145,8 +158,8 @@ TEST_CASE("closed form: the range of a throw in speed and angle", "[throw]") {
         design.scene.bodies[0].reference_point = Vector3(0.05, 0, 0);
         design.scene.bodies[0].pose.position = Vector3(-0.05, 0, 0);
         design.steps = static_cast<int>(std::lround(0.4 / step));
-        design.parameters = {parameter("forwards", speed * std::cos(angle), "/bodies/0/linear_velocity/0"),
-                             parameter("upwards", speed * std::sin(angle), "/bodies/0/linear_velocity/2")};
+        add_parameters(design, {{"forwards", speed * std::cos(angle), "/bodies/0/linear_velocity/0"},
+                                {"upwards", speed * std::sin(angle), "/bodies/0/linear_velocity/2"}});
         return evaluated(std::move(design), {std::make_shared<Landing>()});
     };
     const double range = speed * speed * std::sin(2 * angle) / gravity, by_speed = 2 * range / speed,
@@ -178,7 +191,7 @@ TEST_CASE("closed form: a double pendulum keeps its energy, which follows gravit
         design.scene.mechanism.joints = {
             joint("pivot", JointKind::revolute, {"", Vector3::Zero(), y_axis}, {"upper", Vector3::Zero(), y_axis}),
             joint("elbow", JointKind::revolute, {"upper", Vector3(0.3, 0, 0), y_axis}, {"lower", Vector3::Zero(), y_axis})};
-        design.parameters = {parameter("gravity", -gravity, "/gravity/2"), parameter("density", 1000, "/bodies/1/density")};
+        add_parameters(design, {{"gravity", -gravity, "/gravity/2"}, {"density", 1000, "/bodies/1/density"}});
         const auto energy = std::make_shared<quantities::Energy>(quantities::EnergyKind::total, quantities::Over::end);
         return evaluated(std::move(design), {energy});
     };
@@ -218,9 +231,8 @@ TEST_CASE("closed form: two equal bodies exchange their velocities", "[contact]"
         for (const bool is_place : {true, false})
             for (const int body : {0, 1}) {
                 const double value = body == 1 ? 0 : is_place ? -0.4 : 1;
-                design.parameters.push_back(
-                    parameter(std::to_string(design.parameters.size()), value,
-                              "/bodies/" + std::to_string(body) + (is_place ? "/position/0" : "/linear_velocity/0")));
+                add_parameter(design, {std::to_string(design.parameters.size()), value,
+                                       "/bodies/" + std::to_string(body) + (is_place ? "/position/0" : "/linear_velocity/0")});
                 design.parameters.back().lower = value - 1;
                 design.parameters.back().upper = value + 1;
             }
@@ -251,8 +263,9 @@ TEST_CASE("closed form: a mass on a spring, in stiffness, mass and rest", "[join
     slide.forces.stiffness = stiffness;
     slide.forces.rest = -start;
     design.scene.mechanism.joints = {slide};
-    design.parameters = {parameter("stiffness", stiffness, "/joints/0/stiffness"), parameter("density", 1000, "/bodies/0/density"),
-                         parameter("rest", -start, "/joints/0/rest")};
+    add_parameters(
+        design,
+        {{"stiffness", stiffness, "/joints/0/stiffness"}, {"density", 1000, "/bodies/0/density"}, {"rest", -start, "/joints/0/rest"}});
     const DesignEvaluation at = evaluated(design, {std::make_shared<EndPosition>(0, Vector3::Zero(), x_axis)});
     const double mass = 1000 * 0.2 * 0.02 * 0.02, w = stiffness / mass;
     const Dual x = oscillator(w, h, steps);
@@ -275,7 +288,7 @@ TEST_CASE("closed form: a pendulum of small swings, in gravity and length", "[jo
     design.scene.bodies[0].pose.rotation = core::kinematics::rotation(Vector3(0, -angle, 0));
     design.scene.bodies[0].pose.position = -(design.scene.bodies[0].pose.rotation * Vector3(0.01, 0, length));
     const std::string reach = "/joints/0/point_b/2";
-    design.parameters = {parameter("gravity", -9.81, "/gravity/2"), parameter("length", length, reach)};
+    add_parameters(design, {{"gravity", -9.81, "/gravity/2"}, {"length", length, reach}});
     // Of the direction of the rod's x axis: the swing's angle itself.
     const auto tip = std::make_shared<EndPosition>(0, Vector3(1, 0, 0), z_axis),
                foot = std::make_shared<EndPosition>(0, Vector3::Zero(), z_axis);
@@ -310,7 +323,7 @@ TEST_CASE("closed form: crank torque in load and crank radius", "[joints]") {
         joint("guide", JointKind::prismatic, {"", wrist, x_axis}, {"slider", Vector3::Zero(), x_axis})};
     design.scene.mechanism.loads = {{"push", "", "slider", Vector3::Zero(), Vector3(load, 0, 0)}};
     design.scene.mechanism.motors = {motor("drive", "main", at_rate(2))};
-    design.parameters = {parameter("load", load, "/loads/0/force/0"), parameter("radius", radius, "/joints/1/point_a/0")};
+    add_parameters(design, {{"load", load, "/loads/0/force/0"}, {"radius", radius, "/joints/1/point_a/0"}});
     using quantities::JointLoad;
     const DesignEvaluation at =
         evaluated(design, {std::make_shared<JointLoad>(JointLoad::Of{quantities::JointLoadKind::effort, "drive"}, quantities::Over::end)});
@@ -337,7 +350,7 @@ TEST_CASE("closed form: a wheel behind a gear, in the ratio and the motor's spee
     gear.ratio = -0.6;
     design.scene.mechanism.joints.push_back(gear);
     design.scene.mechanism.motors = {motor("drive", "one", at_rate(5))};
-    design.parameters = {parameter("ratio", -0.6, "/joints/2/ratio"), parameter("speed", 5, "/motors/0/speed")};
+    add_parameters(design, {{"ratio", -0.6, "/joints/2/ratio"}, {"speed", 5, "/motors/0/speed"}});
     const DesignEvaluation at = evaluated(design, {std::make_shared<EndPosition>(1, Vector3(0.1, 0, 0), y_axis)});
     const double angle = 5 * 0.1, turned = -0.6 * angle;
     CHECK(at.constraints[0].value == Approx(0.1 * std::sin(turned)).epsilon(1e-10));
@@ -359,9 +372,8 @@ TEST_CASE("closed form: what a hanging chain's joints carry, in density and grav
             joint("joint " + std::to_string(k), JointKind::revolute,
                   {k == 0 ? "" : "link " + std::to_string(k - 1), k == 0 ? Vector3(Vector3::Zero()) : Vector3(0.2, 0, 0), y_axis},
                   {"link " + std::to_string(k), Vector3::Zero(), y_axis}));
-    for (int k = 0; k < 3; ++k)
-        design.parameters.push_back(parameter("density " + std::to_string(k), 1000, "/bodies/" + std::to_string(k) + "/density"));
-    design.parameters.push_back(parameter("gravity", -9.81, "/gravity/2"));
+    for (int k = 0; k < 3; ++k) add_parameter(design, {"density " + std::to_string(k), 1000, "/bodies/" + std::to_string(k) + "/density"});
+    add_parameter(design, {"gravity", -9.81, "/gravity/2"});
     using quantities::JointLoad;
     std::vector<std::shared_ptr<const Quantity>> loads;
     for (int k = 0; k < 3; ++k)
@@ -382,7 +394,7 @@ TEST_CASE("closed form: stopping distance in speed and friction", "[friction]") 
     const auto slid = [&](double h) {
         Design design = block_on_plate(block_mass * gravity, mu, h, static_cast<int>(0.3 / h));
         design.scene.bodies[1].linear_velocity = Vector3(speed, 0, 0);
-        design.parameters = {parameter("speed", speed, "/bodies/1/linear_velocity/0"), parameter("mu", mu, "/friction/mu")};
+        add_parameters(design, {{"speed", speed, "/bodies/1/linear_velocity/0"}, {"mu", mu, "/friction/mu"}});
         return evaluated(std::move(design), {std::make_shared<EndPosition>(1, Vector3::Zero(), x_axis)});
     };
     // As the steps are made: v' + a h f0'(v') = v, f0' = 2 u - u^2 at u = v'/eps_v < 1.
@@ -432,8 +444,8 @@ TEST_CASE("closed form: the way down an incline in angle and friction", "[fricti
     for (const double h : {0.01, 0.005}) {
         const int steps = static_cast<int>(std::lround(time / h));
         Design design = block_on_plate(block_mass * gravity * c, mu, h, steps);
-        design.parameters = {parameter("angle", angle, "/bodies/0/turn/1"), parameter("mu", mu, "/friction/mu")};
-        design.parameters[0].moves.push_back({"/bodies/1/turn/1"});
+        add_parameters(design, {{"angle", angle, "/bodies/0/turn/1"}, {"mu", mu, "/friction/mu"}});
+        follow(design, "angle", "/bodies/1/turn/1");
         const DesignEvaluation at = evaluated(std::move(design), {std::make_shared<EndPosition>(1, Vector3::Zero(), down)});
         CAPTURE(h);
         const double half = 0.5 * h * h * steps * (steps + 1);  // h^2 (1 + ... + n); t^2/2 as h goes to 0

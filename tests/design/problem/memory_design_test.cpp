@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "fettle/design/gradient_audit/difference_check.hpp"
 #include "fettle/design/problem/buildable.hpp"
 #include "fettle/design/problem/check_design.hpp"
 #include "fettle/design/quantities/clearance.hpp"
@@ -11,7 +12,6 @@
 #include "fettle/design/quantities/mass.hpp"
 #include "fettle/design/quantities/stroke.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
-#include "fettle/design/studies/difference_check.hpp"
 #include "fettle/design/studies/optimise_design.hpp"
 #include "fettle/tests/design/small_problem.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
@@ -93,11 +93,11 @@ core::scene::Body held(const std::string& name, core::scene::BodyType type) {
     return body;
 }
 
-Parameter parameter(const std::string& name, double value, double lower, double upper, std::vector<Move> moves, const char* unit = "mm") {
-    return {name, value, lower, upper, *find_unit(unit), std::move(moves)};
+Parameter parameter(const std::string& name, double value, double lower, double upper, const char* unit = "mm") {
+    return {name, value, lower, upper, *find_unit(unit)};
 }
 
-Move dimension(int body, const std::string& name) { return {"/bodies/" + std::to_string(body) + "/shape/dimensions/" + name}; }
+std::string dimension(const std::string& name, const std::string& body = "part") { return "/bodies/" + body + "/shape/dimensions/" + name; }
 
 // A frustum falls 0.02 mm onto a plate that a motor tilts.
 Design tilted_plate() {
@@ -115,10 +115,13 @@ Design tilted_plate() {
     part.pose.position = Vector3(2e-3, 1e-3, 4.12e-3);
     part.angular_velocity = Vector3(8, 5, 0);
     REQUIRE(add_part(design, part, std::make_shared<Frustum>(8e-3, 5e-3, 8e-3)).value() == 1);
-    design.parameters = {parameter("height", 8e-3, 6e-3, 12e-3, {dimension(1, "height"), {"/bodies/part/position/2", 0.5, 1.2e-4}}),
-                         parameter("foot", 8e-3, 6e-3, 10e-3, {dimension(1, "foot")}),
-                         parameter("top", 5e-3, 2e-3, 9e-3, {dimension(1, "top")}),
-                         parameter("speed", 0.7, 0.2, 1, {{"/bodies/0/prescribed/ry/rate"}}, "rad/s")};
+    design.parameters = {parameter("height", 8e-3, 6e-3, 12e-3), parameter("foot", 8e-3, 6e-3, 10e-3), parameter("top", 5e-3, 2e-3, 9e-3),
+                         parameter("speed", 0.7, 0.2, 1, "rad/s")};
+    REQUIRE(set_number(design, dimension("height"), "height").empty());
+    REQUIRE(set_number(design, "/bodies/part/position/2", "height / 2 + 1.2e-4").empty());
+    REQUIRE(set_number(design, dimension("foot"), "foot").empty());
+    REQUIRE(set_number(design, dimension("top"), "top").empty());
+    REQUIRE(set_number(design, "/bodies/0/prescribed/ry/rate", "speed").empty());
     design.objective = {{"height", -1, 1e-3, std::make_shared<MeanHeight>(1)},
                         {"mass", 1, 1e-3, std::make_shared<quantities::Mass>(design.scene, std::vector<int>{1})}};
     Bounds at_least;
@@ -162,7 +165,10 @@ TEST_CASE("a body whose mass is given: neither density nor mesh move it, and gra
         CAPTURE(k, differentiated.gradient[k], least);
         CHECK(least <= 1e-5 * differentiated.gradient.lpNorm<Eigen::Infinity>());
     }
-    design.parameters.push_back(parameter("density", 1000, 500, 2000, {{"/bodies/1/density"}}, "kg/m^3"));
+    design.parameters.push_back(parameter("density", 1000, 500, 2000, "kg/m^3"));
+    CHECK(set_number(design, "/bodies/1/density", "density").front().message.find("is given") != std::string::npos);
+    design.numbers.push_back(
+        {"/bodies/1/density", core::expression::input_formula("density", core::expression::powers_of(Dimension::density))});
     const auto refused = DesignProblem::create(design);
     REQUIRE_FALSE(refused);
     CHECK(refused.errors().front().message.find("is given") != std::string::npos);
@@ -178,10 +184,10 @@ TEST_CASE("a design with a shape and a quantity of one's own: evaluated, differe
     int contacts = 0;
     for (const auto& step : at.simulation.report.steps) contacts += step.contacts;
     CHECK(contacts > 0);
-    const studies::CheckReport report = studies::check_gradients(*problem, p, at);
+    const gradient_audit::CheckReport report = gradient_audit::check_gradients(*problem, p, at);
     CHECK(report.failures.empty());
     REQUIRE(report.rows.size() == 2 * 4);
-    for (const studies::CheckRow& row : report.rows) {
+    for (const gradient_audit::CheckRow& row : report.rows) {
         INFO(row.quantity << " " << row.parameter << ": " << row.adjoint << " against " << row.difference << " +- "
                           << row.difference_error);
         CHECK(row.relative_error < 1e-6);
@@ -202,11 +208,11 @@ TEST_CASE("what is no number is no evaluation, and its reason names what it is o
         double value, of_motion, of_mesh;
         std::string reason;
     };
-    const Case cases[] = {{nan, 0, 0, ": its value is no finite number"},
-                          {infinity, 0, 0, ": its value is no finite number"},
-                          {0, nan, 0, ": its derivative is no finite number"},
-                          {0, infinity, 0, ": its derivative is no finite number"},
-                          {0, 0, nan, ": its derivative by `height` is no finite number"}};
+    const Case cases[] = {{nan, 0, 0, ": its value is not a finite number"},
+                          {infinity, 0, 0, ": its value is not a finite number"},
+                          {0, nan, 0, ": its derivative is not a finite number"},
+                          {0, infinity, 0, ": its derivative is not a finite number"},
+                          {0, 0, nan, ": its derivative by `height` is not a finite number"}};
     for (const Case& c : cases) {
         const auto wrong = std::make_shared<Numbers>(c.value, c.of_motion, c.of_mesh);
         Design constrained = tilted_plate(), aimed = tilted_plate();
@@ -231,7 +237,7 @@ TEST_CASE("a relation of one's own: the optimiser keeps it") {
     };
     design.objective = {{"mass", 1, 1e-3, std::make_shared<quantities::Mass>(design.scene, std::vector<int>{1})}};
     design.relations = {{.name = "taper", .bounds = {.lower = 0.6, .margin = 1e-5}, .at = taper}};
-    design.optimiser = {"ipopt", 20, 1e-6};
+    design.optimiser = {"sqp", 20, 1e-6};
     design.steps = 1;
     const auto problem = DesignProblem::create(std::move(design));
     REQUIRE(problem);
@@ -270,12 +276,17 @@ TEST_CASE("a design read from a file and one made in memory have the same bits")
     wall.pose.position = Vector3(40e-3, 0, 0);
     REQUIRE(add_part(made, wall, box(5e-3, 60e-3, 60e-3)));
     made.scene.gravity = read.scene.gravity;
-    made.parameters = {parameter("height", 10e-3, 6e-3, 14e-3, {dimension(1, "size_z"), {"/bodies/cube/position/2", 0.5, 1.2e-4}}),
-                       parameter("width", 20e-3, 15e-3, 30e-3, {dimension(1, "size_x")}),
-                       parameter("place", 3e-3, -5e-3, 20e-3, {{"/bodies/1/position/0"}}),
-                       parameter("density", 1000, 500, 2000, {{"/bodies/1/density"}}, "kg/m^3"),
-                       parameter("speed", to_si(40, *find_unit("deg/s")), to_si(10, *find_unit("deg/s")), to_si(60, *find_unit("deg/s")),
-                                 {{"/bodies/0/prescribed/ry/rate"}}, "deg/s")};
+    made.parameters = {
+        parameter("height", 10e-3, 6e-3, 14e-3), parameter("width", 20e-3, 15e-3, 30e-3), parameter("place", 3e-3, -5e-3, 20e-3),
+        parameter("density", 1000, 500, 2000, "kg/m^3"),
+        parameter("speed", to_si(40, *find_unit("deg/s")), to_si(10, *find_unit("deg/s")), to_si(60, *find_unit("deg/s")), "deg/s")};
+    for (const auto& [place, formula] : {std::pair(dimension("size_z", "cube"), "height"),
+                                         {dimension("size_x", "cube"), "width"},
+                                         {"/bodies/cube/position/2", "height / 2 + 0.12 mm"},
+                                         {"/bodies/cube/position/0", "place"},
+                                         {"/bodies/cube/density", "density"},
+                                         {"/bodies/table/prescribed/ry/rate", "speed"}})
+        REQUIRE(set_number(made, place, formula).empty());
     const double mm = 1e-3;
     using Points = std::vector<Vector3>;
     made.objective = {
@@ -357,9 +368,9 @@ TEST_CASE("of parts that are costly to make the bounds alone and few designs bet
 
 TEST_CASE("what is wrong with a design made in memory is told, all of it, by name") {
     Design design = tilted_plate();
-    design.parameters[1].moves[0] = dimension(1, "fot");
+    design.numbers[2].place = dimension("fot");
     design.parameters[2].lower = 6e-3;
-    design.parameters[3].moves[0].place = "/bodies/1/prescribed/pz/rate";
+    design.numbers[4].place = "/bodies/1/prescribed/pz/rate";
     design.objective[0].quantity = nullptr;
     design.objective[1].quantity = std::make_shared<quantities::Mass>(std::vector<quantities::Mass::Of>{{7}});
     design.constraints[0].bounds.upper = 1e-3;
@@ -386,7 +397,7 @@ TEST_CASE("what is wrong with a design made in memory is told, all of it, by nam
     };
     CHECK(errors.size() == 12);
     CHECK(told("constraint `height`") == 2);
-    for (const char* where : {"shape of body `part`", "parameter `foot`", "parameter `top`", "parameter `speed`", "objective `height`",
+    for (const char* where : {"shape of body `part`", "dimensions/fot", "parameter `top`", "prescribed/pz/rate", "objective `height`",
                               "objective `mass`", "relation `height`", "relation `short`", "relation `infinite`", "relation `order`"}) {
         INFO(where);
         CHECK(told(where) == 1);

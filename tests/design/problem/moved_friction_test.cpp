@@ -3,11 +3,14 @@
 
 #include <catch2/catch.hpp>
 
+#include "fettle/tests/design/linear_numbers.hpp"
 #include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::design::problem::moved_friction_test {
 
 namespace {
+
+using fettle::tests::design_support::follow;
 
 using namespace fettle::tests::mechanisms;
 using namespace fettle::design::description;
@@ -26,14 +29,14 @@ private:
     size_t body_;
 };
 
-Parameter coefficient(const std::string& name, double value, Move move) {
+void add_coefficient(Design& design, const std::string& name, double value, const std::string& place, double scale = 1, double offset = 0) {
     Parameter p;
     p.name = name;
     p.value = value;
     p.lower = -1;
     p.upper = 2;
-    p.moves = {std::move(move)};
-    return p;
+    design.parameters.push_back(p);
+    follow(design, name, place, scale, offset);
 }
 
 // Blocks that slide over a plate: of wood, of steel as the plate is, with a coefficient of its own, and of nothing that is said.
@@ -64,8 +67,10 @@ Design blocks() {
     design.scene.friction.materials = {{"steel", 0.4}};
     design.scene.friction.pairs = {{"wood", "steel", 0.25}};
     design.steps = 8;
-    design.parameters = {coefficient("pair", 0.25, {"/friction/pairs/0/mu"}), coefficient("material", 0.4, {"/materials/steel/mu"}),
-                         coefficient("body", 0.3, {"/bodies/3/mu", 2, -0.3}), coefficient("all others", 0.15, {"/friction/mu"})};
+    add_coefficient(design, "pair", 0.25, "/friction/pairs/0/mu");
+    add_coefficient(design, "material", 0.4, "/materials/steel/mu");
+    add_coefficient(design, "body", 0.3, "/bodies/3/mu", 2, -0.3);
+    add_coefficient(design, "all others", 0.15, "/friction/mu");
     for (int body = 1; body < 5; ++body) design.constraints.push_back({std::to_string(body), {}, std::make_shared<EndX>(body)});
     return design;
 }
@@ -111,7 +116,9 @@ TEST_CASE("coefficients of friction: of a pair, a material, a body and all other
 TEST_CASE("coefficients of friction that are nowhere are told", "[friction]") {
     const auto reason = [](const std::string& place) {
         Design design = blocks();
-        design.parameters = {coefficient("p", 0.2, {place})};
+        design.parameters.clear();
+        design.numbers.clear();
+        add_coefficient(design, "p", 0.2, place);
         const auto problem = DesignProblem::create(std::move(design));
         return problem ? std::string() : problem.errors()[0].message;
     };

@@ -7,6 +7,7 @@
 #include "fettle/design/problem/check_design.hpp"
 #include "fettle/design/problem/moved_scene.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/tests/design/linear_numbers.hpp"
 #include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::design::problem::moved_places_test {
@@ -16,10 +17,11 @@ using core::model::Model;
 using core::scene::JointKind;
 using core::scene::Place;
 using description::Design;
-using description::Move;
 using description::Parameter;
 
 namespace {
+
+using fettle::tests::design_support::follow;
 
 // No two of their components tie: the axes across one would jump, which moves nothing but is no derivative of theirs.
 const Vector3 x_axis(1, 0.03, 0.07), y_axis(0.04, 1, -0.02), z_axis(0.02, 0.05, 1);
@@ -121,6 +123,9 @@ Design shop() {
         slab.prescribed[dof] = core::scene::MotionCurve{};
         slab.prescribed[dof]->rate = 0.1 + 0.02 * static_cast<double>(dof);
     }
+    slab.orientation.numbers = Vector3(0.2, -0.3, 0.5);
+    oiled.orientation = {core::scene::Orientation::Kind::vector, Vector3(0.1, 0.4, -0.2)};
+    for (core::scene::Body* body : {&slab, &oiled}) settle_rotation(*body);
     slab.prescribed[2]->stop_time = 0.025;
     slab.material = "steel";
     oiled.mu = 0.3;
@@ -184,7 +189,7 @@ void add_parameters(Design& design) {
         p.lower = -1;
         p.upper = 1;
         const bool is_place = p.name.find("position") != std::string::npos || p.name.find("point") != std::string::npos;
-        p.moves = {{p.name, is_place ? 0.01 : 0.3 * std::max(0.1, std::abs(value)), value}};
+        follow(design, p.name, p.name, is_place ? 0.01 : 0.3 * std::max(0.1, std::abs(value)), value);
         design.parameters.push_back(std::move(p));
     }
 }
@@ -284,6 +289,48 @@ adjoint::ModelGradient gradient_of(const Model& model, const std::vector<double>
     return g;
 }
 
+// Of a, b and c, numbers between 0.3 and 0.8: something of every operation that is smooth there.
+std::string random_text(std::mt19937_64& random, int depth) {
+    const auto pick = [&](int count) { return std::uniform_int_distribution<int>(0, count - 1)(random); };
+    if (depth == 0) return std::array<std::string, 4>{"a", "b", "c", "0.7"}[static_cast<std::size_t>(pick(4))];
+    const std::string x = random_text(random, depth - 1), y = random_text(random, depth - 1);
+    switch (pick(12)) {
+        case 0:
+            return "(" + x + " + " + y + ")";
+        case 1:
+            return "(" + x + " - 0.5 * " + y + ")";
+        case 2:
+            return x + " * " + y;
+        case 3:
+            return x + " / (2 + " + y + "^2)";
+        case 4:
+            return "sin(" + x + ") * cos(" + y + ")";
+        case 5:
+            return "sqrt(1 + (" + x + ")^2)";
+        case 6:
+            return "hypot(" + x + ", 1 + " + y + ")";
+        case 7:
+            return "exp(-(" + x + ")^2)";
+        case 8:
+            return "log(2 + sin(" + x + "))";
+        case 9:
+            return "(atan2(" + x + ", 2 + " + y + ") / 1 rad)";
+        case 10:
+            return "max(" + x + ", -50)";
+        default:
+            return "if(" + x + " < 1000, " + y + ", 0) * tan(0.1 * sin(" + x + "))";
+    }
+}
+
+core::expression::Formula random_formula(std::mt19937_64& random, const Design& design) {
+    const std::string text = random_text(random, 3);
+    INFO(text);
+    const auto formula = core::expression::parse_formula(text, description::scope_of(design.parameters));
+    for (const Error& error : formula.errors()) UNSCOPED_INFO(error.message);
+    REQUIRE(formula);
+    return *formula;
+}
+
 Model model_at(const Design& design, const VectorX& p, const std::vector<Vector3>& reference_points) {
     const Result<MovedScene> moved = move_scene(design, p);
     REQUIRE(moved);
@@ -351,16 +398,86 @@ TEST_CASE("whatever a parameter moves, its derivative goes back through the star
     CHECK(rows.size() == static_cast<std::size_t>(core::scene::row_count()));
 }
 
+TEST_CASE("random formulas at random places: the derivative goes back through both", "[joints]") {
+    std::mt19937_64 random(34);
+    int checked = 0;
+    const std::vector<Design> bases = designs();
+    for (int run = 0; run < 300; ++run) {
+        Design design = bases[static_cast<std::size_t>(run) % bases.size()];
+        for (const char* name : {"a", "b", "c"}) {
+            Parameter p;
+            p.name = name;
+            p.value = std::uniform_real_distribution<double>(0.3, 0.8)(random);
+            p.lower = 0;
+            p.upper = 1;
+            design.parameters.push_back(p);
+        }
+        const VectorX start = values_of(design.parameters);
+        const core::scene::Scene scene = description::described_scene(design);
+        const std::vector<Place> places = core::scene::places_of(scene);
+        std::set<Place> taken;
+        while (taken.size() < 8) {
+            const Place place = places[std::uniform_int_distribution<std::size_t>(0, places.size() - 1)(random)];
+            const double value = core::scene::value_at(scene, place);
+            if (std::isnan(value) || !core::scene::faults_at(scene, place).empty() || !taken.insert(place).second) continue;
+            core::expression::Formula shape = random_formula(random, design);
+            std::vector<double> inputs;
+            for (const int k : positions_of(shape, names_of(design.parameters))) inputs.push_back(start[k]);
+            const double at_start = core::expression::value_of<double>(shape, inputs);
+            const std::string pointer = pointer_to(scene, place);
+            const bool is_place = pointer.find("position") != std::string::npos || pointer.find("point") != std::string::npos;
+            const double scale = (is_place ? 0.01 : 0.3 * std::max(0.1, std::abs(value))) / std::max(1.0, std::abs(at_start));
+            // value + scale (shape - shape at the start), in the dimension of the place
+            core::expression::Scope scope;
+            scope.names = {{"shape", {}, shape}};
+            char text[200];
+            std::snprintf(text, sizeof text, "%.17g + %.17g * (shape - %.17g)", value, scale, at_start);
+            core::expression::Formula formula = *core::expression::parse_formula(text, scope);
+            formula.dimension = core::expression::powers_of(core::scene::dimension_at(scene, place));
+            design.numbers.push_back({pointer, formula});
+        }
+        std::vector<Vector3> reference_points;
+        for (const core::model::Body& body : model_at(design, start, {}).bodies) reference_points.push_back(body.reference_point);
+        const Model model = model_at(design, start, reference_points);
+        REQUIRE(check_design(design, model).empty());
+        std::uniform_real_distribution<double> unit(-1, 1);
+        std::vector<double> weights(numbers_of(model).size());
+        for (double& w : weights) w = unit(random);
+        const Result<MovedScene> moved = move_scene(design, start);
+        REQUIRE(moved);
+        const VectorX gradient = pull_back(*moved, model, gradient_of(model, weights), 3);
+        for (Eigen::Index k = 0; k < 3; ++k) {
+            const auto functional = [&](double s) {
+                const std::vector<double> numbers = numbers_of(model_at(design, start + s * VectorX::Unit(3, k), reference_points));
+                const std::vector<double> before = numbers_of(model);
+                double sum = 0;
+                for (std::size_t i = 0; i < numbers.size(); ++i) sum += weights[i] * (numbers[i] - before[i]);
+                return sum;
+            };
+            double error = INFINITY;
+            for (const double s : {1e-2, 1e-3, 1e-4}) {
+                const double wide = (functional(s) - functional(-s)) / (2 * s), fine = (functional(s / 2) - functional(-s / 2)) / s;
+                error = std::min(error, std::abs((4 * fine - wide) / 3 - gradient[k]));
+            }
+            CAPTURE(run, k, gradient[k], error);
+            CHECK(error < 1e-6 * std::max(1.0, std::abs(gradient[k])));
+            checked += gradient[k] != 0;
+        }
+    }
+    CHECK(checked > 600);
+}
+
 TEST_CASE("a trial whose spring, damper or coefficient of friction is 0 is refused by name: it would have no derivative", "[joints]") {
     int refused = 0;
     for (Design& design : designs()) {
         add_parameters(design);
         for (std::size_t k = 0; k < design.parameters.size(); ++k) {
-            const Move& move = design.parameters[k].moves[0];
-            const std::string key = move.place.substr(move.place.rfind('/') + 1);
+            const core::scene::BoundNumber& number = design.numbers[k];
+            const std::string key = number.place.substr(number.place.rfind('/') + 1);
             if (key != "stiffness" && key != "damping" && key != "friction" && key != "mu") continue;
             VectorX p = VectorX::Zero(static_cast<Eigen::Index>(design.parameters.size()));
-            p[static_cast<Eigen::Index>(k)] = -move.offset / move.scale;
+            const double scale = number.formula.nodes[1].number, offset = number.formula.nodes[3].number;
+            p[static_cast<Eigen::Index>(k)] = -offset / scale;
             const Result<MovedScene> moved = move_scene(design, p);
             REQUIRE_FALSE(moved);
             CHECK(moved.errors()[0].message.find("must be greater than 0") != std::string::npos);

@@ -78,6 +78,7 @@ TEST_CASE("a parameter that moves all witnesses alike needs no rows") {
     const DesignFolder folder(bore_design("0", "0", least_play), bore_scene);
     description::Design design = file_of(folder).design;
     design.parameters.erase(design.parameters.begin(), design.parameters.begin() + 2);
+    std::erase_if(design.numbers, [](const auto& number) { return number.formula.inputs != std::vector<std::string>{"radius"}; });
     const auto problem = DesignProblem::create(design);
     REQUIRE(problem);
     const DesignEvaluation at = problem->evaluate(values_of(design.parameters));
@@ -128,7 +129,7 @@ TEST_CASE("the largest play is found in the middle of the bore, and called optim
         e.objective_branches = e.constraint_branches = {};
         return e;
     };
-    const auto optimiser = optimisers::make_optimiser("ipopt");
+    const auto optimiser = optimisers::make_optimiser("sqp");
     optimisers::OptimiserOptions options;
     options.max_evaluations = 60;
     const auto without = optimisers::optimise(blind, **optimiser, options);

@@ -85,9 +85,9 @@ def test_what_is_refused_is_named_as_the_argument_is():
         assert found.value.where == where
 
     refused("pairs", "did you mean", pairs="lefft:right")
-    refused("ignore", "is no pair", ignore="left")
+    refused("ignore", "is not a pair", ignore="left")
     refused("groups", "is a body's name", groups={"left": ["right"]})
-    refused("allow_touch", "is no pair", allow_touch=["left"])
+    refused("allow_touch", "is not a pair", allow_touch=["left"])
     refused("process", "fdmm", process="fdmm")
     refused("minimum", "0 or more", minimum=-1.0)
     refused("tolerance", "more than 0", tolerance=0.0)
@@ -98,5 +98,5 @@ def test_what_is_refused_is_named_as_the_argument_is():
         fettle.clearance(arm(), fettle.as_assembled(arm()), ranges=True)
     with pytest.raises(fettle.Error, match="no steps"):
         fettle.clearance(model, fettle.as_assembled(model))
-    with pytest.raises(fettle.Error, match="touches are not told"):
+    with pytest.raises(fettle.Error, match="touches are not reported"):
         fettle.clearance(arm(), ranges=True, allow_touch="post:bar")

@@ -78,16 +78,18 @@ def tilted_plate(quantity=None, shape=None):
     part = fettle.Body("part", angular_velocity=[8, 5, 0])
     part.pose.position = [2e-3, 1e-3, 4.12e-3]
     assert fettle.add_part(design, part, shape or Frustum(8e-3, 5e-3, 8e-3)) == 1
-    height = [
-        fettle.Move("/bodies/1/shape/dimensions/height"),
-        fettle.Move("/bodies/1/position/2", 0.5, 1.2e-4),
-    ]
+    height = fettle.Parameter("height", 8e-3, 6e-3, 12e-3, "mm")
     design.parameters = [
-        fettle.Parameter("height", 8e-3, 6e-3, 12e-3, "mm", height),
-        fettle.Parameter("foot", 8e-3, 6e-3, 10e-3, "mm", [fettle.Move("/bodies/1/shape/dimensions/foot")]),
-        fettle.Parameter("top", 5e-3, 2e-3, 9e-3, "mm", [fettle.Move("/bodies/1/shape/dimensions/top")]),
-        fettle.Parameter("speed", 0.7, 0.2, 1, "rad/s", [fettle.Move("/bodies/0/prescribed/ry/rate")]),
+        height,
+        fettle.Parameter("foot", 8e-3, 6e-3, 10e-3, "mm"),
+        fettle.Parameter("top", 5e-3, 2e-3, 9e-3, "mm"),
+        fettle.Parameter("speed", 0.7, 0.2, 1, "rad/s"),
     ]
+    design.set("/bodies/1/shape/dimensions/height", height)
+    design.set("/bodies/1/position/2", height / 2 + 1.2e-4)
+    design.set("/bodies/1/shape/dimensions/foot", "foot")
+    design.set("/bodies/1/shape/dimensions/top", "top")
+    design.set("/bodies/0/prescribed/ry/rate", "speed")
     measured = quantity or MeanHeight(1)
     design.objective = [
         fettle.ObjectiveTerm("height", -1, 1e-3, measured),

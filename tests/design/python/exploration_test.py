@@ -248,7 +248,7 @@ def told(capsys, *words):
 def test_the_commands_errors_have_code_and_place(tmp_path, capsys):
     design, out = short_file(tmp_path), tmp_path / "out.jsonl"
     sweeps = [
-        ("crank_radius=abc", "parse", "NAME=COUNT or NAME=LOW:HIGH:COUNT is wanted; COUNT is a whole number, found 'abc'"),
+        ("crank_radius=abc", "parse", "NAME=COUNT or NAME=LOW:HIGH:COUNT is expected; COUNT is a whole number, found 'abc'"),
         ("crank_radius=2.5", "parse", "COUNT is a whole number, found '2.5'"),
         ("crank_radius=1mm:2mm:3", "parse", "LOW is a number, in the parameter's own unit and without it, found '1mm'"),
         ("crank_radius=1:2", "parse", "NAME=LOW:HIGH:COUNT"),

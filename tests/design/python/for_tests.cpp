@@ -57,7 +57,9 @@ py::dict defaults() {
     add_default<fettle::design::description::Constraint>(all);
     add_default<fettle::design::description::Design>(all);
     add_default<fettle::design::description::Measurement>(all);
-    add_default<fettle::design::description::Move>(all);
+    add_default<fettle::core::scene::BoundNumber>(all);
+    add_default<fettle::core::scene::Orientation>(all);
+    add_default<fettle::core::scene::Variable>(all);
     add_default<fettle::design::description::ObjectiveTerm>(all);
     add_default<fettle::design::description::OptimiserSettings>(all);
     add_default<fettle::design::description::Parameter>(all);
@@ -68,17 +70,17 @@ py::dict defaults() {
     add_default<fettle::design::optimisers::StageReport>(all);
     add_default<fettle::design::problem::DesignEvaluation>(all);
     add_default<fettle::design::reading::DesignFile>(all);
-    add_default<fettle::design::studies::CheckReport>(all);
-    add_default<fettle::design::studies::CheckRow>(all);
-    add_default<fettle::design::studies::ContactChange>(all);
-    add_default<fettle::design::studies::ContactDifference>(all);
-    add_default<fettle::design::studies::ContactFeature>(all);
-    add_default<fettle::design::studies::ContactState>(all);
-    add_default<fettle::design::studies::LineRow>(all);
+    add_default<fettle::design::gradient_audit::CheckReport>(all);
+    add_default<fettle::design::gradient_audit::CheckRow>(all);
+    add_default<fettle::design::gradient_audit::ContactChange>(all);
+    add_default<fettle::design::gradient_audit::ContactDifference>(all);
+    add_default<fettle::design::gradient_audit::ContactFeature>(all);
+    add_default<fettle::design::gradient_audit::ContactState>(all);
+    add_default<fettle::design::gradient_audit::LineRow>(all);
     add_default<fettle::design::studies::OptimiseOutcome>(all);
-    add_default<fettle::design::studies::QuantityRoughness>(all);
-    add_default<fettle::design::studies::RoughnessReport>(all);
-    add_default<fettle::design::studies::SweepAgreement>(all);
+    add_default<fettle::design::gradient_audit::QuantityRoughness>(all);
+    add_default<fettle::design::gradient_audit::RoughnessReport>(all);
+    add_default<fettle::design::gradient_audit::SweepAgreement>(all);
     all["Relation"] = py::cast(design::description::Relation());
     return all;
 }

@@ -58,11 +58,11 @@ def test_members_with_a_dimension_take_units():
 
 
 def test_a_wrong_unit_is_told_where_it_is_given():
-    refused(lambda: fettle.Scene(timestep="5mm"), "wrong_type", "scene/timestep", "a time is wanted")
+    refused(lambda: fettle.Scene(timestep="5mm"), "wrong_type", "scene/timestep", "a time is expected")
     refused(lambda: fettle.Scene(timestep="5"), "out_of_range", "scene/timestep", "without a unit")
     refused(lambda: fettle.Scene(timestep="soon"), "parse", "scene/timestep")
     body = fettle.Body("cube")
-    refused(lambda: setattr(body, "density", "3 kg"), "wrong_type", "body `cube`/density", "a unit of mass, a density is wanted")
+    refused(lambda: setattr(body, "density", "3 kg"), "wrong_type", "body `cube`/density", "a unit of mass, a density is expected")
     refused(lambda: fettle.GeneratedPart("box", {"size_x": "3kg"}), "wrong_type", "generated part/values/size_x")
     refused(lambda: fettle.Parameter("height", "8kg", 0, 1, "mm"), "wrong_type", "parameter `height`/value")
     refused(lambda: fettle.Parameter("height", "8mm", 0, 1), "wrong_type", "parameter `height`/value")
@@ -78,24 +78,24 @@ def jointed(**forces):
 
 def test_units_of_coordinates_are_those_of_their_joint():
     assert fettle.build_model(jointed(limits=["-30deg", "30deg"], friction="2 N mm"))
-    refused(lambda: fettle.build_model(jointed(limits=["-3mm", "3mm"])), "wrong_type", "joint `hinge`/forces/limits", "angle is wanted")
-    refused(lambda: fettle.build_model(jointed(friction="2 N")), "wrong_type", "joint `hinge`/forces/friction", "torque is wanted")
+    refused(lambda: fettle.build_model(jointed(limits=["-3mm", "3mm"])), "wrong_type", "joint `hinge`/forces/limits", "angle is expected")
+    refused(lambda: fettle.build_model(jointed(friction="2 N")), "wrong_type", "joint `hinge`/forces/friction", "torque is expected")
     refused(lambda: fettle.build_model(jointed(stiffness="2 N/m")), "wrong_type", "joint `hinge`/forces/stiffness", "in SI")
     scene = jointed()
     scene.mechanism.motors.append(fettle.Motor("drive", joint="hinge", curve=fettle.Curve(rate="60rpm")))
     assert fettle.build_model(scene)
     scene.mechanism.motors[0].curve.rate = "60mm/s"
-    refused(lambda: fettle.build_model(scene), "wrong_type", "motor `drive`/curve/rate", "angular speed is wanted")
+    refused(lambda: fettle.build_model(scene), "wrong_type", "motor `drive`/curve/rate", "angular speed is expected")
     scene.mechanism.motors.clear()
     scene.bodies.append(fettle.Body("slide", "", "kinematic", box(0.01, 0.01, 0.01), prescribed=fettle.held()))
     scene.bodies[1].pose.position = ["10cm", 0, 0]
     scene.bodies[1].prescribed[0].rate = "3deg/s"
-    refused(lambda: fettle.build_model(scene), "wrong_type", "body `slide`/prescribed/0/rate", "speed is wanted")
+    refused(lambda: fettle.build_model(scene), "wrong_type", "body `slide`/prescribed/0/rate", "speed is expected")
 
 
 def test_units_of_requirements_are_those_of_what_they_bound():
     design = tilted_plate()
-    design.parameters[0] = fettle.Parameter("height", "8mm", "6mm", "12mm", "mm", design.parameters[0].moves)
+    design.parameters[0] = fettle.Parameter("height", "8mm", "6mm", "12mm", "mm")
     design.constraints[0].bounds = fettle.Bounds(lower="3.9mm", unit="mm")
     design.objective[1].unit = "g"
     plain = fettle.DesignProblem(tilted_plate())
@@ -103,10 +103,10 @@ def test_units_of_requirements_are_those_of_what_they_bound():
     problem = fettle.DesignProblem(design)
     assert problem.evaluate(problem.values).objective == expected.objective
     design.constraints[0].bounds.lower = "3.9g"
-    refused(lambda: fettle.DesignProblem(design), "wrong_type", "constraint `height`/bounds/lower", "length is wanted")
+    refused(lambda: fettle.DesignProblem(design), "wrong_type", "constraint `height`/bounds/lower", "length is expected")
     design.constraints[0].bounds.lower = 3.9e-3
     design.objective[1].unit = "mm"
-    refused(lambda: fettle.DesignProblem(design), "wrong_type", "objective term `mass`/unit", "mass is wanted")
+    refused(lambda: fettle.DesignProblem(design), "wrong_type", "objective term `mass`/unit", "mass is expected")
 
 
 def test_calls_take_units_and_names():
@@ -136,8 +136,8 @@ def test_designs_name_bodies():
     named.constraints = [fettle.Constraint("gap", fettle.Bounds(lower=0, unit=1e-3), fettle.Clearance("plate", "part", motion=True))]
     numbered.objective = [fettle.ObjectiveTerm("mass", 1, 1e-3, fettle.Mass([(1, "volume")]))]
     named.objective = [fettle.ObjectiveTerm("mass", 1, 1e-3, fettle.Mass([("part", "volume")]))]
-    for move in [move for parameter in named.parameters for move in parameter.moves]:
-        move.place = move.place.replace("/0/", "/plate/", 1).replace("/1/", "/part/", 1)
+    for number in named.numbers:
+        number.place = number.place.replace("/0/", "/plate/", 1).replace("/1/", "/part/", 1)
     found = fettle.DesignProblem(named)
     assert found.design == fettle.DesignProblem(numbered).design
     assert named.constraints[0].quantity.a == "plate"  # what was given stays as it was

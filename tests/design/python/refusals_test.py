@@ -86,13 +86,13 @@ def test_a_view_that_cannot_be_written_names_its_file():
 def test_arguments_that_a_function_cannot_take():
     model = falling_cube()
     refused(lambda: fettle.simulate(model, steps=99999999999), "out_of_range", "steps", "-2147483648 to 2147483647")
-    refused(lambda: fettle.simulate(model, steps="3"), "wrong_type", "steps", "'3', of type str: a whole number, or None is wanted")
+    refused(lambda: fettle.simulate(model, steps="3"), "wrong_type", "steps", "'3', of type str: a whole number, or None is expected")
     refused(lambda: fettle.simulate(model, stepps=3), "unknown_key", "simulate", "did you mean 'steps'?")
-    refused(lambda: fettle.simulate(None), "wrong_type", "model", "None: a fettle.Model is wanted")
-    refused(lambda: fettle.read_scene(3), "wrong_type", "path", "3, of type int: a path, str or os.PathLike is wanted")
-    refused(lambda: fettle.read_scene("a", mesh_dirs=[1]), "wrong_type", "mesh_dirs", "a list is wanted")
-    refused(lambda: fettle.to_si(1), "missing_key", "unit", "is missing: a text is wanted")
-    refused(lambda: fettle.to_si("0.3mm"), "wrong_type", "number", "'0.3mm', of type str: a number is wanted")
+    refused(lambda: fettle.simulate(None), "wrong_type", "model", "None: a fettle.Model is expected")
+    refused(lambda: fettle.read_scene(3), "wrong_type", "path", "3, of type int: a path, str or os.PathLike is expected")
+    refused(lambda: fettle.read_scene("a", mesh_dirs=[1]), "wrong_type", "mesh_dirs", "a list is expected")
+    refused(lambda: fettle.to_si(1), "missing_key", "unit", "is missing: a text is expected")
+    refused(lambda: fettle.to_si("0.3mm"), "wrong_type", "number", "'0.3mm', of type str: a number is expected")
     refused(lambda: fettle.ThreadLimit(0), "out_of_range", "threads")
     with pytest.raises(fettle.Error) as found:
         fettle.read_scene(3, strict_meshes="no")
@@ -109,11 +109,10 @@ def changed(**members):
 
 
 def test_numbers_of_designs():
-    for name in ("scale", "offset"):
-        for bad, where in ((NAN, name), (INFINITY, "1")):
-            parameters = tilted_plate().parameters
-            setattr(parameters[0].moves[1], name, bad)
-            refused(changed(parameters=parameters), "not_finite", f"parameter `height`/moves/{where}")
+    for bad in (NAN, INFINITY):
+        numbers = tilted_plate().numbers
+        numbers[1].formula = numbers[1].formula * bad
+        refused(changed(numbers=numbers), "not_finite", "/bodies/1/position/2")
     refused(changed(clearance_tolerance=NAN), "not_finite", "design/clearance_tolerance")
     refused(changed(steps=-1), "out_of_range", "steps")
     refused(changed(optimiser=fettle.OptimiserSettings(max_evaluations=0)), "out_of_range", "optimiser/max_evaluations")
@@ -152,26 +151,26 @@ def test_places_in_scenes():
     refused(lambda: fettle.build_model(scene), "wrong_type", "mesh `box`/vertices", "(n, 3)")
     design = tilted_plate()
     design.parameters[0].unit = "mn"
-    refused(lambda: fettle.DesignProblem(design), "out_of_range", "parameter `height`/unit", '"mn" is no unit')
+    refused(lambda: fettle.DesignProblem(design), "out_of_range", "parameter `height`/unit", '"mn" is not a unit')
 
 
 def test_what_is_of_no_class_that_is_wanted():
     def scene(**members):
         return lambda: fettle.build_model(fettle.Scene(**{"bodies": [fettle.Body("cube", mesh=box(0.01, 0.01, 0.01))], **members}))
 
-    refused(scene(bodies=["a"]), "wrong_type", "scene/bodies/0", "'a', of type str: a fettle.Body is wanted")
-    refused(scene(bodies=None), "wrong_type", "scene/bodies", "a list of fettle.Body is wanted")
-    refused(scene(mechanism=fettle.Mechanism(joints=["pin"])), "wrong_type", "mechanism/joints/0", "a fettle.Joint is wanted")
-    refused(scene(mechanism=None), "wrong_type", "scene/mechanism", "a fettle.Mechanism is wanted")
+    refused(scene(bodies=["a"]), "wrong_type", "scene/bodies/0", "'a', of type str: a fettle.Body is expected")
+    refused(scene(bodies=None), "wrong_type", "scene/bodies", "a list of fettle.Body is expected")
+    refused(scene(mechanism=fettle.Mechanism(joints=["pin"])), "wrong_type", "mechanism/joints/0", "a fettle.Joint is expected")
+    refused(scene(mechanism=None), "wrong_type", "scene/mechanism", "a fettle.Mechanism is expected")
     joint = fettle.Joint("pin", b=fettle.Attachment("cube"), forces=3)
-    refused(scene(mechanism=fettle.Mechanism(joints=[joint])), "wrong_type", "joint `pin`/forces", "a fettle.CoordinateForces is wanted")
+    refused(scene(mechanism=fettle.Mechanism(joints=[joint])), "wrong_type", "joint `pin`/forces", "a fettle.CoordinateForces is expected")
     joint = fettle.Joint("pin", b=fettle.Attachment("cub"))
     refused(scene(mechanism=fettle.Mechanism(joints=[joint])), "inconsistent", "joint `pin`", "no body is called `cub`")
     for members, words in (
-        ({"gravity": [0, -9.81]}, "Scene.gravity: .* three numbers are wanted"),
-        ({"timestep": True}, "Scene.timestep: a value of type bool .* a number is wanted"),
-        ({"end_time": True}, "Scene.end_time: .* a number, or None, is wanted"),
-        ({"max_newton_iterations": True}, "a whole number is wanted"),
+        ({"gravity": [0, -9.81]}, "Scene.gravity: .* three numbers are expected"),
+        ({"timestep": True}, "Scene.timestep: a value of type bool .* a number is expected"),
+        ({"end_time": True}, "Scene.end_time: .* a number, or None, is expected"),
+        ({"max_newton_iterations": True}, "a whole number is expected"),
     ):
         with pytest.raises(TypeError, match=words):
             scene(**members)()
@@ -181,8 +180,8 @@ def test_misspelt_members():
     body = fettle.Body("cube")
     with pytest.raises(AttributeError, match="Body has no member 'densty'; did you mean 'density'"):
         body.densty = 5
-    with pytest.raises(AttributeError, match="there are place, scale"):
-        fettle.Move().xyz = 1
+    with pytest.raises(AttributeError, match="there are place, formula"):
+        fettle.BoundNumber().xyz = 1
     for made in (fettle.GeneratedPart("box"), fettle.FunctionShape(None, {}), fettle.Design(), fettle.PairRequest()):
         with pytest.raises(AttributeError, match="no member"):
             made.mine = 1
@@ -295,7 +294,7 @@ def test_a_gradient_that_is_no_number_is_no_evaluation():
 def test_answers_of_other_types_are_told():
     for answer, told in ((None, "None"), ("a", "'a', of type str"), ([1.0, 2.0], "of type list"), (fettle.Measurement("a"), "'a'")):
         problem = constrained(Answering(answer))
-        with pytest.raises(fettle.Error, match="a number( or a fettle.Measurement)? is wanted") as found:
+        with pytest.raises(fettle.Error, match="a number( or a fettle.Measurement)? is expected") as found:
             problem.value(problem.values)
         assert found.value.code == "wrong_type" and found.value.where.startswith("Answering.value()")
         assert told in str(found.value)
@@ -324,9 +323,9 @@ def test_what_shapes_answer():
     broken = np.zeros((8, 3))
     broken[3, 1] = NAN
     cases = [
-        (lambda mesh, by: None, "wrong_type", "returned None; (fettle.Mesh, {dimension: derivatives}) is wanted"),
-        (lambda mesh, by: (None, by), "wrong_type", "returned None; a fettle.Mesh is wanted"),
-        (lambda mesh, by: (mesh, None), "wrong_type", "is wanted"),
+        (lambda mesh, by: None, "wrong_type", "returned None; (fettle.Mesh, {dimension: derivatives}) is expected"),
+        (lambda mesh, by: (None, by), "wrong_type", "returned None; a fettle.Mesh is expected"),
+        (lambda mesh, by: (mesh, None), "wrong_type", "is expected"),
         (lambda mesh, by: (mesh, {**by, "top": broken}), "not_finite", "the derivative by `top`"),
         (lambda mesh, by: (mesh, {"foot": by["foot"]}), "missing_key", "the derivative by `top` is missing"),
         (lambda mesh, by: (mesh, {**by, "top": broken[1:]}), "inconsistent", "a row per vertex of the mesh: 8"),

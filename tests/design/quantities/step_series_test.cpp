@@ -11,18 +11,20 @@
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/tests/design/linear_numbers.hpp"
 #include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::design::quantities::step_series_test {
 
 namespace {
 
+using fettle::tests::design_support::follow;
+using fettle::tests::design_support::follow_vector;
+
 using namespace fettle::tests::mechanisms;
 using core::scene::Integrator;
 using core::scene::JointKind;
 using description::Design;
-using description::Move;
-using description::vector_moves;
 using problem::DesignProblem;
 
 const Vector3 x_axis = Vector3::UnitX(), y_axis = Vector3::UnitY(), z_axis = Vector3::UnitZ();
@@ -53,31 +55,40 @@ Design slider_crank(Integrator integrator) {
     return design;
 }
 
-void add_parameter(Design& design, std::vector<Move> moves) {
+std::string new_parameter(Design& design) {
     description::Parameter p;
     p.name = "p" + std::to_string(design.parameters.size());
     p.lower = -1;
     p.upper = 1;
-    p.moves = std::move(moves);
-    design.parameters.push_back(std::move(p));
+    design.parameters.push_back(p);
+    return p.name;
+}
+
+void add_parameter(Design& design, const std::string& place, double scale, double offset) {
+    follow(design, new_parameter(design), place, scale, offset);
+}
+
+void add_vector(Design& design, const std::string& place, const Vector3& direction, double scale = 1,
+                const Vector3& offset = Vector3::Zero()) {
+    follow_vector(design, new_parameter(design), place, direction, scale, offset);
 }
 
 // At 0 the design as it is.
 void add_parameters(Design& design) {
-    add_parameter(design, vector_moves("/joints/1/point_a", x_axis, 0.01, Vector3(0.1, 0, 0)));  // the crank's radius
-    add_parameter(design, vector_moves("/joints/3/point_b", y_axis, 0.01, Vector3::Zero()));
-    add_parameter(design, vector_moves("/joints/3/axis_a", Vector3(0, 1, 0.5), 0.1, Vector3::Zero()));
-    add_parameter(design, {{"/springs/0/stiffness", 100, 500}});
-    add_parameter(design, {{"/springs/0/rest", 0.01, 0.03}});
-    add_parameter(design, {{"/springs/0/limits/1", 1e-4, 1e-5}});
-    add_parameter(design, {{"/springs/0/damping", 1, 3}});
-    add_parameter(design, vector_moves("/loads/0/force", Vector3(1, 1, 0), 3, Vector3(-12, 1, 0)));
-    add_parameter(design, vector_moves("/loads/0/point", y_axis, 0.01, Vector3(0, 0.01, 0)));
-    add_parameter(design, {{"/motors/0/curve/values/3", 0.1, 1.4}});
-    add_parameter(design, {{"/motors/0/speed", 0.1, 0.7}});
-    add_parameter(design, {{"/bodies/1/density", 300, 1000}});
-    add_parameter(design, vector_moves("/gravity", y_axis, 1, Vector3(0, -9.81, 0)));
-    add_parameter(design, vector_moves("/bodies/1/force", Vector3(1, 0, 1)));
+    add_vector(design, "/joints/1/point_a", x_axis, 0.01, Vector3(0.1, 0, 0));  // the crank's radius
+    add_vector(design, "/joints/3/point_b", y_axis, 0.01, Vector3::Zero());
+    add_vector(design, "/joints/3/axis_a", Vector3(0, 1, 0.5), 0.1, Vector3::Zero());
+    add_parameter(design, "/springs/0/stiffness", 100, 500);
+    add_parameter(design, "/springs/0/rest", 0.01, 0.03);
+    add_parameter(design, "/springs/0/limits/1", 1e-4, 1e-5);
+    add_parameter(design, "/springs/0/damping", 1, 3);
+    add_vector(design, "/loads/0/force", Vector3(1, 1, 0), 3, Vector3(-12, 1, 0));
+    add_vector(design, "/loads/0/point", y_axis, 0.01, Vector3(0, 0.01, 0));
+    add_parameter(design, "/motors/0/curve/values/3", 0.1, 1.4);
+    add_parameter(design, "/motors/0/speed", 0.1, 0.7);
+    add_parameter(design, "/bodies/1/density", 300, 1000);
+    add_vector(design, "/gravity", y_axis, 1, Vector3(0, -9.81, 0));
+    add_vector(design, "/bodies/1/force", Vector3(1, 0, 1));
 }
 
 // Two bars that a spring with a damper acts between, another from the world, and a load: what Newmark can have.
@@ -263,18 +274,18 @@ TEST_CASE("joint loads, efforts and energies have the derivatives of their diffe
 TEST_CASE("energies of Newmark's steps have the derivatives of their differences", "[joints]") {
     Design design = sprung_bars();
     const core::scene::Body &one = design.scene.bodies[0], &two = design.scene.bodies[1];
-    add_parameter(design, {{"/springs/0/stiffness", 3, 7}});
-    add_parameter(design, {{"/springs/1/rest", 0.1, 0.8}});
-    add_parameter(design, {{"/springs/0/damping", 0.1, 0.3}});
-    add_parameter(design, vector_moves("/springs/0/point_b", y_axis, 0.02, Vector3::Zero()));
-    add_parameter(design, vector_moves("/loads/0/force", y_axis, 0.1, Vector3(0, 0.2, 0)));
-    add_parameter(design, {{"/bodies/1/density", 300, 1000}});
-    add_parameter(design, vector_moves("/gravity", z_axis, 1, Vector3(0, 0, -0.5)));
-    add_parameter(design, vector_moves("/bodies/1/turn", Vector3(1, 2, 0), 0.1));
-    add_parameter(design, vector_moves("/bodies/0/position", y_axis, 0.01));
-    add_parameter(design, vector_moves("/bodies/1/linear_velocity", x_axis, 0.1, two.linear_velocity));
-    add_parameter(design, vector_moves("/bodies/0/angular_velocity", Vector3(1, 0, 1), 1, one.angular_velocity));
-    add_parameter(design, vector_moves("/bodies/1/torque", z_axis, 0.003));
+    add_parameter(design, "/springs/0/stiffness", 3, 7);
+    add_parameter(design, "/springs/1/rest", 0.1, 0.8);
+    add_parameter(design, "/springs/0/damping", 0.1, 0.3);
+    add_vector(design, "/springs/0/point_b", y_axis, 0.02, Vector3::Zero());
+    add_vector(design, "/loads/0/force", y_axis, 0.1, Vector3(0, 0.2, 0));
+    add_parameter(design, "/bodies/1/density", 300, 1000);
+    add_vector(design, "/gravity", z_axis, 1, Vector3(0, 0, -0.5));
+    add_vector(design, "/bodies/1/turn", Vector3(1, 2, 0), 0.1);
+    add_vector(design, "/bodies/0/position", y_axis, 0.01);
+    add_vector(design, "/bodies/1/linear_velocity", x_axis, 0.1, two.linear_velocity);
+    add_vector(design, "/bodies/0/angular_velocity", Vector3(1, 0, 1), 1, one.angular_velocity);
+    add_vector(design, "/bodies/1/torque", z_axis, 0.003);
     add_constraints(energies(false, 1, Over::mean), design);
     add_constraints(energies(false, 0, Over::end), design);
     check_derivatives(problem_of(std::move(design)), 1e-6);
@@ -300,9 +311,9 @@ Design turning_lever(bool area_weighted) {
     core::scene::Joint axle = joint("axle", JointKind::revolute, {"", Vector3::Zero(), y_axis}, {"lever", Vector3(-0.15, 0, 0), y_axis});
     axle.forces = {3, 0.2, 0, 0.05, 0.03, std::array<double, 2>{-1.0, 0.004}};
     design.scene.mechanism.joints = {axle};
-    add_parameter(design, {{"/bodies/0/shape/dimensions/size_x", 0.03, 0.3}});
-    add_parameter(design, {{"/bodies/0/density", 300, 1000}});
-    add_parameter(design, {{"/joints/0/limits/1", 1e-3, 0.004}});
+    add_parameter(design, "/bodies/0/shape/dimensions/size_x", 0.03, 0.3);
+    add_parameter(design, "/bodies/0/density", 300, 1000);
+    add_parameter(design, "/joints/0/limits/1", 1e-3, 0.004);
     return design;
 }
 
@@ -341,13 +352,13 @@ Design falling_blocks(Integrator integrator, double mu = 0) {
     design.scene.friction.eps_v = 0.02;
     design.scene.friction.rounds = 3;
     design.steps = 8;
-    if (mu > 0) add_parameter(design, {{"/friction/mu", 0.1, mu}});
-    add_parameter(design, vector_moves("/gravity", z_axis, 1, Vector3(0.3, 0, -9.81)));
-    add_parameter(design, {{"/bodies/2/density", 300, 1000}});
-    add_parameter(design, vector_moves("/bodies/1/position", z_axis, 1e-4, lower.pose.position));
-    add_parameter(design, vector_moves("/bodies/2/turn", x_axis, 1e-2));
-    add_parameter(design, vector_moves("/bodies/1/linear_velocity", Vector3(0, 0.6, 0.8), 0.01));
-    add_parameter(design, {{"/contact/dmin", 1e-4, 3e-4}});
+    if (mu > 0) add_parameter(design, "/friction/mu", 0.1, mu);
+    add_vector(design, "/gravity", z_axis, 1, Vector3(0.3, 0, -9.81));
+    add_parameter(design, "/bodies/2/density", 300, 1000);
+    add_vector(design, "/bodies/1/position", z_axis, 1e-4, lower.pose.position);
+    add_vector(design, "/bodies/2/turn", x_axis, 1e-2);
+    add_vector(design, "/bodies/1/linear_velocity", Vector3(0, 0.6, 0.8), 0.01);
+    add_parameter(design, "/contact/dmin", 1e-4, 3e-4);
     using Of = ContactForce::Of;
     const std::vector<std::pair<Of, Over>> asked{{Of{1, 0, z_axis}, Over::mean},
                                                  {Of{2, std::nullopt, Vector3::Zero()}, Over::sum},
@@ -393,7 +404,7 @@ TEST_CASE("quantities of steps that cannot be are refused by name", "[joints]") 
         return errors.empty() ? std::string() : errors[0].message;
     };
     CHECK(message(Energy(EnergyKind::kinetic, Over::end), 3).find("no kinetic energy") != std::string::npos);
-    CHECK(message(MarkerSpeed({1, x_axis, x_axis}, Over::end), 3).find("knows no velocities") != std::string::npos);
+    CHECK(message(MarkerSpeed({1, x_axis, x_axis}, Over::end), 3).find("has no velocities") != std::string::npos);
     CHECK(message(MarkerSpeed({7, x_axis, x_axis}, Over::end), 3).find("7") != std::string::npos);
     CHECK(message(Energy(EnergyKind::total, Over::end), 0).find("needs a step") != std::string::npos);
     CHECK(message(JointLoad({JointLoadKind::force, "nothing"}, Over::end), 3).find("no joint `nothing`") != std::string::npos);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/reading/design_reader.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 
@@ -46,8 +47,11 @@ TEST_CASE("a design file is read in SI units") {
     const design::description::Design& design = file->design;
     REQUIRE(design.parameters.size() == 5);
     CHECK(design.parameters[0].value == 0.01);
-    CHECK(design.parameters[0].moves.size() == 2);
-    CHECK(design.parameters[0].moves[1].offset == Approx(0.00012));
+    REQUIRE(design.numbers.size() == 6);
+    const auto height = std::find_if(design.numbers.begin(), design.numbers.end(),
+                                     [](const auto& number) { return number.place == "/bodies/1/position/2"; });
+    REQUIRE(height != design.numbers.end());
+    CHECK(core::expression::value_of<double>(height->formula, std::vector<double>{0.02}) == Approx(0.01012));
     CHECK(design.parameters[3].value == 1000);
     CHECK(design.parameters[4].value == Approx(40 * std::acos(-1.0) / 180));
     CHECK(design.steps == 20);
@@ -66,14 +70,20 @@ TEST_CASE("every fault of a design is named, with its place") {
         {"\"lower\": 6,", "\"lower\": 16,", ErrorCode::inconsistent, "#/parameters/0/lower", "above the upper bound"},
         {"\"value\": 10,", "\"value\": 15,", ErrorCode::out_of_range, "#/parameters/0/value",
          "the value 15 lies outside the bounds [6, 14] mm"},
-        {"\"value\": 10,", "\"value\": \"ten\",", ErrorCode::wrong_type, "#/parameters/0/value", ""},
+        {"\"value\": 10,", "\"value\": \"ten\",", ErrorCode::parse, "#/parameters/0/value", "is not a length"},
         {"\"value\": 10,", "\"valeu\": 10,", ErrorCode::unknown_key, "#/parameters/0/valeu", "value"},
-        {"\"dimension\": \"size_z\"", "\"dimension\": \"size_zz\"", ErrorCode::out_of_range, "#/parameters/0/moves/0/dimension", "size_z"},
-        {"\"body\": \"cube\", \"dimension\"", "\"body\": \"cubes\", \"dimension\"", ErrorCode::out_of_range, "#/parameters/0/moves/0/body",
-         "did you mean \"cube\"?"},
-        {"\"motor\": \"table\"", "\"motor\": \"cube\"", ErrorCode::inconsistent, "#/parameters/4/moves/0/rate", "no motor"},
+        {"dimensions/size_z", "dimensions/size_zz", ErrorCode::unknown_key, "small.scene.json#/bodies/1/shape", "size_z"},
+        {"/bodies/cube/shape/dimensions/size_z", "/bodies/cubes/shape/dimensions/size_z", ErrorCode::out_of_range, "#/set/~1bodies~1cubes",
+         "did you mean `cube`?"},
+        {"/bodies/table/prescribed", "/bodies/cube/prescribed", ErrorCode::out_of_range, "#/set/~1bodies~1cube",
+         "there is no `prescribed`"},
+        {"= height / 2 + 0.12", "= heigth / 2", ErrorCode::out_of_range, "#/set/~1bodies~1cube~1position~12", "did you mean `height`?"},
+        {"= height / 2 + 0.12", "= height / 2 +", ErrorCode::parse, "#/set/~1bodies~1cube~1position~12", "the formula ends"},
+        {"= height / 2 + 0.12", "= height * width", ErrorCode::wrong_type, "#/set/~1bodies~1cube~1position~12", "this is an area"},
+        {"\"/bodies/cube/density\"", "\"/timestep\"", ErrorCode::wrong_type, "#/set/~1timestep", "a density, a number is expected"},
         {"\"unit\": \"deg/s\"", "\"unit\": \"deg/sec\"", ErrorCode::out_of_range, "#/parameters/4/unit", "deg/s"},
-        {"\"unit\": \"deg/s\"", "\"unit\": \"mm\"", ErrorCode::inconsistent, "#/parameters/4/moves/0", "not a measure"},
+        {"\"unit\": \"deg/s\"", "\"unit\": \"mm\"", ErrorCode::wrong_type, "#/set/~1bodies~1table~1prescribed~1ry~1rate",
+         "this is a length, an angular speed is expected"},
         {"\"name\": \"width\"", "\"name\": \"height\"", ErrorCode::inconsistent, "#/parameters/1/name", "already"},
         {"\"type\": \"play\"", "\"type\": \"plays\"", ErrorCode::out_of_range, "#/objective/3/type", "play"},
         {"\"weight\": 0.5", "\"wieght\": 0.5", ErrorCode::unknown_key, "#/objective/3/wieght", "weight"},
@@ -86,12 +96,12 @@ TEST_CASE("every fault of a design is named, with its place") {
         {"\"lower\": 1.5, \"upper\": 4", "\"lower\": 5, \"upper\": 4", ErrorCode::inconsistent, "#/constraints/3/lower", "above"},
         // a quantity has a dimension: 30 mm is no mass, and a squared distance is no length
         {"\"lower\": 1.5, \"upper\": 4", "\"lower\": 1.5, \"upper\": \"30mm\"", ErrorCode::wrong_type, "#/constraints/3/upper",
-         "a mass is wanted"},
+         "a mass is expected"},
         {"\"lower\": 0, \"upper\": 30", "\"lower\": 0, \"upper\": \"30 g\"", ErrorCode::wrong_type, "#/constraints/2/upper",
-         "a length is wanted"},
+         "a length is expected"},
         {"\"type\": \"mass\", \"bodies\": [\"cube\"], \"lower\": 1.5, \"upper\": 4",
          "\"type\": \"marker_path\", \"body\": \"cube\", \"point\": [0, 0, 0], \"points\": [[0, 0, 0]], \"upper\": \"4mm\"",
-         ErrorCode::wrong_type, "#/constraints/3/upper", "an area is wanted"},
+         ErrorCode::wrong_type, "#/constraints/3/upper", "an area is expected"},
         {"\"name\": \"mma\"", "\"name\": \"mna\"", ErrorCode::out_of_range, "#/optimiser/name", "mma"},
         {"\"max_evaluations\": 8", "\"max_evaluations\": 0", ErrorCode::out_of_range, "#/optimiser/max_evaluations", ""},
         {"\"scene\": \"small.scene.json\"", "\"scene\": \"smal.scene.json\"", ErrorCode::file_not_found, "#/scene", "smal.scene.json"},
@@ -111,14 +121,21 @@ TEST_CASE("every fault of a design is named, with its place") {
     }
 }
 
-TEST_CASE("a move that is no object is a wrong type, not passed over") {
-    const std::string at = "\"moves\": [";
-    for (const char* value : {"\"\"", "[]", "1e8", "[[]]", "null", "true"}) {
-        const DesignFolder folder(replaced(small_design, at, at + value + ", "));
-        const Result<DesignFile> design = read_design(folder.design());
-        CAPTURE(value, all(design.errors()));
-        REQUIRE_FALSE(design);
-        CHECK(has(design.errors(), {"", "", ErrorCode::wrong_type, "/moves/0", ""}));
+TEST_CASE("`moves` of before are refused, with the formulas that say the same") {
+    const DesignFolder folder(replaced(small_design, "\"name\": \"height\",",
+                                       "\"name\": \"height\", \"moves\": [{ \"body\": \"cube\", \"dimension\": \"size_z\" }, "
+                                       "{ \"body\": \"cube\", \"position\": [0, 0, 0.5], \"offset\": [0, 0, 0.12] }],"));
+    const Result<DesignFile> design = read_design(folder.design());
+    INFO(all(design.errors()));
+    REQUIRE_FALSE(design);
+    CHECK(
+        has(design.errors(), {"", "", ErrorCode::unsupported, "#/parameters/0/moves",
+                              "\"/bodies/cube/shape/dimensions/size_z\": \"= height\", \"/bodies/cube/position/2\": \"= 0.5 * height\""}));
+    for (const char* value : {"\"\"", "{}", "[1e8]", "[[]]", "null", "true"}) {
+        const DesignFolder odd(
+            replaced(small_design, "\"name\": \"height\",", std::string("\"name\": \"height\", \"moves\": ") + value + ","));
+        CAPTURE(value);
+        CHECK(has(read_design(odd.design()).errors(), {"", "", ErrorCode::unsupported, "#/parameters/0/moves", "formulas"}));
     }
 }
 
@@ -131,7 +148,7 @@ TEST_CASE("a scene in a design's place is called one; what is no object is said 
     INFO(all(word.errors()));
     REQUIRE_FALSE(word);
     CHECK(word.errors().size() == 1);
-    CHECK(has(word.errors(), {"", "", ErrorCode::wrong_type, "#/optimiser", "an object is wanted, found \"ipopt\""}));
+    CHECK(has(word.errors(), {"", "", ErrorCode::wrong_type, "#/optimiser", "an object is expected, found \"ipopt\""}));
 }
 
 TEST_CASE("all faults are told at once") {
@@ -145,6 +162,43 @@ TEST_CASE("a scaled part cannot be moved by a dimension") {
     const Result<DesignFile> design = read_design(folder.design());
     REQUIRE_FALSE(design);
     CHECK(design.errors()[0].code == ErrorCode::unsupported);
+}
+
+TEST_CASE("a number that no design can move, and a parameter that nothing follows from") {
+    const auto errors_with = [](const char* from, const char* to) {
+        const DesignFolder folder(replaced(small_design, from, to));
+        return read_design(folder.design()).errors();
+    };
+    CHECK(has(errors_with("\"/bodies/cube/density\": \"= density\"", "\"/timestep\": \"= density / density\""),
+              {"", "", ErrorCode::unsupported, "#/set/~1timestep", "no design can move this number"}));
+    CHECK(has(errors_with("\"= place\"", "3"), {"", "", ErrorCode::inconsistent, "#/parameters/2", "no number of the scene follows from"}));
+}
+
+TEST_CASE("variables: of a design, and of its scene, whose place a parameter takes") {
+    const std::string scene = replaced(
+        replaced(small_scene, "\"gravity\"", R"("variables": { "height": "11mm", "gap": 0.12, "top": "= height + 3" }, "gravity")"),
+        "\"position\": [3, 1, 5.12]", R"("position": [3, "= top / 13", 5.12])");
+    const std::string wide = replaced(replaced(small_design, "\"value\": 10, ", ""), "\"set\": {",
+                                      R"("variables": { "half": "= height / 2", "least": "1cm" }, "set": {)");
+    const DesignFolder folder(
+        replaced(replaced(wide, "= height / 2 + 0.12", "= half + gap * 1 mm"), "\"minimum\": 15", "\"minimum\": \"= 1.5 * least\""), scene);
+    const Result<DesignFile> file = read_design(folder.design());
+    INFO(all(file.errors()));
+    REQUIRE(file);
+    CHECK(file->design.parameters[0].value == 0.011);  // the scene's
+    CHECK(file->design.scene.bodies[1].pose.position.z() == Approx(0.0055 + 0.00012));
+    CHECK(file->design.scene.bodies[1].pose.position.y() == Approx(0.014 / 13));
+    CHECK(file->design.constraints[0].bounds.lower == 0.015);
+    CHECK(file->design.numbers.size() == 7);
+    const auto errors_with = [&](const char* to) {
+        const DesignFolder other(replaced(small_design, "\"set\": {", to), scene);
+        return read_design(other.design()).errors();
+    };
+    CHECK(has(errors_with(R"("variables": { "a": "= b", "b": "= a" }, "set": {)"),
+              {"", "", ErrorCode::inconsistent, "#/variables/", "follows from itself"}));
+    CHECK(
+        has(errors_with(R"("variables": { "height": 3 }, "set": {)"), {"", "", ErrorCode::inconsistent, "#/variables/height", "already"}));
+    CHECK(has(errors_with(R"("variables": { "it's": 3 }, "set": {)"), {"", "", ErrorCode::out_of_range, "#/variables/it's", "quote"}));
 }
 
 TEST_CASE("bounds are plain numbers in the file's units, or carry a unit of their dimension") {
@@ -166,8 +220,8 @@ TEST_CASE("a density that is not per volume has no unit of a density per volume"
     const DesignFolder folder(small_design, scene);
     const Result<DesignFile> wrong = read_design(folder.design());
     REQUIRE_FALSE(wrong);
-    CHECK(wrong.errors()[0].where.find("#/parameters/3/moves/0") != std::string::npos);
-    CHECK(wrong.errors()[0].message.find("kg/m^2") != std::string::npos);
+    CHECK(wrong.errors()[0].where.find("#/set/~1bodies~1cube~1density") != std::string::npos);
+    CHECK(wrong.errors()[0].message.find("this is a density, a number is expected") != std::string::npos);
     const DesignFolder right(
         replaced(replaced(small_design, "\"value\": 1000, \"lower\": 500, \"upper\": 2000", "\"value\": 2, \"lower\": 1, \"upper\": 3"),
                  "\"unit\": \"kg/m^3\"", "\"unit\": \"1\""),

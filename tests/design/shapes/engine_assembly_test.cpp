@@ -11,7 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/design/shapes/engine_parts.hpp"
 #include "fettle/design/shapes/shape_generator.hpp"
 
@@ -84,7 +84,7 @@ std::vector<Item> items(const Mesh& mesh, const Matrix3X& vertices) {
 double triangle_distance(const Item& p, const Item& q) {
     using namespace core::geometry;
     const SpaceTriangle &a = p.triangle, &b = q.triangle;
-    if (p.box.intersects(q.box) && triangles_intersect(a, b)) return 0;
+    if (p.box.intersects(q.box) && core::solids::triangles_intersect(a, b)) return 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 3; ++i) {
         least = std::min(least, point_triangle_distance_squared(a[i], b[0], b[1], b[2]));
@@ -152,7 +152,7 @@ TEST_CASE("engine: as assembled, the feasible design keeps 0.30 mm between parts
     const auto vertices = pose(engine, 0);
     for (std::size_t i = 0; i < part_count; ++i) {
         for (std::size_t j = 0; j < part_count; ++j) {
-            if (i != j) CHECK_FALSE(core::geometry::point_in_solid(vertices[i].col(0), vertices[j], engine.parts[j].triangles));
+            if (i != j) CHECK_FALSE(core::solids::point_in_solid(vertices[i].col(0), vertices[j], engine.parts[j].triangles));
         }
     }
 }

@@ -116,7 +116,7 @@ TEST_CASE("no program runs from a file alone") {
     const std::string scene = R"({ "fettle_scene": 1, "units": "mm", "bodies": [ { "name": "part", "density": 1000, "shape": {
         "program": ["sh", "part.sh", "{out}", "{length}"], "format": "off", "dimensions": { "length": 12.5 } } } ] })";
     const std::string design = R"({ "fettle_design": 1, "scene": "a.scene.json", "units": "mm", "simulation": { "steps": 1 },
-        "parameters": [ { "name": "length", "value": 12.5, "lower": 10, "upper": 20, "moves": [ { "body": "part", "dimension": "length" } ] } ],
+        "parameters": [ { "name": "length", "value": 12.5, "lower": 10, "upper": 20 } ], "set": { "/bodies/part/shape/dimensions/length": "= length" },
         "objective": [ { "type": "mass", "bodies": ["part"] } ] })";
     shop.folder.write("a.scene.json", scene);
     const std::string path = shop.folder.write("a.design.json", design);
@@ -171,7 +171,7 @@ TEST_CASE("parts that are alike are made once") {
     };
     const std::string path = shop.folder.write(
         "a.scene.json", "{ \"fettle_scene\": 1, \"units\": \"mm\", \"bodies\": [" + body("one", "0") + ", " + body("two", "50") + "] }");
-    const auto scene = core::scene::read_scene(path, reading::scene_read_options({}, reading::Programs::allowed));
+    const auto scene = core::scene_files::read_scene(path, reading::scene_read_options({}, reading::Programs::allowed));
     REQUIRE(scene);
     CHECK(scene->bodies[1].mesh.vertices == scene->bodies[0].mesh.vertices);
     CHECK(shop.runs("12.5") == 1);

@@ -194,7 +194,8 @@ TEST_CASE("a design of a rebuilt part has the gradient of the generator's") {
         REQUIRE(add_part(design, peg, shape));
         REQUIRE(add_part(design, wall, GeneratedPart::create("box", {{"size_x", 0.01}, {"size_y", 0.05}, {"size_z", 0.05}}).value()));
         design.steps = 1;
-        design.parameters = {{"radius", 0.006, 0.004, 0.01, {}, {{"/bodies/0/shape/dimensions/radius"}}}};
+        design.parameters = {{"radius", 0.006, 0.004, 0.01, *find_unit("mm")}};
+        REQUIRE(set_number(design, "/bodies/0/shape/dimensions/radius", "radius").empty());
         design.objective = {{"mass", 1, 1e-3, std::make_shared<quantities::Mass>(design.scene, std::vector<int>{0})}};
         design.constraints = {
             {"apart", {.lower = 1e-3}, std::make_shared<quantities::Clearance>(quantities::ClearanceRange{.a = 0, .b = 1})}};

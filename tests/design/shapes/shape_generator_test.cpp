@@ -9,7 +9,7 @@
 #include <set>
 
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_validity.hpp"
+#include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
 
 namespace fettle::design::shapes::shape_generator_test {
@@ -108,7 +108,7 @@ double closed_form_volume(const std::string& generator, const Values& v, int n) 
 }
 
 void check_solid(const GeneratedShape& shape, const Values& values, int segments) {
-    const Errors faults = core::geometry::validate_mesh(shape.mesh, {});
+    const Errors faults = core::solids::validate_mesh(shape.mesh, {});
     INFO(shape.mesh.name << (faults.empty() ? "" : ": " + faults.front().where + " " + faults.front().message));
     CHECK(faults.empty());
     CHECK(shape.mesh.shell_names.size() == 1);
@@ -268,7 +268,7 @@ TEST_CASE("shapes: a value just inside each limit is a solid, just outside is re
         values[dimension] = limit * (1 - 1e-6);
         const auto inside = generate(generator, values);
         REQUIRE(inside);
-        CHECK(core::geometry::validate_mesh(inside->mesh, {}).empty());
+        CHECK(core::solids::validate_mesh(inside->mesh, {}).empty());
         values[dimension] = limit * (1 + 1e-6);
         const auto outside = generate(generator, values);
         REQUIRE_FALSE(outside);

@@ -8,7 +8,7 @@
 
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/model/build_model.hpp"
-#include "fettle/core/scene/scene_reader.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 #include "fettle/design/urdf/urdf_parser.hpp"
 #include "fettle/design/urdf/urdf_scene.hpp"
@@ -80,7 +80,7 @@ TEST_CASE("URDF: names that files or ids are made of stay apart, both ways") {
         bodies += std::string(i ? ", " : "") + R"({"name": ")" + names[i] + R"(", "type": "static", "position": [)" +
                   std::to_string(200 * i) + R"(, 0, 0], "shape": {"generator": "box", "dimensions": {"size_x": )" + std::to_string(i + 1) +
                   "}}}";
-    const auto scene = core::scene::read_scene(
+    const auto scene = core::scene_files::read_scene(
         folder.write("a.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [)" + bodies + "]}"), reading::scene_read_options());
     REQUIRE(scene);
     const auto robot = robot_of_scene(*scene, core::model::build_model(*scene).value(), "a");
@@ -100,7 +100,7 @@ TEST_CASE("URDF: names that files or ids are made of stay apart, both ways") {
     const auto back = scene_of_robot(*parsed, {folder.path.string(), {}, "b", false});
     REQUIRE(back);
     for (const auto& [name, contents] : back->files) folder.write(name, contents);
-    const auto again = core::scene::read_scene(folder.file("b.scene.json"), reading::scene_read_options());
+    const auto again = core::scene_files::read_scene(folder.file("b.scene.json"), reading::scene_read_options());
     REQUIRE(again);
     REQUIRE(again->bodies.size() == names.size());
     std::set<std::string> unique;
@@ -198,8 +198,8 @@ TEST_CASE("URDF: the program imports a robot that simulates, with the file's mas
     // And back: the same kinematics, read by the same reader; once more, the same file.
     REQUIRE(run("export " + to + " --to " + folder.file("back/arm.urdf")).code == 0);
     REQUIRE(run("import " + folder.file("back/arm.urdf") + " --to " + folder.file("again/arm.scene.json")).code == 0);
-    const auto first = core::scene::read_scene(to, reading::scene_read_options()),
-               second = core::scene::read_scene(folder.file("again/arm.scene.json"), reading::scene_read_options());
+    const auto first = core::scene_files::read_scene(to, reading::scene_read_options()),
+               second = core::scene_files::read_scene(folder.file("again/arm.scene.json"), reading::scene_read_options());
     REQUIRE(first);
     REQUIRE(second);
     REQUIRE(second->bodies.size() == 3);
@@ -286,7 +286,7 @@ TEST_CASE("URDF out: inertia about the centre of mass, joints that it has not ar
     };
     const std::string pivot = R"({"name": "pivot", "type": "revolute", "b": "bar", "point": [-50, 0, 0], "axis": [0, 0, 1]})";
     const auto exported = [&](const std::string& joints) {
-        const auto read = core::scene::read_scene(scene(joints), reading::scene_read_options());
+        const auto read = core::scene_files::read_scene(scene(joints), reading::scene_read_options());
         REQUIRE(read);
         core::model::BuildOptions options;
         options.check_start = false;

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: MIT
+# Installs the headers that a user needs: those of include/fettle, what they include of ours, and what that includes; no other header is
+# public. Runs when the project is installed, so that the list is never older than the headers. `tests/headers_check --list` shows it.
+# Expects include_destination: relative to the prefix, or absolute.
+cmake_policy(VERSION 3.25)
+cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH source)
+file(GLOB waiting RELATIVE "${source}/include/fettle" "${source}/include/fettle/*.hpp")
+set(public_headers "")
+while(waiting)
+  list(POP_FRONT waiting header)
+  if(header IN_LIST public_headers)
+    continue()
+  endif()
+  list(APPEND public_headers "${header}")
+  file(STRINGS "${source}/include/fettle/${header}" lines REGEX "^ *# *include *\"fettle/")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^[^\"]*\"fettle/([^\"]*)\".*$" "\\1" included "${line}")
+    list(APPEND waiting "${included}")
+  endforeach()
+endwhile()
+cmake_path(ABSOLUTE_PATH include_destination BASE_DIRECTORY "${CMAKE_INSTALL_PREFIX}")
+foreach(header IN LISTS public_headers)
+  cmake_path(GET header PARENT_PATH folder)
+  file(INSTALL "${source}/include/fettle/${header}" DESTINATION "${include_destination}/fettle/${folder}")
+endforeach()

@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/part_files/solid_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fettle/core/files/nearest_word.hpp"
+#include "fettle/core/parts/helix.hpp"
+#include "fettle/core/parts/revolve.hpp"
+#include "fettle/core/parts/solid_booleans.hpp"
+
+namespace fettle::core::part_files {
+
+using base::Dimension;
+using base::ErrorCode;
+using files::JsonNode;
+using parts::Profile;
+using parts::Solid;
+
+struct SolidReader::Verb {
+    std::string_view name;
+    std::vector<std::string_view> keys;
+    ReadSolid read;
+};
+
+struct SolidReader::Ends {
+    PartNumber below, above;
+
+    static parts::End end(const PartNumber& chamfer, const Sheet& sheet) {
+        const Number size = chamfer.at(sheet);
+        return size.value == 0 ? parts::End{} : parts::End{size, abs(size)};
+    }
+    parts::End lower(const Sheet& sheet) const { return end(below, sheet); }
+    parts::End upper(const Sheet& sheet) const { return end(above, sheet); }
+};
+
+namespace {
+
+constexpr double most_facets = 500'000;
+constexpr double most_turns = 1000;
+
+// Vertices that a profile becomes, at most, by the drawing's facets.
+double vertex_count(const Profile& profile, const parts::Facets& facets) {
+    double out = 0;
+    for (const parts::Loop& loop : profile.loops) {
+        for (const parts::Segment& segment : loop.segments) {
+            const auto* arc = std::get_if<parts::Arc>(&segment.curve);
+            constexpr int of_other_curves = 500;
+            if (std::holds_alternative<parts::Line>(segment.curve))
+                out += 1;
+            else
+                out += arc == nullptr ? of_other_curves : parts::segments_of(facets, arc->radius.value, 2 * std::numbers::pi);
+        }
+    }
+    return out;
+}
+
+std::optional<Error> too_fine(const Profile& profile, double layers, const Sheet& sheet, const std::string& where) {
+    if (vertex_count(profile, sheet.drawing.facets) * layers <= most_facets) return std::nullopt;
+    return Error{ErrorCode::out_of_range, where, "this would have more than 500000 facets: take a larger chord, or fewer segments"};
+}
+
+double whole_turn_segments(const Sheet& sheet, const Profile& profile) {
+    double largest = 0;
+    for (const parts::Loop& loop : profile.loops)
+        for (const parts::Segment& segment : loop.segments) largest = std::max(largest, value(parts::end_of(segment.curve)).norm());
+    return largest > 0 ? parts::segments_of(sheet.drawing.facets, largest, 2 * std::numbers::pi) : 1;
+}
+
+// Layers in order, those in a `repeat` as often as it says.
+std::vector<JsonNode> repeated_layers(const JsonNode& stack, const PartNumbers& numbers) {
+    constexpr int most = 1000;
+    std::vector<JsonNode> out;
+    for (const JsonNode& element : stack.objects()) {
+        if (!element["repeat"].exists()) {
+            out.push_back(element);
+            continue;
+        }
+        element.allow_keys({"repeat", "count"});
+        const std::vector<JsonNode> layers = element["repeat"].objects();
+        const int count = numbers.count(element.require("count"), 0, most).value_or(0);
+        for (int k = 0; k < count && out.size() < most; ++k) out.insert(out.end(), layers.begin(), layers.end());
+    }
+    if (out.size() >= most) stack.fail(ErrorCode::out_of_range, "a stack of at most 1000 layers is drawn");
+    return out;
+}
+
+}  // namespace
+
+SolidReader::SolidReader(PartNumbers& numbers, ProfileReader& profiles, const JsonNode& named)
+    : numbers_(numbers), profiles_(profiles), named_(named), makers_(std::make_shared<std::map<std::string, SolidMaker>>()) {}
+
+const std::vector<SolidReader::Verb>& SolidReader::verbs() {
+    using S = SolidReader;
+    static const std::vector<Verb> all{{"extrude", {"from", "to", "chamfer", "chamfer_below", "chamfer_above"}, &S::extrude},
+                                       {"stack", {"from"}, &S::stack},
+                                       {"revolve", {"from", "angle"}, &S::revolve},
+                                       {"twist", {"from", "to", "by"}, &S::twist},
+                                       {"helix", {"pitch", "turns"}, &S::helix},
+                                       {"sphere", {}, &S::sphere},
+                                       {"cone", {"height"}, &S::cone},
+                                       {"torus", {}, &S::torus},
+                                       {"subtract", {"from"}, &S::subtract},
+                                       {"union", {}, &S::unite},
+                                       {"intersect", {}, &S::intersect},
+                                       {"move", {"by"}, &S::move},
+                                       {"turn", {"by", "axis", "about"}, &S::turn},
+                                       {"mirror", {"across"}, &S::mirror},
+                                       {"repeat", {"count", "axis", "about", "every", "step"}, &S::repeat}};
+    return all;
+}
+
+void SolidReader::read_named() {
+    for (const auto& [name, node] : named_.members())
+        if (!name.starts_with('#')) (*makers_)[name] = {};
+    for (auto& [name, maker] : *makers_) maker = read(named_[name], name);
+}
+
+SolidMaker SolidReader::read(const JsonNode& node, const std::string& name) {
+    SolidMaker maker = node.is_string() ? reference(node) : read_object(node, name);
+    return [maker = std::move(maker), where = node.where()](Sheet& sheet) -> Result<Solid> {
+        if (!maker || sheet.depth >= deepest_shape)
+            return Error{ErrorCode::inconsistent, where,
+                         "shapes stand within one another more than " + std::to_string(deepest_shape) + " deep; is one made of itself?"};
+        ++sheet.depth;
+        Result<Solid> made = maker(sheet);
+        --sheet.depth;
+        return located(std::move(made), where);
+    };
+}
+
+SolidMaker SolidReader::reference(const JsonNode& node) {
+    const std::string name = *node.string();
+    if (makers_->count(name) == 0) {
+        std::vector<std::string_view> known;
+        for (const auto& [each, maker] : *makers_) known.emplace_back(each);
+        node.fail(ErrorCode::out_of_range, "there is no solid `" + name + "`; " + files::did_you_mean(name, known, '`'));
+        return {};
+    }
+    return [name, makers = makers_.get()](Sheet& sheet) -> Result<Solid> {
+        const std::pair key(name, sheet.drawing.facets.lean);
+        const auto known = sheet.solids.find(key);
+        if (known != sheet.solids.end()) return known->second;
+        Result<Solid> made = makers->at(name)(sheet);
+        sheet.solids.emplace(key, made);
+        return made;
+    };
+}
+
+SolidMaker SolidReader::read_object(const JsonNode& node, const std::string& name) {
+    if (!node.is_object()) {
+        if (node.exists())
+            node.fail(ErrorCode::wrong_type, "a solid is wanted: an object, or the name of one of `solids`; found " + node.shown());
+        return {};
+    }
+    std::vector<std::string_view> known;
+    for (const Verb& verb : verbs()) known.push_back(verb.name);
+    const auto found = verb_of(node, known, "a solid");
+    if (!found) return {};
+    const Verb& verb = *std::find_if(verbs().begin(), verbs().end(), [&](const Verb& each) { return each.name == *found; });
+    std::vector<std::string_view> keys{verb.name, "name"};
+    keys.insert(keys.end(), verb.keys.begin(), verb.keys.end());
+    node.allow_keys(keys);
+    return (this->*verb.read)(node, node["name"].string().value_or(name));
+}
+
+SolidReader::Ends SolidReader::read_ends(const JsonNode& node) {
+    const JsonNode both = node["chamfer"], below = node["chamfer_below"], above = node["chamfer_above"];
+    if (both.exists() && (below.exists() || above.exists()))
+        both.fail(ErrorCode::inconsistent, "`chamfer` is that of both ends; give `chamfer_below` and `chamfer_above` alone");
+    return {numbers_.length(both.exists() ? both : below), numbers_.length(both.exists() ? both : above)};
+}
+
+SolidMaker SolidReader::extrude(const JsonNode& node, const std::string& name) {
+    const ProfileMaker profile = profiles_.read(node["extrude"], name);
+    const PartNumber from = numbers_.length(node["from"]), to = numbers_.length(node.require("to"));
+    const Ends ends = read_ends(node);
+    return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
+        const Result<Profile> made = profile(sheet);
+        if (!made) return made.errors();
+        if (const auto error = too_fine(*made, 4, sheet, where)) return *error;
+        return parts::extruded(sheet.drawing, *made, from.at(sheet), to.at(sheet), ends.lower(sheet), ends.upper(sheet));
+    };
+}
+
+SolidMaker SolidReader::stack(const JsonNode& node, const std::string& name) {
+    struct Layer {
+        ProfileMaker profile;
+        PartNumber height;
+        Ends ends;
+        std::string name;
+        std::string where;
+    };
+    std::vector<Layer> layers;
+    for (const JsonNode& layer : repeated_layers(node["stack"], numbers_)) {
+        layer.allow_keys({"layer", "height", "chamfer", "chamfer_below", "chamfer_above", "name"});
+        const JsonNode profile = layer.require("layer");
+        const std::string own = layer["name"].string().value_or(profile.is_string() ? *profile.string() : name);
+        layers.push_back({profiles_.read(profile, own), numbers_.length(layer.require("height")), read_ends(layer), own, layer.where()});
+    }
+    if (layers.empty() && node["stack"].is_array()) node["stack"].fail(ErrorCode::out_of_range, "a stack has at least one layer");
+    const PartNumber from = numbers_.length(node["from"]);
+    return [=](Sheet& sheet) -> Result<Solid> {
+        std::vector<parts::Layer> drawn;
+        Number z = from.at(sheet);
+        for (const Layer& layer : layers) {
+            const Result<Profile> made = layer.profile(sheet);
+            if (!made) return made.errors();
+            if (const auto error = too_fine(*made, 4.0 * static_cast<double>(layers.size()), sheet, layer.where)) return *error;
+            const Number top = z + layer.height.at(sheet);
+            drawn.push_back({*made, z, top, layer.ends.lower(sheet), layer.ends.upper(sheet), layer.name});
+            z = top;
+        }
+        return parts::stacked(sheet.drawing, drawn);
+    };
+}
+
+SolidMaker SolidReader::revolve(const JsonNode& node, const std::string& name) {
+    const ProfileMaker profile = profiles_.read(node["revolve"], name);
+    if (node["from"].exists() && !node["angle"].exists())
+        node["from"].fail(ErrorCode::inconsistent, "a whole revolution begins nowhere: `from` goes with an `angle`");
+    const bool is_part = node["angle"].exists();
+    const PartNumber from = numbers_.angle(node["from"]), angle = numbers_.angle(node["angle"]);
+    return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
+        const Result<Profile> made = profile(sheet);
+        if (!made) return made.errors();
+        if (const auto error = too_fine(*made, whole_turn_segments(sheet, *made), sheet, where)) return *error;
+        return is_part ? parts::revolved(sheet.drawing, *made, from.at(sheet), angle.at(sheet)) : parts::revolved(sheet.drawing, *made);
+    };
+}
+
+SolidMaker SolidReader::twist(const JsonNode& node, const std::string& name) {
+    const ProfileMaker profile = profiles_.read(node["twist"], name);
+    const PartNumber from = numbers_.length(node["from"]), to = numbers_.length(node.require("to")),
+                     by = numbers_.angle(node.require("by"));
+    return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
+        const Result<Profile> made = profile(sheet);
+        if (!made) return made.errors();
+        const Number whole = by.at(sheet);
+        const double turns = std::abs(whole.value) / (2 * std::numbers::pi);
+        const auto error = too_fine(*made, 1 + turns * whole_turn_segments(sheet, *made), sheet, where);
+        if (error || !(turns <= most_turns)) return error.value_or(Error{ErrorCode::out_of_range, where, "at most 1000 turns are drawn"});
+        return parts::twisted(sheet.drawing, *made, from.at(sheet), to.at(sheet), whole);
+    };
+}
+
+SolidMaker SolidReader::helix(const JsonNode& node, const std::string& name) {
+    const ProfileMaker profile = profiles_.read(node["helix"], name);
+    const PartNumber pitch = numbers_.length(node.require("pitch")), turns = numbers_.number(node.require("turns"), Dimension::number);
+    return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
+        const Result<Profile> made = profile(sheet);
+        if (!made) return made.errors();
+        const double count = turns.at(sheet).value;
+        const auto error = too_fine(*made, 1 + count * whole_turn_segments(sheet, *made), sheet, where);
+        if (error || !(count <= most_turns)) return error.value_or(Error{ErrorCode::out_of_range, where, "at most 1000 turns are drawn"});
+        return parts::along_helix(sheet.drawing, *made, pitch.at(sheet), turns.at(sheet));
+    };
+}
+
+SolidMaker SolidReader::sphere(const JsonNode& node, const std::string& name) {
+    const PartNumber radius = numbers_.length(node["sphere"]);
+    return [=](Sheet& sheet) { return parts::sphere(sheet.drawing, radius.at(sheet), name); };
+}
+
+SolidMaker SolidReader::cone(const JsonNode& node, const std::string& name) {
+    const PartPoint radii = read_point(node["cone"], numbers_);
+    const PartNumber height = numbers_.length(node.require("height"));
+    return [=](Sheet& sheet) {
+        const parts::Point2 r = radii.at(sheet);
+        return parts::cone(sheet.drawing, r.x, r.y, height.at(sheet), name);
+    };
+}
+
+SolidMaker SolidReader::torus(const JsonNode& node, const std::string& name) {
+    const PartPoint radii = read_point(node["torus"], numbers_);
+    return [=](Sheet& sheet) {
+        const parts::Point2 r = radii.at(sheet);
+        return parts::torus(sheet.drawing, r.x, r.y, name);
+    };
+}
+
+SolidsMaker SolidReader::read_copies(const JsonNode& node, const std::string& name) {
+    if (!node.is_object() || !node["repeat"].exists()) {
+        const SolidMaker one = read(node, name);
+        return [one](Sheet& sheet) -> Result<std::vector<Solid>> {
+            Result<Solid> made = one(sheet);
+            if (!made) return made.errors();
+            return std::vector<Solid>{std::move(*made)};
+        };
+    }
+    node.allow_keys({"repeat", "count", "axis", "about", "every", "step", "name"});
+    const SolidMaker what = read(node["repeat"], node["name"].string().value_or(name));
+    const int count = numbers_.count(node.require("count"), 0, most_copies).value_or(0);
+    const bool is_linear = node["step"].exists();
+    if (is_linear && (node["about"].exists() || node["every"].exists() || node["axis"].exists()))
+        node.fail(ErrorCode::inconsistent, "copies are moved by a `step`, or turned about an `axis`, not both");
+    const PartPoint3 step = read_point3(node["step"], numbers_), about = read_point3(node["about"], numbers_);
+    PartPoint3 axis = read_point3(node["axis"], numbers_, Dimension::number);
+    if (!node["axis"].exists()) axis.z.formula = expression::constant_formula(1);
+    const std::optional<PartNumber> every =
+        node["every"].exists() ? std::optional(numbers_.angle(node["every"])) : std::optional<PartNumber>();
+    return [=, where = node.where()](Sheet& sheet) -> Result<std::vector<Solid>> {
+        if (count == 0) return std::vector<Solid>();
+        const Result<Solid> made = what(sheet);
+        if (!made) return made.errors();
+        if (static_cast<double>(made->triangles.size()) * count > most_facets)
+            return Error{ErrorCode::out_of_range, where, "these copies would have more than 500000 facets in all"};
+        if (is_linear) return parts::linear_copies(*made, count, step.at(sheet));
+        if (every) return parts::polar_copies(*made, count, every->at(sheet), axis.at(sheet), about.at(sheet));
+        return parts::polar_copies(*made, count, axis.at(sheet), about.at(sheet));
+    };
+}
+
+SolidsMaker SolidReader::read_list(const JsonNode& node, const std::string& name) {
+    std::vector<SolidsMaker> makers;
+    if (node.is_array()) {
+        for (const JsonNode& element : node.elements()) makers.push_back(read_copies(element, name));
+    } else if (node.exists()) {
+        makers.push_back(read_copies(node, name));
+    }
+    return [makers](Sheet& sheet) -> Result<std::vector<Solid>> {
+        std::vector<Solid> out;
+        for (const SolidsMaker& maker : makers) {
+            Result<std::vector<Solid>> made = maker(sheet);
+            if (!made) return made.errors();
+            out.insert(out.end(), made->begin(), made->end());
+        }
+        return out;
+    };
+}
+
+SolidMaker SolidReader::subtract(const JsonNode& node, const std::string& name) {
+    const SolidsMaker list = read_list(node["subtract"], name + " cut");
+    const SolidMaker from = read(node.require("from"), name);
+    return [=](Sheet& sheet) -> Result<Solid> {
+        Result<Solid> out = from(sheet);
+        if (!out) return out;
+        const parts::Lean lean = sheet.drawing.facets.lean;
+        sheet.drawing.facets.lean = parts::opposite(lean);
+        const Result<std::vector<Solid>> made = list(sheet);
+        sheet.drawing.facets.lean = lean;
+        if (!made) return made.errors();
+        for (const Solid& solid : *made) {
+            out = parts::difference(sheet.drawing, *out, solid);
+            if (!out) return out;
+        }
+        return out;
+    };
+}
+
+SolidMaker SolidReader::unite(const JsonNode& node, const std::string& name) {
+    const SolidsMaker list = read_list(node["union"], name);
+    return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
+        const Result<std::vector<Solid>> made = list(sheet);
+        if (!made) return made.errors();
+        if (made->empty()) return Error{ErrorCode::inconsistent, where, "there is nothing here to unite"};
+        return made->size() == 1 ? Result<Solid>(made->front()) : parts::united(sheet.drawing, *made);
+    };
+}
+
+SolidMaker SolidReader::intersect(const JsonNode& node, const std::string& name) {
+    const SolidsMaker list = read_list(node["intersect"], name);
+    return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
+        const Result<std::vector<Solid>> made = list(sheet);
+        if (!made) return made.errors();
+        if (made->empty()) return Error{ErrorCode::inconsistent, where, "there is nothing here to intersect"};
+        Result<Solid> out = made->front();
+        for (std::size_t k = 1; k < made->size() && out; ++k) out = parts::intersection(sheet.drawing, *out, (*made)[k]);
+        return out;
+    };
+}
+
+SolidMaker SolidReader::move(const JsonNode& node, const std::string& name) {
+    const SolidMaker what = read(node["move"], name);
+    const PartPoint3 by = read_point3(node.require("by"), numbers_);
+    return [=](Sheet& sheet) -> Result<Solid> {
+        const Result<Solid> made = what(sheet);
+        return made ? Result<Solid>(parts::moved(*made, by.at(sheet))) : made;
+    };
+}
+
+SolidMaker SolidReader::turn(const JsonNode& node, const std::string& name) {
+    const SolidMaker what = read(node["turn"], name);
+    const PartNumber by = numbers_.angle(node.require("by"));
+    PartPoint3 axis = read_point3(node["axis"], numbers_, Dimension::number);
+    if (!node["axis"].exists()) axis.z.formula = expression::constant_formula(1);
+    const PartPoint3 about = read_point3(node["about"], numbers_);
+    return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
+        const Result<Solid> made = what(sheet);
+        if (!made) return made;
+        const parts::Point3 direction = axis.at(sheet);
+        if (!(value(direction).norm() > 0)) return Error{ErrorCode::out_of_range, where, "an axis has a direction; found [0, 0, 0]"};
+        return parts::turned(*made, direction, by.at(sheet), about.at(sheet));
+    };
+}
+
+SolidMaker SolidReader::mirror(const JsonNode& node, const std::string& name) {
+    const SolidMaker what = read(node["mirror"], name);
+    const std::string plane = node.require("across").choice({"xy", "yz", "xz"}).value_or("xy");
+    const parts::Point3 normal = plane == "xy" ? parts::Point3{0, 0, 1} : plane == "yz" ? parts::Point3{1, 0, 0} : parts::Point3{0, 1, 0};
+    return [=](Sheet& sheet) -> Result<Solid> {
+        const Result<Solid> made = what(sheet);
+        return made ? Result<Solid>(parts::mirrored(*made, normal)) : made;
+    };
+}
+
+SolidMaker SolidReader::repeat(const JsonNode& node, const std::string& name) {
+    const SolidsMaker copies = read_copies(node, name);
+    return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
+        const Result<std::vector<Solid>> made = copies(sheet);
+        if (!made) return made.errors();
+        if (made->empty()) return Error{ErrorCode::inconsistent, where, "a part of no copies is nothing"};
+        return made->size() == 1 ? Result<Solid>(made->front()) : parts::united(sheet.drawing, *made);
+    };
+}
+
+}  // namespace fettle::core::part_files

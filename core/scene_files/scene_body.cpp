@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/scene_files/scene_body.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "fettle/core/base/units.hpp"
+#include "fettle/core/files/index_rows.hpp"
+#include "fettle/core/files/nearest_word.hpp"
+#include "fettle/core/geometry/mesh_transforms.hpp"
+#include "fettle/core/mesh_files/find_mesh_file.hpp"
+#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/scene/angles.hpp"
+#include "fettle/core/scene_files/scene_motion.hpp"
+#include "fettle/core/solids/mesh_repair.hpp"
+
+namespace fettle::core::scene_files {
+namespace {
+
+using base::ErrorCode;
+
+const std::vector<std::string_view> body_keys{"name",
+                                              "mesh",
+                                              "mesh_unit",
+                                              "shape",
+                                              "vertices",
+                                              "edges",
+                                              "triangles",
+                                              "scale",
+                                              "density",
+                                              "mass_per",
+                                              "inertial",
+                                              "material",
+                                              "mu",
+                                              "type",
+                                              "position",
+                                              "rotation",
+                                              "rotation_vector",
+                                              "reference_point",
+                                              "linear_velocity",
+                                              "angular_velocity",
+                                              "fixed",
+                                              "prescribed",
+                                              "script",
+                                              "force",
+                                              "torque",
+                                              "damping",
+                                              "group",
+                                              "split_components"};
+
+// A part that a program makes: what runs it.
+scene::MeshProgram read_program(const files::JsonNode& node, const std::string& scene, double unit) {
+    scene::MeshProgram program;
+    const files::JsonNode command = node["program"];
+    for (const files::JsonNode& word : command.elements()) program.command.push_back(word.string().value_or(""));
+    if (command.is_array() && (program.command.empty() || program.command.front().empty()))
+        command.fail(ErrorCode::out_of_range, "a program's command is expected: its name, then its arguments");
+    program.directory = std::filesystem::path(scene).parent_path().string();
+    program.format = node["format"].choice({"stl", "obj", "off", "ply", "3mf"}).value_or(program.format);
+    program.unit = unit;
+    program.time_limit = node["time_limit"].number(files::positive).value_or(program.time_limit);
+    return program;
+}
+
+}  // namespace
+
+std::optional<std::string> read_material_name(const files::JsonNode& node, const MaterialDensities& materials) {
+    std::vector<std::string_view> names;
+    for (const auto& [name, density] : materials) names.push_back(name);
+    if (!node.is_string() || !names.empty()) return node.choice(names);
+    node.fail(ErrorCode::inconsistent, "the material " + node.shown() + " is not described: this scene has no `materials`");
+    return std::nullopt;
+}
+
+std::vector<scene::Body> SceneBodies::read(const files::JsonNode& node) {
+    scene::Body body;
+    body.where = node.where();
+    node.allow_keys(body_keys);
+    if (!node.is_object()) return {body};
+    read_name(node.require("name"), body);
+    const MeshSource source = read_geometry(node, body);
+    settle_mesh(node, source, body);
+    const WrittenPose written = read_pose(node, unit_, {});
+    body.pose = written.pose;
+    body.orientation = written.orientation;
+    body.reference_point = node["reference_point"].length3(unit_);
+    const std::string type = node["type"].choice({"dynamic", "static", "kinematic"}).value_or("dynamic");
+    body.type = type == "static"      ? scene::BodyType::static_body
+                : type == "kinematic" ? scene::BodyType::kinematic_body
+                                      : scene::BodyType::dynamic_body;
+    read_motion(node, unit_, body);
+    read_mass(node, body);
+    read_group(node["group"], body);
+    return components(node, std::move(body));
+}
+
+void SceneBodies::read_name(const files::JsonNode& node, scene::Body& body) {
+    body.name = node.string().value_or("");
+    if (!node.is_string()) return;
+    if (body.name.empty() || body.name.find_first_of(":,") != std::string::npos) {
+        node.fail(ErrorCode::out_of_range, "a body's name is not empty and holds no `:` and no `,`; found " + node.shown());
+    } else if (!names_.insert(body.name).second) {
+        node.fail(ErrorCode::inconsistent, "another body is called " + node.shown() + " already; names are unique");
+    }
+}
+
+SceneBodies::MeshSource SceneBodies::read_geometry(const files::JsonNode& node, scene::Body& body) {
+    MeshSource source;
+    const files::JsonNode mesh = node["mesh"], shape = node["shape"], vertices = node["vertices"];
+    const int sources = static_cast<int>(mesh.exists()) + static_cast<int>(shape.exists()) + static_cast<int>(vertices.exists());
+    if (sources != 1) {
+        node.fail(sources > 1 ? ErrorCode::inconsistent : ErrorCode::missing_key,
+                  "a body has either a `mesh` (a file), or a `shape`, or `vertices` with their `edges` and `triangles`");
+        return source;
+    }
+    for (const char* key : {"edges", "triangles"}) {
+        if (node[key].exists() && !vertices.exists()) node[key].fail(ErrorCode::inconsistent, std::string("`") + key + "` join `vertices`");
+    }
+    if (node["mesh_unit"].exists() && !mesh.exists())
+        node["mesh_unit"].fail(ErrorCode::inconsistent, "only a `mesh` file has a unit of its own");
+    if (mesh.exists()) source = read_mesh_file(node, body);
+    if (shape.exists()) make_shape(shape, body);
+    if (vertices.exists()) read_inline(node, body);
+    const files::JsonNode scale = node["scale"];
+    if (!scale.exists()) return source;
+    Vector3 factors = Vector3::Ones();
+    if (scale.is_array()) {
+        factors = scale.vector3().value_or(factors);
+        if (!(factors.minCoeff() > 0)) scale.fail(ErrorCode::out_of_range, "every scale factor must be greater than 0");
+    } else {
+        factors *= scale.number(files::positive).value_or(1);
+    }
+    geometry::scale_mesh(body.mesh, factors);
+    std::get<2>(source) = {factors[0], factors[1], factors[2]};
+    return source;
+}
+
+/// Files from elsewhere have small faults: what has one answer is mended, and told.
+void SceneBodies::settle_mesh(const files::JsonNode& node, const MeshSource& source, scene::Body& body) {
+    if (body.shape || options_.strict_meshes) return;
+    body.mesh_policy = scene::MeshPolicy::tolerant;
+    if (body.mesh.vertices.cols() == 0 || !body.mesh.vertices.allFinite()) return;
+    if (sound_.count(source) != 0) return;
+    const std::vector<std::string> repairs = solids::repair_mesh(body.mesh);
+    for (const std::string& done : repairs) node.warn("body `" + body.name + "`: " + done);
+    if (repairs.empty() && !std::get<0>(source).empty()) sound_.insert(source);
+}
+
+SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node, scene::Body& body) {
+    const files::JsonNode mesh = node["mesh"];
+    mesh_files::MeshReadOptions options;
+    options.unit = unit_;
+    options.weld = true;
+    options.should_stop = options_.should_stop;
+    if (const auto name = node["mesh_unit"].choice({"um", "mm", "cm", "m", "in", "ft"}))
+        options.unit = base::metres_per_unit(*name).value();
+    const auto name = mesh.string();
+    if (!name) return {};
+    const auto file = mesh_files::find_mesh_file(*name, document_.path(), options_.mesh_dirs, mesh.where());
+    if (!file) {
+        report(file.errors(), mesh);
+        return {};
+    }
+    const MeshSource source{*file, options.unit, {1, 1, 1}};
+    auto known = files_.find({*file, options.unit});
+    if (known == files_.end()) {
+        auto found = mesh_files::read_mesh(*file, options);
+        if (!found) {
+            report(found.errors(), mesh);
+            return {};
+        }
+        known = files_.emplace(std::pair(*file, options.unit), std::move(found).value()).first;
+    }
+    body.mesh = known->second;
+    return source;
+}
+
+void SceneBodies::read_dimensions(const files::JsonNode& node, scene::ShapeSpec& spec) {
+    std::map<std::string, base::Dimension> quantities;
+    if (!spec.part.empty() && options_.part_dimensions) {
+        const auto found = options_.part_dimensions(spec);
+        if (!found) return report(found.errors(), node["part"]);
+        quantities = *found;
+    }
+    for (const auto& [name, value] : node["dimensions"].members()) {
+        if (name.starts_with('#')) continue;
+        const auto quantity = quantities.find(name);
+        if (quantity == quantities.end() || quantity->second == base::Dimension::length) {
+            spec.dimensions[name] = value.length(unit_).value_or(0);
+        } else if (quantity->second == base::Dimension::angle) {
+            spec.dimensions[name] = value.quantity(base::Dimension::angle, to_si(1, *base::find_unit("deg"))).value_or(0);
+            spec.angles.push_back(name);
+        } else {
+            spec.dimensions[name] = value.number().value_or(0);
+            spec.numbers.push_back(name);
+        }
+    }
+}
+
+void SceneBodies::make_shape(const files::JsonNode& node, scene::Body& body) {
+    scene::ShapeSpec spec;
+    if (node["program"].exists()) {
+        node.allow_keys({"program", "format", "time_limit", "dimensions"});
+        spec.program = read_program(node, document_.path(), unit_);
+        body.mesh_policy = scene::MeshPolicy::tolerant;
+    } else if (node["part"].exists()) {
+        node.allow_keys({"part", "dimensions", "counts", "facets"});
+        spec.part = node["part"].string().value_or("");
+        if (spec.part.ends_with(".part.json")) {
+            const auto file = mesh_files::find_mesh_file(spec.part, document_.path(), options_.mesh_dirs, node["part"].where());
+            if (!file) return report(file.errors(), node["part"]);
+            spec.part = *file;
+        }
+        spec.chord = node["facets"].length(unit_, files::positive).value_or(0);
+    } else {
+        node.allow_keys({"generator", "part", "program", "dimensions", "counts"});
+        spec.generator = node.require("generator").string().value_or("");
+    }
+    const std::size_t faults = document_.errors().size();
+    for (const auto& [name, value] : node["counts"].members())
+        if (!name.starts_with('#')) spec.counts[name] = value.integer(0).value_or(0);
+    read_dimensions(node, spec);
+    body.shape = spec;
+    if (document_.errors().size() > faults) return;  // of numbers that nobody gave more faults would be told
+    if (spec.generator.empty() && spec.part.empty() && (!spec.program || spec.program->command.empty())) return;
+    if (!options_.shape_generator) {
+        node.fail(ErrorCode::unsupported, "shape \"" +
+                                              (spec.program        ? spec.program->command.front()
+                                               : spec.part.empty() ? spec.generator
+                                                                   : spec.part) +
+                                              "\" cannot be made here: this program was given no generators");
+        return;
+    }
+    auto made = options_.shape_generator(spec);
+    if (!made) return report(made.errors(), node);
+    body.mesh = std::move(made).value();
+}
+
+void SceneBodies::read_inline(const files::JsonNode& node, scene::Body& body) {
+    const std::size_t faults = document_.errors().size();
+    geometry::Mesh mesh;
+    mesh.name = body.name;
+    const auto rows = node["vertices"].elements();
+    if (node["vertices"].is_array() && rows.empty()) node["vertices"].fail(ErrorCode::out_of_range, "a body needs a vertex");
+    mesh.vertices.resize(3, static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        mesh.vertices.col(static_cast<Eigen::Index>(i)) = rows[i].length3(unit_).value_or(Vector3::Zero());
+    }
+    const auto edges = files::index_rows<2>(node["edges"], static_cast<int>(rows.size()));
+    mesh.triangles = files::index_rows<3>(node["triangles"], static_cast<int>(rows.size()));
+    for (std::size_t e = 0; e < edges.size() && document_.errors().size() == faults; ++e) {
+        if (mesh.vertices.col(edges[e][0]) != mesh.vertices.col(edges[e][1])) continue;
+        node["edges"].elements()[e].fail(ErrorCode::out_of_range, "an edge joins two different places");
+    }
+    if (document_.errors().size() > faults) return;
+    geometry::build_connectivity(mesh, edges);
+    body.mesh = geometry::weld_exactly(mesh);
+}
+
+void SceneBodies::read_mass(const files::JsonNode& node, scene::Body& body) {
+    body.mu = node["mu"].number(files::not_negative);
+    body.material = read_material_name(node["material"], densities_).value_or("");
+    if (node["inertial"].exists()) return read_inertial(node, body);
+    const std::string per = node["mass_per"].choice({"volume", "area", "length", "vertex"}).value_or("volume");
+    body.mass_kind = per == "area"     ? scene::MassKind::area
+                     : per == "length" ? scene::MassKind::length
+                     : per == "vertex" ? scene::MassKind::vertex
+                                       : scene::MassKind::volume;
+    const base::Dimension dimension = body.mass_kind == scene::MassKind::volume ? base::Dimension::density : base::Dimension::number;
+    std::optional<double> density = node["density"].quantity(dimension, 1, files::positive);
+    const auto known = densities_.find(body.material);
+    const bool given = node["density"].exists();
+    if (!given && known != densities_.end() && body.mass_kind == scene::MassKind::volume && known->second) {
+        density = known->second->value;
+        formulas_.bind(node.pointer() + "/density", *known->second);
+    }
+    if (body.type == scene::BodyType::dynamic_body && !given && !density) node.require("density");
+    body.density = density.value_or(body.density);
+    body.density_given = density.has_value();
+}
+
+// Given mass and inertia, about the centre of mass, along the mesh's axes.
+void SceneBodies::read_inertial(const files::JsonNode& node, scene::Body& body) {
+    body.density_given = false;
+    for (const char* key : {"density", "mass_per", "split_components"})
+        if (node[key].exists()) node[key].fail(ErrorCode::inconsistent, "a body with an `inertial` of its own has its mass from there");
+    const files::JsonNode own = node["inertial"];
+    own.allow_keys({"mass", "centre", "inertia"});
+    if (!own.is_object()) return;
+    scene::Inertial inertial;
+    const std::size_t faults = document_.errors().size();
+    inertial.mass = own.require("mass").quantity(base::Dimension::mass, 1, files::positive).value_or(1);
+    inertial.centre = own.require("centre").length3(unit_).value_or(inertial.centre);
+    const std::vector<files::JsonNode> rows = own.require("inertia").elements();
+    if (rows.size() != 3 && own["inertia"].is_array())
+        own["inertia"].fail(ErrorCode::wrong_type, "an inertia has three rows of three numbers [kg m^2]");
+    for (std::size_t k = 0; k < rows.size() && k < 3; ++k)
+        inertial.inertia.row(static_cast<Eigen::Index>(k)) = rows[k].vector3().value_or(Vector3::Zero()).transpose();
+    if (document_.errors().size() > faults) return;
+    if (const std::string fault = scene::fault_of(inertial); !fault.empty()) own.fail(ErrorCode::out_of_range, fault);
+    body.inertial = inertial;
+}
+
+void SceneBodies::read_group(const files::JsonNode& node, scene::Body& body) {
+    if (!node.is_string()) {
+        body.group = node.integer(0).value_or(-1);
+        return;
+    }
+    const std::string name = node.string().value();
+    const auto place = std::find(group_names_.begin(), group_names_.end(), name);
+    body.group = -2 - static_cast<int>(place - group_names_.begin());
+    if (place == group_names_.end()) group_names_.push_back(name);
+}
+
+void SceneBodies::number_groups(std::vector<scene::Body>& bodies) const {
+    int highest = -1;
+    for (const scene::Body& body : bodies) highest = std::max(highest, body.group);
+    for (scene::Body& body : bodies) {
+        if (body.group < -1) body.group = highest + (-1 - body.group);
+    }
+}
+
+std::vector<scene::Body> SceneBodies::components(const files::JsonNode& node, scene::Body body) {
+    const files::JsonNode key = node["split_components"];
+    if (!key.boolean().value_or(false) || body.mesh.vertices.cols() == 0) return {std::move(body)};
+    if (body.shape) key.fail(ErrorCode::inconsistent, "a generated `shape` is one part");
+    if (body.reference_point)
+        key.fail(ErrorCode::inconsistent, "each component has its own centre of mass; a `reference_point` is of one body");
+    Eigen::Index kept = 0;
+    std::vector<geometry::Mesh> parts = geometry::split_shells(body.mesh);
+    std::size_t edges = 0;
+    for (const auto& part : parts) {
+        kept += part.vertices.cols();
+        edges += part.edges.size();
+    }
+    if (body.mesh.triangles.empty() || kept < body.mesh.vertices.cols() || edges < body.mesh.edges.size()) {
+        key.fail(ErrorCode::inconsistent, "the mesh has edges or points that belong to no triangle, and so to no component");
+    }
+    if (parts.size() == 1) return {std::move(body)};
+    std::vector<scene::Body> bodies;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        bodies.push_back(body);
+        bodies.back().name += "-" + std::to_string(i);
+        bodies.back().mesh = std::move(parts[i]);
+        if (names_.insert(bodies.back().name).second) continue;
+        key.fail(ErrorCode::inconsistent,
+                 "component " + std::to_string(i) + " would be called `" + bodies.back().name + "`, as another body is");
+    }
+    return bodies;
+}
+
+/// Errors of meshes and generators know nothing of the file: say which body asked.
+void SceneBodies::report(const base::Errors& errors, const files::JsonNode& node) {
+    for (const auto& error : errors) {
+        const bool placed = error.where.empty() || error.where == node.where();
+        node.fail(error.code, (placed ? "" : error.where + ": ") + error.message);
+    }
+}
+
+}  // namespace fettle::core::scene_files

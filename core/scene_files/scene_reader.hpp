@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+/// Reads scene files: our own (*.scene.json, described by scene.schema.json and README.md beside this file) and, detected by their keys,
+/// the source paper's (paper_scenes/fixture_reader.hpp). Everything in the returned Scene is SI. Whether the bodies can be simulated:
+/// model/build_model.hpp.
+#pragma once
+
+#include <string>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/scene/read_options.hpp"
+
+namespace fettle::core::scene_files {
+
+/// @return the scene, or every fault of the file (not of its meshes' geometry), each with file and JSON pointer.
+base::Result<scene::Scene> read_scene(const std::string& path, const scene::ReadOptions& options = {});
+
+/// The same of a document in hand, which reads numbers for the scene while this runs.
+base::Result<scene::Scene> read_scene(files::JsonDocument& document, const scene::ReadOptions& options = {});
+
+/// The `variables` of a scene's document, as the file alone has them; those that have faults are left out: reading the scene reports them.
+std::vector<scene::Variable> variables_of(files::JsonDocument& document);
+
+/// The same from text; `path` stands in messages, and meshes are looked for as if the text came from there.
+base::Result<scene::Scene> parse_scene(const std::string& text, const std::string& path, const scene::ReadOptions& options = {});
+
+}  // namespace fettle::core::scene_files

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/solids/shells.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/geometry/predicates.hpp"
+#include "fettle/core/solids/point_in_solid.hpp"
+
+namespace fettle::core::solids {
+namespace {
+
+/// Of two shells that do not cross: is `inner` within `outer`? Asked of a vertex that is not on `outer`; all others are on the same side.
+bool lies_within(const Shell& inner, const Shell& outer, const Matrix3X& vertices) {
+    for (const int vertex : inner.vertices) {
+        if (std::binary_search(outer.vertices.begin(), outer.vertices.end(), vertex)) continue;
+        const Vector3 x = vertices.col(vertex);
+        return outer.box.contains(x) && point_in_solid(x, vertices, outer.triangles);
+    }
+    return false;
+}
+
+/// Of the triangles of a shell, in order. @param last_shell  per vertex the last shell that it was found in.
+std::vector<int> distinct_vertices(const std::vector<geometry::Triangle>& triangles, std::vector<int>& last_shell, int shell) {
+    std::vector<int> out;
+    for (const geometry::Triangle& t : triangles) {
+        for (const int v : t) {
+            if (std::exchange(last_shell[static_cast<std::size_t>(v)], shell) != shell) out.push_back(v);
+        }
+    }
+    if (16 * out.size() < last_shell.size()) {
+        std::sort(out.begin(), out.end());
+        return out;
+    }
+    out.clear();
+    for (std::size_t v = 0; v < last_shell.size(); ++v) {
+        if (last_shell[v] == shell) out.push_back(static_cast<int>(v));
+    }
+    return out;
+}
+
+}  // namespace
+
+std::vector<Shell> shells_of(const geometry::Mesh& mesh) {
+    FETTLE_ASSERT(mesh.triangle_shell.size() == mesh.triangles.size(), "shells need a mesh with connectivity (build_connectivity)");
+    std::vector<Shell> shells(mesh.shell_names.size());
+    std::vector<int> last_shell(static_cast<std::size_t>(mesh.vertices.cols()), -1);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        shells.at(static_cast<std::size_t>(mesh.triangle_shell[t])).triangles.push_back(mesh.triangles[t]);
+    for (std::size_t s = 0; s < shells.size(); ++s) {
+        Shell& shell = shells[s];
+        shell.index = static_cast<int>(s);
+        shell.volume_sign = geometry::volume_sign(mesh.vertices, shell.triangles);
+        shell.vertices = distinct_vertices(shell.triangles, last_shell, shell.index);
+        shell.box = {mesh.vertices.col(shell.vertices[0]), mesh.vertices.col(shell.vertices[0])};
+        for (const int v : shell.vertices) {
+            shell.box.low = shell.box.low.cwiseMin(mesh.vertices.col(v));
+            shell.box.high = shell.box.high.cwiseMax(mesh.vertices.col(v));
+        }
+    }
+    std::vector<std::vector<int>> around(shells.size());
+    for (Shell& shell : shells) {
+        for (const Shell& other : shells) {
+            if (other.index == shell.index || !lies_within(shell, other, mesh.vertices)) continue;
+            ++shell.depth;
+            around[static_cast<std::size_t>(shell.index)].push_back(other.index);
+        }
+    }
+    const auto is_deeper = [&](int x, int y) {
+        return shells[static_cast<std::size_t>(x)].depth < shells[static_cast<std::size_t>(y)].depth;
+    };
+    for (Shell& shell : shells) {
+        const std::vector<int>& list = around[static_cast<std::size_t>(shell.index)];
+        if (!list.empty()) shell.around = *std::max_element(list.begin(), list.end(), is_deeper);
+    }
+    return shells;
+}
+
+}  // namespace fettle::core::solids

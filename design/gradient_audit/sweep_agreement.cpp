@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/gradient_audit/sweep_agreement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "fettle/adjoint/stepper/reverse_sweep.hpp"
+#include "fettle/adjoint/stepper/tangent_sweep.hpp"
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/limits.hpp"
+#include "fettle/design/gradient_audit/design_line.hpp"
+
+namespace fettle::design::gradient_audit {
+namespace {
+
+using adjoint::ModelTangent;
+using core::model::Model;
+using core::stepper::Trajectory;
+
+// 3 x 4: [[phi] R, dq].
+Matrix34 motion_matrix(const Vector6& tangent, const Matrix3& rotation) {
+    Matrix34 out;
+    out << cross_matrix(tangent.tail<3>()) * rotation, tangent.head<3>();
+    return out;
+}
+
+// Of the sizes of things: each part of it counts about as much as the others.
+ModelTangent random_direction(const Model& model, int steps, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const auto vector = [&](double scale) { return Vector3(scale * Vector3::NullaryExpr([&] { return uniform(random); })); };
+    ModelTangent d = adjoint::zero_model_tangent(model, steps);
+    d.gravity_dot = vector(model.gravity.norm());
+    const double duration = std::max(1, steps) * model.timestep;
+    const int count = static_cast<int>(model.bodies.size());
+    for (int a = 0; a < count; ++a)
+        for (int b = a + 1; b < count; ++b)
+            if (may_collide(model, a, b) && friction_coefficient(model, a, b) > 0)
+                d.friction_dot[{a, b}] = friction_coefficient(model, a, b) * uniform(random);
+    for (size_t i = 0; i < model.bodies.size(); ++i) {
+        const core::model::Body& body = model.bodies[i];
+        adjoint::BodyTangent& dot = d.bodies[i];
+        for (Eigen::Index j = 0; j < dot.vertices_dot.cols(); ++j) dot.vertices_dot.col(j) = vector(body.radius);
+        dot.pose_start_dot << vector(body.radius), vector(1);
+        Vector6 velocity;
+        velocity << vector(body.radius / duration), vector(1 / duration);
+        dot.velocity_start_dot = motion_matrix(velocity, body.pose_start.rotation);
+        dot.density_dot = body.density * uniform(random);
+        dot.force_dot = vector(body.moments(3, 3) * model.gravity.norm());
+        for (Vector6& increment : dot.increment_dot)
+            for (int k = 0; k < 6; ++k)
+                if (!is_free(body, k)) increment[k] = (k < 3 ? body.radius : 1) * uniform(random) / std::max(1, steps);
+    }
+    return d;
+}
+
+// A sum, and that of its parts' magnitudes.
+struct Pairing {
+    double sum = 0, parts = 0;
+    void add(double part) {
+        sum += part;
+        parts += std::abs(part);
+    }
+};
+
+Pairing backwards(const Model& model, const adjoint::ModelGradient& gradient, const ModelTangent& direction) {
+    Pairing out;
+    out.add(gradient.gravity_bar.dot(direction.gravity_dot));
+    for (const auto& [pair, dot] : direction.friction_dot)
+        if (const auto bar = gradient.friction_bar.find(pair); bar != gradient.friction_bar.end()) out.add(bar->second * dot);
+    for (size_t i = 0; i < model.bodies.size(); ++i) {
+        const adjoint::BodyGradient& bar = gradient.bodies[i];
+        const adjoint::BodyTangent& dot = direction.bodies[i];
+        out.add(bar.vertices_bar.cwiseProduct(dot.vertices_dot).sum());
+        out.add(bar.pose_start_bar.cwiseProduct(motion_matrix(dot.pose_start_dot, model.bodies[i].pose_start.rotation)).sum());
+        out.add(bar.velocity_start_bar.cwiseProduct(dot.velocity_start_dot).sum());
+        out.add(bar.density_bar * dot.density_dot);
+        out.add(bar.force_bar.dot(dot.force_dot));
+        for (size_t t = 0; t < bar.increment_bar.size(); ++t) out.add(bar.increment_bar[t].dot(dot.increment_dot[t]));
+    }
+    return out;
+}
+
+struct Motion {
+    std::vector<std::vector<Vector6>> poses;
+    std::vector<VectorX> multipliers;
+};
+
+double forwards(const adjoint::TrajectoryGradient& seed, const Trajectory& trajectory, const Motion& motion) {
+    double sum = 0;
+    for (size_t t = 0; t < motion.poses.size(); ++t)
+        for (size_t i = 0; i < motion.poses[t].size(); ++i)
+            sum += seed.pose_bar[t][i].cwiseProduct(motion_matrix(motion.poses[t][i], trajectory.poses[t][i].rotation)).sum();
+    for (size_t t = 0; t < seed.multiplier_bar.size(); ++t)
+        if (seed.multiplier_bar[t].size() > 0) sum += seed.multiplier_bar[t].dot(motion.multipliers[t]);
+    return sum;
+}
+
+// Of the objective and of each constraint: what depends on the motion.
+std::vector<adjoint::TrajectoryGradient> motion_seeds(const description::Design& design, const problem::DesignEvaluation& at) {
+    const description::Simulated simulated{*at.model, at.simulation.trajectory, design.clearance_tolerance};
+    const auto zero = [&] { return adjoint::zero_seeds(*at.model, static_cast<int>(at.simulation.trajectory.steps.size())); };
+    std::vector<adjoint::TrajectoryGradient> out;
+    adjoint::Seeds objective = zero();
+    for (size_t k = 0; k < design.objective.size(); ++k) {
+        const description::ObjectiveTerm& term = design.objective[k];
+        term.quantity->add_seeds(simulated, at.terms[k], term.weight / term.unit, objective);
+    }
+    out.push_back(std::move(objective.trajectory_bar));
+    for (size_t k = 0; k < design.constraints.size(); ++k) {
+        adjoint::Seeds seeds = zero();
+        design.constraints[k].quantity->add_seeds(simulated, at.constraints[k], 1, seeds);
+        out.push_back(std::move(seeds.trajectory_bar));
+    }
+    return out;
+}
+
+}  // namespace
+
+SweepAgreement compare_sweeps(const problem::DesignProblem& problem, const problem::DesignEvaluation& at) {
+    FETTLE_ASSERT(at.usable && at.gradient.size() == problem.parameter_count(), "the gradients to check");
+    constexpr int directions = 2;
+    const Model& model = *at.model;
+    const Trajectory& trajectory = at.simulation.trajectory;
+    const std::vector<adjoint::TrajectoryGradient> seeds = motion_seeds(problem.design(), at);
+    const std::vector<std::string> names = quantity_names(problem.design());
+    SweepAgreement out;
+    const auto gradients = adjoint::stepper::reverse_sweep(model, trajectory, seeds);
+    if (!gradients) {
+        out.failure = gradients.errors().front().message;
+        return out;
+    }
+    std::mt19937_64 random(20261123);
+    for (int d = 0; d < directions; ++d) {
+        const ModelTangent direction = random_direction(model, static_cast<int>(trajectory.steps.size()), random);
+        Motion motion;
+        auto poses = adjoint::stepper::tangent_sweep(model, trajectory, direction, &motion.multipliers);
+        if (!poses) {
+            out.failure = poses.errors().front().message;
+            return out;
+        }
+        motion.poses = std::move(poses).value();
+        for (size_t q = 0; q < seeds.size(); ++q) {
+            const Pairing back = backwards(model, (*gradients)[q], direction);
+            const double forth = forwards(seeds[q], trajectory, motion);
+            const double scale = std::max({std::abs(back.sum), std::abs(forth), 1e-2 * back.parts});
+            double apart = back.sum == forth ? 0 : std::abs(back.sum - forth) / scale;
+            if (!std::isfinite(apart)) apart = core::base::infinity;
+            if (apart <= out.disagreement) continue;
+            out.disagreement = apart;
+            out.quantity = names[q];
+        }
+    }
+    return out;
+}
+
+}  // namespace fettle::design::gradient_audit

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/reading/design_formulas.hpp"
+
+#include "fettle/core/base/limits.hpp"
+
+namespace fettle::design::reading {
+
+using core::expression::Formula;
+using core::expression::Scope;
+using core::files::JsonNode;
+
+DesignFormulas::DesignFormulas(core::files::JsonDocument& document, double length_unit, std::vector<core::scene::Variable> scene_variables)
+    : document_(document), scene_variables_(std::move(scene_variables)) {
+    scope_.what = "parameter or variable";
+    constexpr double grams = 1e-3;
+    scope_.plain_unit = core::expression::plain_units(length_unit, grams);
+    take_scene_variables();
+    document_.read_formulas([this](const JsonNode& node, const std::string& text, Dimension dimension, double si_per_number) {
+        return read(node, text, dimension, si_per_number);
+    });
+}
+
+DesignFormulas::~DesignFormulas() { document_.read_formulas({}); }
+
+// The scene's variables as they are; those that follow from a variable which a parameter replaces follow from the parameter.
+void DesignFormulas::take_scene_variables() {
+    std::map<std::string, Formula> plain;
+    for (const core::scene::Variable& variable : scene_variables_)
+        if (variable.formula.is_constant() && values_.count(variable.name) == 0)
+            plain[variable.name] = core::expression::constant_formula(variable.value, variable.formula.dimension);
+    for (const core::scene::Variable& variable : scene_variables_)
+        if (scope_.find(variable.name) == nullptr)
+            scope_.names.push_back({variable.name, variable.formula.dimension, core::expression::substituted(variable.formula, plain)});
+}
+
+void DesignFormulas::add_parameters(const JsonNode& node, const std::vector<description::Parameter>& parameters) {
+    const std::vector<JsonNode> nodes = node.elements();
+    scope_.names.clear();
+    for (size_t k = 0; k < parameters.size(); ++k) {
+        const description::Parameter& parameter = parameters[k];
+        if (!core::expression::is_possible_name(parameter.name) && !parameter.name.empty())
+            nodes[k]["name"].fail(ErrorCode::out_of_range, "a parameter's name must not contain a single quote, because formulas quote it");
+        scope_.names.push_back({parameter.name, core::expression::powers_of(parameter.unit.dimension)});
+        values_[parameter.name] = parameter.value;
+    }
+    take_scene_variables();
+}
+
+void DesignFormulas::read_variables(const JsonNode& node) {
+    std::map<std::string, std::string> texts;
+    for (const auto& [name, value] : node.members()) {
+        if (name.starts_with('#')) continue;
+        if (!core::expression::is_possible_name(name)) {
+            value.fail(ErrorCode::out_of_range, "a variable's name must not be empty or contain a single quote");
+        } else if (values_.count(name) != 0) {
+            value.fail(ErrorCode::inconsistent, "a parameter is called `" + name + "` already");
+        } else if (value.is_string()) {
+            texts[name] = *value.string();
+        } else if (value.number()) {
+            texts[name] = value.shown();
+        }
+    }
+    std::erase_if(scope_.names, [&](const Scope::Name& name) { return texts.count(name.name) != 0; });  // its own are meant
+    const Errors errors = core::expression::define_variables(texts, scope_, [&](const std::string& name, Formula formula) {
+        own_.push_back({name, formula.dimension, 0, formula});
+        return Scope::Name{name, formula.dimension, std::move(formula)};
+    });
+    for (const Error& error : errors) node[error.where].fail(error.code, error.message);
+}
+
+std::vector<core::scene::FormulaInput> DesignFormulas::inputs_of_scene() const {
+    std::vector<core::scene::FormulaInput> out;
+    for (const auto& name : scope_.names)
+        if (!name.meaning) out.push_back({name.name, name.dimension, values_.at(name.name)});
+    out.insert(out.end(), own_.begin(), own_.end());
+    return out;
+}
+
+std::optional<double> DesignFormulas::read(const JsonNode& node, const std::string& text, Dimension dimension, double si_per_number) {
+    const Result<Formula> formula = core::expression::parse_formula_of(text, scope_, dimension, si_per_number);
+    for (const Error& error : formula.errors()) node.fail(error.code, error.message);
+    if (!formula) return std::nullopt;
+    if (formula->is_constant()) return core::expression::value_of<double>(*formula, {});
+    node.fail(ErrorCode::unsupported, "this number cannot follow from parameters; use only variables that no parameter changes");
+    return std::nullopt;
+}
+
+}  // namespace fettle::design::reading
