@@ -74,8 +74,8 @@ Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::s
     for (std::size_t v = 0; v < solid.vertices.size(); ++v) vertices.col(static_cast<Eigen::Index>(v)) = value(solid.vertices[v]);
     part.mesh = geometry::make_mesh(name, std::move(vertices), solid.triangles);
     if (options.check) {
-        const auto crossing = [&] { return geometry::self_intersections(part.mesh, 5); };
-        Errors faults = geometry::validate_mesh(part.mesh, {true, false});
+        const auto crossing = [&] { return solids::self_intersections(part.mesh, 5); };
+        Errors faults = solids::validate_mesh(part.mesh, {true, false});
         if (faults.empty())
             for (const auto& [a, b] : crossing()) {
                 const Vector3 p = part.mesh.vertices.col(part.mesh.triangles[static_cast<std::size_t>(a)][0]);

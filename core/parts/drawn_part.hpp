@@ -23,7 +23,7 @@ struct DrawnPart {
 
 struct DrawnOptions {
     bool jacobian = true;
-    bool check = true;  ///< that the mesh is a solid: closed, oriented, without self-intersection (geometry/mesh_validity.hpp)
+    bool check = true;  ///< that the mesh is a solid: closed, oriented, without self-intersection (solids/mesh_validity.hpp)
 };
 
 /// Errors: a mesh that is no solid; faults name the features whose facets meet ("`slot 2` and `rim` cross").

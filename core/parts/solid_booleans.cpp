@@ -113,8 +113,9 @@ SolidCut shells_of(const Mesh& a, const Mesh& b, Combination combination) {
 
 void pack(const SolidCut& cut, std::vector<int>& out) {
     out.push_back(static_cast<int>(cut.vertices.size()));
-    for (const VertexOrigin& v : cut.vertices) out.insert(out.end(), {static_cast<int>(v.kind), v.from, v.to, v.triangle});
-    for (const CutTriangle& t : cut.triangles) out.insert(out.end(), {t.corners[0], t.corners[1], t.corners[2], t.of_a ? 1 : 0, t.triangle});
+    for (const VertexOrigin& v : cut.vertices) out.insert(out.end(), {static_cast<int>(v.kind), v.from, v.to, v.triangle, v.side});
+    for (const CutTriangle& t : cut.triangles)
+        out.insert(out.end(), {t.corners[0], t.corners[1], t.corners[2], t.of_a ? 1 : 0, t.triangle});
 }
 
 // Nothing: the numbers are no cut of meshes of these sizes.
@@ -123,11 +124,11 @@ std::optional<SolidCut> unpacked(const std::vector<int>& numbers, std::size_t fi
     if (first >= numbers.size() || numbers[first] < 0) return std::nullopt;
     const auto count = static_cast<std::size_t>(numbers[first]);
     std::size_t k = first + 1;
-    if (k + 4 * count > numbers.size() || (numbers.size() - k - 4 * count) % 5 != 0) return std::nullopt;
+    if (k + 5 * count > numbers.size() || (numbers.size() - k - 5 * count) % 5 != 0) return std::nullopt;
     const auto within = [](int i, auto size) { return i >= 0 && i < static_cast<int>(size); };
-    for (std::size_t v = 0; v < count; ++v, k += 4) {
-        if (!within(numbers[k], 4)) return std::nullopt;
-        const VertexOrigin origin{static_cast<Kind>(numbers[k]), numbers[k + 1], numbers[k + 2], numbers[k + 3]};
+    for (std::size_t v = 0; v < count; ++v, k += 5) {
+        if (!within(numbers[k], 4) || !within(numbers[k + 4] + 1, 4)) return std::nullopt;
+        const VertexOrigin origin{static_cast<Kind>(numbers[k]), numbers[k + 1], numbers[k + 2], numbers[k + 3], numbers[k + 4]};
         const bool of_a = origin.kind == Kind::vertex_of_a || origin.kind == Kind::edge_of_a;
         const Mesh &mesh = of_a ? a : b, &other = of_a ? b : a;
         if (!within(origin.from, mesh.vertices.cols()) || !within(origin.to, mesh.vertices.cols()) ||
@@ -146,9 +147,9 @@ std::optional<SolidCut> unpacked(const std::vector<int>& numbers, std::size_t fi
     return cut;
 }
 
-// The point where the line through two vertices goes through the plane of a triangle.
-Point3 crossing(const Point3& p, const Point3& q, const Point3& a, const Point3& b, const Point3& c) {
-    const Point3 normal = cross(b - a, c - a), way = q - p;
+// The point where the line through p and q goes through the plane through a.
+Point3 crossing(const Point3& p, const Point3& q, const Point3& a, const Point3& normal) {
+    const Point3 way = q - p;
     return p + (dot(normal, a - p) / dot(normal, way)) * way;
 }
 
@@ -164,7 +165,14 @@ std::vector<Point3> vertices_of(const SolidCut& cut, const Solid& a, const Solid
         }
         const auto& t = other.triangles[static_cast<std::size_t>(origin.triangle)];
         const auto corner = [&](std::size_t k) -> const Point3& { return other.vertices[static_cast<std::size_t>(t[k])]; };
-        out.push_back(crossing(from, solid.vertices[static_cast<std::size_t>(origin.to)], corner(0), corner(1), corner(2)));
+        const Point3& to = solid.vertices[static_cast<std::size_t>(origin.to)];
+        const Point3 normal = cross(corner(1) - corner(0), corner(2) - corner(0));
+        if (origin.side < 0) {
+            out.push_back(crossing(from, to, corner(0), normal));
+        } else {  // through the plane that stands upright on the side
+            const auto side = static_cast<std::size_t>(origin.side);
+            out.push_back(crossing(from, to, corner(side), cross(corner((side + 1) % 3) - corner(side), normal)));
+        }
     }
     return out;
 }
@@ -190,8 +198,8 @@ bool faces_the_same_way(const SolidCut& cut, const Mesh& a, const Mesh& b, Combi
     return true;
 }
 
-// Where faces of the two meet, their deviations are drawn out by the angle between them: bands of half-width r about two planes at the angle
-// phi have a rhombus in common that reaches r / sin(phi / 2) and r / cos(phi / 2) far.
+// Where faces of the two meet, their deviations are drawn out by the angle between them: bands of half-width r about two planes at the
+// angle phi have a rhombus in common that reaches r / sin(phi / 2) and r / cos(phi / 2) far.
 double drawn_out(const SolidCut& cut, const std::vector<Point3>& vertices) {
     std::map<std::pair<int, int>, std::size_t> sides;
     for (std::size_t t = 0; t < cut.triangles.size(); ++t)

@@ -22,6 +22,9 @@ struct VertexOrigin {
     Kind kind = Kind::vertex_of_a;
     int from = 0, to = 0;  ///< the vertex (both); or the ends of the edge, the smaller one first
     int triangle = 0;      ///< of the other mesh
+    /// Where the edge lies in the plane of the triangle it crosses a side of it instead: from corner `side` to the next; -1: it goes
+    /// through.
+    int side = -1;
 };
 
 struct CutTriangle {

@@ -27,8 +27,7 @@ const char* const origin_name = "f:origin";
 
 ExactMesh exact_mesh(const geometry::Mesh& mesh, int first_origin) {
     ExactMesh out;
-    for (Eigen::Index v = 0; v < mesh.vertices.cols(); ++v)
-        out.add_vertex({mesh.vertices(0, v), mesh.vertices(1, v), mesh.vertices(2, v)});
+    for (Eigen::Index v = 0; v < mesh.vertices.cols(); ++v) out.add_vertex({mesh.vertices(0, v), mesh.vertices(1, v), mesh.vertices(2, v)});
     Origins origins = out.add_property_map<Face, int>(origin_name, -1).first;
     int origin = first_origin;
     for (const auto& t : mesh.triangles) {
@@ -39,7 +38,6 @@ ExactMesh exact_mesh(const geometry::Mesh& mesh, int first_origin) {
     }
     return out;
 }
-
 
 // What CGAL finds, before it changes the meshes, and what becomes of faces.
 struct Record {
@@ -86,7 +84,9 @@ struct Visitor : processing::Corefinement::Default_visitor<ExactMesh> {
             // On an edge of the other mesh: that of its two faces which the edge goes through more steeply.
             if (dimension == 1) {
                 const int other = triangle(of_face.opposite(met));
-                if (steepness(origin, other, edge_of_a) > steepness(origin, origin.triangle, edge_of_a)) origin.triangle = other;
+                const double one = steepness(origin, origin.triangle, edge_of_a), two = steepness(origin, other, edge_of_a);
+                if (two > one) origin.triangle = other;
+                if (std::max(one, two) < 1e-9) origin.side = side_of(origin.triangle, met, of_face, edge_of_a);
             }
         }
         record->by_node.emplace(node, origin);
@@ -97,8 +97,17 @@ struct Visitor : processing::Corefinement::Default_visitor<ExactMesh> {
         if (found != record->by_node.end()) record->by_point.emplace(mesh.point(vertex), found->second);
     }
 
+    int side_of(int triangle, Halfedge edge, const ExactMesh& mesh, bool edge_of_a) const {
+        const auto& t = (edge_of_a ? *record->mesh_b : *record->mesh_a).triangles[static_cast<std::size_t>(triangle)];
+        const int source = static_cast<int>(mesh.source(edge)), target = static_cast<int>(mesh.target(edge));
+        for (std::size_t k = 0; k < 3; ++k)
+            if (std::minmax(t[k], t[(k + 1) % 3]) == std::minmax(source, target)) return static_cast<int>(k);
+        return -1;
+    }
+
     double steepness(const VertexOrigin& origin, int triangle, bool edge_of_a) const {
-        const geometry::Mesh &of_edge = edge_of_a ? *record->mesh_a : *record->mesh_b, &of_face = edge_of_a ? *record->mesh_b : *record->mesh_a;
+        const geometry::Mesh &of_edge = edge_of_a ? *record->mesh_a : *record->mesh_b,
+                             &of_face = edge_of_a ? *record->mesh_b : *record->mesh_a;
         const auto& t = of_face.triangles[static_cast<std::size_t>(triangle)];
         const Vector3 p = point_of(of_face, t[0]);
         const Vector3 normal = (point_of(of_face, t[1]) - p).cross(point_of(of_face, t[2]) - p).normalized();
@@ -107,7 +116,8 @@ struct Visitor : processing::Corefinement::Default_visitor<ExactMesh> {
 };
 
 Error no_solid() {
-    return {ErrorCode::unsupported, {},
+    return {ErrorCode::unsupported,
+            {},
             "the result touches itself along an edge, which no mesh of a solid can say: move one of the two solids by a little, or give "
             "them an overlap"};
 }

@@ -7,9 +7,11 @@ namespace fettle::core::parts {
 bool can_cut_solids() { return false; }
 
 Result<SolidCut> cut_solids(const geometry::Mesh&, const geometry::Mesh&, Combination) {
-    return Error{ErrorCode::unsupported, {},
-                 "solids that cut each other need CGAL (libcgal-dev), which this build of fettle was configured without: stack layers or cut "
-                 "profiles instead, or build with -DFETTLE_CGAL=ON"};
+    return Error{
+        ErrorCode::unsupported,
+        {},
+        "solids that cut each other need CGAL (libcgal-dev), which this build of fettle was configured without: stack layers or cut "
+        "profiles instead, or build with -DFETTLE_CGAL=ON"};
 }
 
 }  // namespace fettle::core::parts

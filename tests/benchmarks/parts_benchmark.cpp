@@ -18,6 +18,7 @@
 #include "fettle/core/parts/drawn_part.hpp"
 #include "fettle/core/parts/extrude.hpp"
 #include "fettle/core/parts/revolve.hpp"
+#include "fettle/core/parts/solid_booleans.hpp"
 
 using namespace fettle;
 using namespace fettle::core::parts;
@@ -54,6 +55,18 @@ Result<Solid> knob(Drawing& drawing, const std::vector<Number>& d) {
     if (!loop) return loop.errors();
     const auto profile = filled(*loop);
     return profile ? revolved(drawing, *profile) : Result<Solid>(profile.errors());
+}
+
+// The plate with two bores from its rim to its middle.
+Result<Solid> bored_plate(Drawing& drawing, const std::vector<Number>& d) {
+    const auto whole = plate(drawing, d);
+    if (!whole) return whole;
+    const auto pin = extruded(drawing, *filled(circle({}, 0.3 * d[8], "cross bore")), 0, 2.0 * d[0]);
+    if (!pin) return pin;
+    const Solid across = moved(turned(*pin, {0, 1, 0}, std::numbers::pi / 2), {0, 0.1 * d[0], 0.47 * d[8]});
+    const auto cut = difference(drawing, *whole, across);
+    if (!cut) return cut;
+    return difference(drawing, *cut, turned(across, {0, 0, 1}, 2));
 }
 
 struct Drawn {
@@ -97,8 +110,9 @@ int main() {
     };
     const std::vector<double> of_plate{40e-3, 5e-3, 32e-3, 3e-3, 12e-3, 12e-3, 2e-3, 9e-3, 5e-3, 8e-3},
         of_knob{3e-3, 20e-3, 6e-3, 12e-3, 9e-3, 14e-3, 6e-3, 22e-3, 1e-3, 2e-3};
-    const std::vector<Case> cases{
+    std::vector<Case> cases{
         {"plate", plate, of_plate, 12}, {"plate", plate, of_plate, 124}, {"knob", knob, of_knob, 30}, {"knob", knob, of_knob, 114}};
+    if (has_solid_booleans()) cases.push_back({"bored plate", bored_plate, of_plate, 124});
     std::printf("[\n");
     for (std::size_t k = 0; k < cases.size(); ++k) {
         const Case& c = cases[k];

@@ -5,10 +5,10 @@
 #include <random>
 
 #include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/geometry/point_in_solid.hpp"
 #include "fettle/core/parts/extrude.hpp"
 #include "fettle/core/parts/helix.hpp"
 #include "fettle/core/parts/revolve.hpp"
+#include "fettle/core/solids/point_in_solid.hpp"
 #include "fettle/tests/core/parts/part_check.hpp"
 
 namespace fettle::core::parts::deviation_test {
@@ -139,7 +139,7 @@ TEST_CASE("the part is never farther outside of its mesh, nor the mesh outside o
             for (int k = 0; k < 1500; ++k) {
                 const Long3 p = round.surface({uniform(), uniform()});
                 const Vector3 rounded(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]));
-                if (!geometry::point_in_solid(rounded, part->mesh.vertices, part->mesh.triangles))
+                if (!solids::point_in_solid(rounded, part->mesh.vertices, part->mesh.triangles))
                     out = std::max(out, distance_to_mesh(rounded, part->mesh));
             }
             long double in = 0;

@@ -50,7 +50,8 @@ TEST_CASE("two boxes, corner in corner") {
     if (!has_solid_booleans()) FETTLE_SKIP("no CGAL");
     const auto part = [](int which) {
         return [which](Drawing& drawing, const std::vector<Number>& d) -> Result<Solid> {
-            const Solid a = *box(drawing, d[0], d[1], d[2], "a"), b = moved(*box(drawing, d[0], d[1], d[2], "b"), {d[3], 0.5 * d[3], 0.7 * d[3]});
+            const Solid a = *box(drawing, d[0], d[1], d[2], "a"),
+                        b = moved(*box(drawing, d[0], d[1], d[2], "b"), {d[3], 0.5 * d[3], 0.7 * d[3]});
             return which == 0 ? united(drawing, a, b) : which == 1 ? difference(drawing, a, b) : intersection(drawing, a, b);
         };
     };
