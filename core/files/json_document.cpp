@@ -277,6 +277,8 @@ std::string JsonNode::shown() const {
     return text.size() > 60 ? text.substr(0, 57) + "..." : text;
 }
 
+std::string JsonNode::text() const { return exists() ? value_of(value_).dump(-1, ' ', false, json::error_handler_t::replace) : "null"; }
+
 void JsonNode::fail(ErrorCode code, std::string message) const { context_->errors.push_back({code, where(), std::move(message)}); }
 
 void JsonNode::warn(const std::string& message) const { context_->warnings.push_back({pointer_, message}); }

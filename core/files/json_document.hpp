@@ -63,6 +63,8 @@ public:
     const std::string& pointer() const { return pointer_; }
     /// What stands there, cut short, for messages: `-5`, `"abc"`, `an object`.
     std::string shown() const;
+    /// The value as JSON.
+    std::string text() const;
 
     void fail(base::ErrorCode code, std::string message) const;
     void warn(const std::string& message) const;

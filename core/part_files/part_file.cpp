@@ -164,7 +164,7 @@ Result<PartFile> PartFile::parse(const std::string& text, const std::string& nam
     if (root["counts"].exists() && !root["counts"].is_object()) (void)root["counts"].members();
     for (const std::string& key : keys_as_written(text, "counts"))
         contents->counts.push_back(read_count(key, root["counts"][key], counts, numbers));
-    if (contents->dimensions.empty()) root.fail(ErrorCode::missing_key, "a part has at least one of `dimensions`");
+    root.require("dimensions");
     Errors errors = count_faults(counts, contents->counts, contents->name);
     if (!errors.empty()) return errors;
     numbers.add_variables(root["variables"]);

@@ -11,11 +11,11 @@
 namespace fettle::core::parts {
 namespace {
 
-std::string quoted(const std::string& feature) { return feature.empty() ? "a curve without a name" : "`" + feature + "`"; }
+std::string quoted_feature(const std::string& feature) { return feature.empty() ? "a curve without a name" : "`" + feature + "`"; }
 
 Error too_large(const Segment& segment, const Number& distance) {
     return {ErrorCode::out_of_range, segment.feature,
-            "a chamfer or draft of " + format_length(distance.value, "mm", 4) + " is larger than " + quoted(segment.feature) +
+            "a chamfer or draft of " + format_length(distance.value, "mm", 4) + " is larger than " + quoted_feature(segment.feature) +
                 ", which it is cut from: take a smaller one"};
 }
 

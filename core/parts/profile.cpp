@@ -18,7 +18,7 @@ constexpr double same_place = 1e-9;  // of the profile's size
 
 std::string millimetres(double metres) { return format_length(metres, "mm", 3); }
 std::string place(const Vector2& p) { return "(" + millimetres(p.x()) + ", " + millimetres(p.y()) + ")"; }
-std::string quoted(const std::string& feature) { return feature.empty() ? "a curve without a name" : "`" + feature + "`"; }
+std::string quoted_feature(const std::string& feature) { return feature.empty() ? "a curve without a name" : "`" + feature + "`"; }
 
 std::string degrees(double radians) {
     const double turn = radians < 0 ? radians + 2 * std::numbers::pi : radians;
@@ -159,7 +159,7 @@ Result<Profile> with_holes(const Profile& profile, const std::vector<Loop>& hole
         const std::string& name = name_of(hole);
         for (const Error& error : faults_of(Profile{{reversed(inwards)}})) errors.push_back(error);
         if (profile.loops.empty()) {
-            errors.push_back({ErrorCode::inconsistent, name, "hole " + quoted(name) + " is in nothing: the profile is empty"});
+            errors.push_back({ErrorCode::inconsistent, name, "hole " + quoted_feature(name) + " is in nothing: the profile is empty"});
             continue;
         }
         const SampledLoops around(out.loops);
@@ -167,15 +167,16 @@ Result<Profile> with_holes(const Profile& profile, const std::vector<Loop>& hole
             const Wall wall = thinnest_wall(out, inwards);
             const Vector2 from_middle = wall.place - middle_of(inwards);
             errors.push_back({ErrorCode::inconsistent, name,
-                              "hole " + quoted(name) + " breaks through " + quoted(wall.feature) + ": wall " + millimetres(wall.thickness) +
-                                  " at " + degrees(std::atan2(from_middle.y(), from_middle.x()))});
+                              "hole " + quoted_feature(name) + " breaks through " + quoted_feature(wall.feature) + ": wall " +
+                                  millimetres(wall.thickness) + " at " + degrees(std::atan2(from_middle.y(), from_middle.x()))});
             continue;
         }
         // What lies within the hole would float in it.
         const SampledLoops of_hole({inwards});
         for (const Loop& other : out.loops)
             if (of_hole.contains(at(other.segments.front().curve, 0.3).position))
-                errors.push_back({ErrorCode::inconsistent, name, "hole " + quoted(name) + " lies around " + quoted(name_of(other))});
+                errors.push_back(
+                    {ErrorCode::inconsistent, name, "hole " + quoted_feature(name) + " lies around " + quoted_feature(name_of(other))});
         out.loops.push_back(inwards);
     }
     if (!errors.empty()) return errors;
@@ -210,7 +211,8 @@ Errors faults_of(const Profile& profile) {
             const Segment& segment = loop.segments[s];
             const Box2 box = box_of(segment.curve);
             if (!box.low.allFinite() || !box.high.allFinite()) {
-                faults.push_back({ErrorCode::not_finite, segment.feature, quoted(segment.feature) + " has points that are not finite"});
+                faults.push_back(
+                    {ErrorCode::not_finite, segment.feature, quoted_feature(segment.feature) + " has points that are not finite"});
                 return faults;
             }
             pieces.push_back({frozen(segment.curve), &segment.feature, l, s, loop.segments.size(), box});
@@ -221,7 +223,8 @@ Errors faults_of(const Profile& profile) {
     const double size = pieces.empty() ? 0 : (high - low).norm(), tolerance = same_place * size;
     for (std::size_t l = 0; l < profile.loops.size(); ++l)
         if (!profile.loops[l].segments.empty() && !(std::abs(sampled_area(profile.loops[l])) > tolerance * size))
-            faults.push_back({ErrorCode::inconsistent, name_of(profile.loops[l]), quoted(name_of(profile.loops[l])) + " encloses no area"});
+            faults.push_back(
+                {ErrorCode::inconsistent, name_of(profile.loops[l]), quoted_feature(name_of(profile.loops[l])) + " encloses no area"});
     if (!faults.empty()) return faults;
 
     std::vector<std::size_t> order(pieces.size());
@@ -238,9 +241,10 @@ Errors faults_of(const Profile& profile) {
                 const Vector2 p = value(m.on_a.point);
                 if (b_follows && (p - value(end_of(a.curve))).norm() <= 2 * tolerance) continue;
                 if (a_follows && (p - value(start_of(a.curve))).norm() <= 2 * tolerance) continue;
-                const std::string names = *a.feature == *b.feature ? (same_loop ? quoted(*a.feature) + " crosses or touches itself"
-                                                                                : "two curves of " + quoted(*a.feature) + " cross or touch")
-                                                                   : quoted(*a.feature) + " and " + quoted(*b.feature) + " cross or touch";
+                const std::string names = *a.feature == *b.feature
+                                              ? (same_loop ? quoted_feature(*a.feature) + " crosses or touches itself"
+                                                           : "two curves of " + quoted_feature(*a.feature) + " cross or touch")
+                                              : quoted_feature(*a.feature) + " and " + quoted_feature(*b.feature) + " cross or touch";
                 faults.push_back({ErrorCode::inconsistent, *a.feature, names + " at " + place(p)});
                 break;
             }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 /// Union, difference and intersection of solids. Which faces cut which is found with exact arithmetic on the present values (CGAL's
-/// corefinement); each new vertex is then the intersection of an edge with a face, or of three faces, of the operands, as a recorded
-/// formula: the derivative is exact. The combinatorics are a decision of the drawing (drawing.hpp): kept while they hold, and a change is
-/// told.
+/// corefinement); each new vertex is then where an edge of one operand goes through a face of the other, as a recorded formula, and so its
+/// derivative is exact: an edge that an earlier cut made stays the intersection of its two faces. The combinatorics are a decision of the
+/// drawing (drawing.hpp): kept while the same sides go through the same triangles and none is turned over, and a change is told.
 ///
-/// Needs CGAL when fettle is configured (FETTLE_CGAL); without it solids whose boxes are apart can be united, and all else is an error that
+/// Needs CGAL when fettle is configured (FETTLE_CGAL); without it solids that do not meet can be combined, and all else is an error that
 /// says so. CGAL's corefinement is under the GPL.
 ///
-/// For `Lean::cover` draw what is cut away with Lean::within: then the difference covers the true one.
+/// Deviations: a union has the larger ones of its operands. For `Lean::cover` draw what is cut away with Lean::within: then the difference
+/// covers the true one, and its deviation outwards is 0, proven. What is not 0 is drawn out where faces meet at an angle phi, by
+/// 1 / sin(phi / 2): to first order, for faces are curved, so that it is not told as proven.
 #pragma once
 
 #include <vector>
@@ -16,11 +18,11 @@
 
 namespace fettle::core::parts {
 
-/// Whether this build has them.
+/// Whether this build can cut solids.
 bool has_solid_booleans();
 
-/// Errors: unsupported (no CGAL); an empty result; faces that lie on each other or touch in a way that leaves no closed surface: move one
-/// of the two by a little, or stack layers (extrude.hpp), which may share faces.
+/// Errors: unsupported (no CGAL); an empty result; a surface that touches itself along an edge: move one of the two by a little, or stack
+/// layers (extrude.hpp).
 Result<Solid> united(Drawing& drawing, const Solid& a, const Solid& b);
 Result<Solid> united(Drawing& drawing, const std::vector<Solid>& solids);
 Result<Solid> difference(Drawing& drawing, const Solid& a, const Solid& b);

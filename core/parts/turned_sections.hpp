@@ -15,7 +15,7 @@ enum class SectionPlane { across, through_axis };
 /// Sections at `steps` + 1 even stations, joined edge by edge, with plane ends.
 /// @param angle, rise  Over all steps. @param section  Polygons; their edges stand for helical surfaces.
 /// Deviation: nodes are on the surface S(s, t) of the polygon's edges, of which |S - linear interpolation| <=
-/// (2 |S_st| + |S_tt|) / 8 per step (docs/method.md), since edges are straight in s; what curves leave their edges by is added.
+/// (2 |S_st| + |S_tt|) / 8 per step, since edges are straight in s; what curves leave their edges by is added.
 Result<Solid> turned_section(Drawing& drawing, const FacetedProfile& section, SectionPlane plane, const Number& from, const Number& angle,
                              const Number& rise, int steps, const std::string& feature);
 

@@ -103,7 +103,7 @@ struct ShapeSpec {
     std::map<std::string, double> dimensions;  ///< lengths [m], but for those that are listed below
     std::map<std::string, int> counts;         ///< numbers of teeth, holes, facets
     std::optional<MeshProgram> program = {};
-    std::string part = {};                 ///< of the library, or a file; then `generator` is empty
+    std::string part = {};                 ///< of the library, a file, or the text of one; then `generator` is empty
     double chord = 0;                      ///< of a part: largest distance of a facet from what it stands for [m]; 0: not by this
     std::vector<std::string> angles = {};  ///< dimensions of a part that are no lengths: angles [rad], plain numbers
     std::vector<std::string> numbers = {};

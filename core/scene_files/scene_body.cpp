@@ -175,12 +175,46 @@ SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node,
     return source;
 }
 
+// A part that is written into the scene: a part file whose dimensions are the variables that it names.
+void SceneBodies::read_own_part(const files::JsonNode& node, scene::ShapeSpec& spec) {
+    const std::vector<std::string_view> keys{"solid", "solids", "profiles", "relations", "variables"};
+    std::vector<std::string_view> known{"facets", "counts"};
+    known.insert(known.end(), keys.begin(), keys.end());
+    node.allow_keys(known);
+    spec.chord = node["facets"].length(unit_, files::positive).value_or(0);
+    std::string text, dimensions;
+    for (const std::string_view key : keys)
+        if (node[key].exists()) text += ", \"" + std::string(key) + "\": " + node[key].text();
+    for (const std::string& name : expression::names_in(text)) {
+        const auto named = formulas_.named(name);
+        if (!named || spec.dimensions.count(name) != 0 || node["variables"][name].exists()) continue;
+        const auto dimension = expression::named_dimension(named->dimension);
+        if (dimension != base::Dimension::length && dimension != base::Dimension::angle && !named->dimension.is_number()) continue;
+        spec.dimensions[name] = named->number.value;
+        if (dimension == base::Dimension::angle) spec.angles.push_back(name);
+        if (named->dimension.is_number()) spec.numbers.push_back(name);
+        const std::string_view kind = named->dimension.is_number()          ? "number"
+                                      : dimension == base::Dimension::angle ? "angle"
+                                                                            : "coordinate";
+        dimensions += (dimensions.empty() ? "\"" : ", \"") + name + "\": {\"value\": 0, \"kind\": \"" + std::string(kind) + "\"}";
+        formulas_.bind(node.pointer() + "/dimensions/" + name, named->number);
+    }
+    std::string unit = "m";
+    for (const char* each : {"um", "mm", "cm", "in", "ft"})
+        if (base::metres_per_unit(each).value() == unit_) unit = each;
+    spec.part = "{\"fettle_part\": 1, \"units\": \"" + unit + "\", \"dimensions\": {" + dimensions + "}" + text + "}";
+}
+
 void SceneBodies::read_dimensions(const files::JsonNode& node, scene::ShapeSpec& spec) {
     std::map<std::string, base::Dimension> quantities;
     if (!spec.part.empty() && options_.part_dimensions) {
         const auto found = options_.part_dimensions(spec);
         if (!found) return report(found.errors(), node["part"]);
         quantities = *found;
+        for (const auto& [name, quantity] : quantities) {
+            if (quantity == base::Dimension::angle) spec.angles.push_back(name);
+            if (quantity == base::Dimension::number) spec.numbers.push_back(name);
+        }
     }
     for (const auto& [name, value] : node["dimensions"].members()) {
         if (name.starts_with('#')) continue;
@@ -189,10 +223,8 @@ void SceneBodies::read_dimensions(const files::JsonNode& node, scene::ShapeSpec&
             spec.dimensions[name] = value.length(unit_).value_or(0);
         } else if (quantity->second == base::Dimension::angle) {
             spec.dimensions[name] = value.quantity(base::Dimension::angle, to_si(1, *base::find_unit("deg"))).value_or(0);
-            spec.angles.push_back(name);
         } else {
             spec.dimensions[name] = value.number().value_or(0);
-            spec.numbers.push_back(name);
         }
     }
 }
@@ -208,18 +240,25 @@ void SceneBodies::make_shape(const files::JsonNode& node, scene::Body& body) {
         spec.part = node["part"].string().value_or("");
         if (spec.part.ends_with(".part.json")) {
             const auto file = mesh_files::find_mesh_file(spec.part, document_.path(), options_.mesh_dirs, node["part"].where());
-            if (!file) return report(file.errors(), node["part"]);
+            if (!file) {
+                base::Errors errors = file.errors();  // of a search that knows meshes
+                for (base::Error& error : errors)
+                    if (error.message.starts_with("mesh file")) error.message.replace(0, 4, "part");
+                return report(errors, node["part"]);
+            }
             spec.part = *file;
         }
         spec.chord = node["facets"].length(unit_, files::positive).value_or(0);
+    } else if (node["solid"].exists()) {
+        read_own_part(node, spec);
     } else {
-        node.allow_keys({"generator", "part", "program", "dimensions", "counts"});
+        node.allow_keys({"generator", "part", "program", "solid", "dimensions", "counts"});
         spec.generator = node.require("generator").string().value_or("");
     }
     const std::size_t faults = document_.errors().size();
     for (const auto& [name, value] : node["counts"].members())
         if (!name.starts_with('#')) spec.counts[name] = value.integer(0).value_or(0);
-    read_dimensions(node, spec);
+    if (!node["solid"].exists()) read_dimensions(node, spec);
     body.shape = spec;
     if (document_.errors().size() > faults) return;  // of numbers that nobody gave more faults would be told
     if (spec.generator.empty() && spec.part.empty() && (!spec.program || spec.program->command.empty())) return;
@@ -353,7 +392,9 @@ std::vector<scene::Body> SceneBodies::components(const files::JsonNode& node, sc
 void SceneBodies::report(const base::Errors& errors, const files::JsonNode& node) {
     for (const auto& error : errors) {
         const bool placed = error.where.empty() || error.where == node.where();
-        node.fail(error.code, (placed ? "" : error.where + ": ") + error.message);
+        constexpr std::string_view written_here = "shape#";  // of a part's text: its pointer goes on from the node's
+        const std::string where = error.where.starts_with(written_here) ? error.where.substr(written_here.size()) : error.where;
+        node.fail(error.code, (placed ? "" : where + ": ") + error.message);
     }
 }
 

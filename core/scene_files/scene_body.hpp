@@ -44,6 +44,7 @@ private:
     void settle_mesh(const files::JsonNode& node, const MeshSource& source, scene::Body& body);
     MeshSource read_mesh_file(const files::JsonNode& node, scene::Body& body);
     void make_shape(const files::JsonNode& node, scene::Body& body);
+    void read_own_part(const files::JsonNode& node, scene::ShapeSpec& spec);
     void read_dimensions(const files::JsonNode& node, scene::ShapeSpec& spec);
     void read_inline(const files::JsonNode& node, scene::Body& body);
     void read_mass(const files::JsonNode& node, scene::Body& body);

@@ -129,6 +129,12 @@ Number3 SceneFormulas::vector(const JsonNode& node, const Vector3& value) const 
     return out;
 }
 
+std::optional<SceneFormulas::Named> SceneFormulas::named(const std::string& name) const {
+    const expression::Scope::Name* found = scope_.find(name);
+    if (found == nullptr) return std::nullopt;
+    return Named{value_of(found->meaning.value_or(expression::input_formula(name, found->dimension))), found->dimension};
+}
+
 void SceneFormulas::bind(const std::string& pointer, const Number& number) {
     if (!number.is_constant()) bound_.insert_or_assign(pointer, number);
 }

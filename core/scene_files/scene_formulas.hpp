@@ -9,6 +9,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -42,8 +43,15 @@ public:
     expression::Number number(const files::JsonNode& node, double value) const;
     Number3 vector(const files::JsonNode& node, const Vector3& value) const;
 
-    /// Takes a number that the reader has computed: `pointer` says where it is (place.hpp). The nodes that it was computed from are named
-    /// by `use`, and serve nothing else then. Does nothing if no formula is in it.
+    /// What a name of the file's formulas stands for at present, if there is one: its number, what quantity it is.
+    struct Named {
+        expression::Number number;
+        expression::DimensionPowers dimension;
+    };
+    std::optional<Named> named(const std::string& name) const;
+
+    /// A number that the reader has computed: `pointer` says where it is (place.hpp), as what is computed from nodes that `use` names,
+    /// which stand for nothing else then. Does nothing if no formula is in it.
     void bind(const std::string& pointer, const expression::Number& number);
     void use(const files::JsonNode& node);
 

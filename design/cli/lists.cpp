@@ -16,6 +16,8 @@
 #include "fettle/design/exports/svg_writer.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
+#include "fettle/design/shapes/file_part.hpp"
+#include "fettle/design/shapes/part_library.hpp"
 #include "fettle/design/shapes/shape_generator.hpp"
 
 namespace fettle::design::cli {
@@ -54,7 +56,7 @@ int answer(const std::string& what, const std::vector<Entry>& entries, const std
 std::string millimetres(double metres) { return formatted("%.6g", metres * 1e3); }
 
 Entry shape_entry(const shapes::GeneratorInfo& info) {
-    Entry entry{info.name, info.description, "", {{"name", info.name}, {"description", info.description}}};
+    Entry entry{info.name, info.description, "", {{"name", info.name}, {"from", "generator"}, {"description", info.description}}};
     entry.facts["dimensions"] = Json::array();
     for (const shapes::DimensionInfo& d : info.dimensions) {
         const bool coordinate = d.kind == shapes::DimensionKind::coordinate;
@@ -73,14 +75,53 @@ Entry shape_entry(const shapes::GeneratorInfo& info) {
     return entry;
 }
 
+Entry part_entry(const core::part_files::PartFile& part) {
+    using core::part_files::PartDimensionKind;
+    Entry entry{part.name(), "part: " + part.about(), "", {{"name", part.name()}, {"from", "part"}, {"description", part.about()}}};
+    entry.facts["dimensions"] = Json::array();
+    for (const core::part_files::PartDimension& d : part.dimensions()) {
+        const std::string kind = core::part_files::name_of(d.kind);
+        entry.facts["dimensions"].push_back({{"name", d.name}, {"default", d.value}, {"kind", kind}, {"meaning", d.about}});
+        const auto quantity = core::expression::powers_of(core::part_files::dimension_of(d.kind));
+        entry.details += formatted("  %-26s %12s  %s%s\n", d.name.c_str(), core::part_files::shown(d.value, quantity).c_str(),
+                                   d.about.c_str(), d.kind == PartDimensionKind::coordinate ? " (any sign)" : "");
+    }
+    entry.facts["counts"] = Json::array();
+    for (const core::part_files::PartCount& c : part.counts()) {
+        entry.facts["counts"].push_back(
+            {{"name", c.name}, {"default", c.value}, {"least", c.least}, {"most", c.most}, {"meaning", c.about}});
+        entry.details += formatted("  %-26s %12d  %s (%d to %d)\n", c.name.c_str(), c.value, c.about.c_str(), c.least, c.most);
+    }
+    entry.facts["relations"] = Json::array();
+    for (const core::part_files::PartRelation& relation : part.relations()) {
+        entry.facts["relations"].push_back({{"check", relation.check}, {"or", relation.otherwise}});
+        entry.details += "  " + relation.check + (relation.otherwise.empty() ? "" : ", or " + relation.otherwise) + "\n";
+    }
+    return entry;
+}
+
+Result<core::geometry::Mesh> mesh_of(const std::string& name) {
+    const auto& library = shapes::part_library();
+    const bool is_part = name.ends_with(core::part_files::part_file_ending) ||
+                         std::any_of(library.begin(), library.end(), [&](const auto& part) { return part.name == name; });
+    if (!is_part) {
+        auto shape = shapes::generate(name, {});
+        return shape ? Result<core::geometry::Mesh>(std::move(shape->mesh)) : Result<core::geometry::Mesh>(shape.errors());
+    }
+    const auto part = shapes::find_part(name);
+    if (!part) return part.errors();
+    const auto shape = shapes::FilePart::create(*part, {});
+    return shape ? description::drawn_mesh(**shape) : Result<core::geometry::Mesh>(shape.errors());
+}
+
 /// At its defaults, seen obliquely.
 Errors draw_shape(const std::string& name, const std::string& file) {
-    const auto shape = shapes::generate(name, {});
-    if (!shape) return shape.errors();
+    const auto mesh = mesh_of(name);
+    if (!mesh) return mesh.errors();
     const bool png = file.ends_with(".png");
     if (!png && !file.ends_with(".svg")) return {{ErrorCode::unsupported, "--draw", "a picture is .png or .svg, found " + file}};
     exports::Assembly assembly;
-    assembly.parts.push_back({name, exports::part_colour(0), shape->mesh, Vector3::Zero(), false});
+    assembly.parts.push_back({name, exports::part_colour(0), *mesh, Vector3::Zero(), false});
     assembly.keyframes.push_back({0, true, {core::kinematics::Pose{}}});
     exports::PictureOptions options;
     options.view = exports::projection_view("iso", Vector3::UnitZ(), "").value();
@@ -98,6 +139,14 @@ struct ShapesArguments {
 int run_shapes(const ShapesArguments& options, Console& console) {
     std::vector<Entry> entries;
     for (const shapes::GeneratorInfo& info : shapes::generator_table()) entries.push_back(shape_entry(info));
+    for (const shapes::LibraryPart& each : shapes::part_library())
+        entries.push_back(part_entry(shapes::find_part(std::string(each.name)).value()));
+    if (options.name.ends_with(core::part_files::part_file_ending)) {
+        const auto part = shapes::find_part(options.name);
+        if (!part) return console.input_errors(part.errors());
+        entries = {part_entry(*part)};
+        entries.front().name = options.name;
+    }
     const bool known = std::any_of(entries.begin(), entries.end(), [&](const Entry& entry) { return entry.name == options.name; });
     if (!options.draw.empty() && options.name.empty())
         return console.input_errors({{ErrorCode::missing_key, "--draw", "which shape? fettle shapes NAME --draw " + options.draw}});
@@ -160,11 +209,11 @@ Command add_list(CommandLine& program, const std::string& command, const std::st
 }  // namespace
 
 Command add_shapes(CommandLine& program) {
-    CommandLine app = program.command("shapes", "Lists generators of parts: dimensions, defaults, relations, a drawing");
+    CommandLine app = program.command("shapes", "Parts of the library and generators: dimensions, defaults, relations, a drawing");
     auto options = std::make_shared<ShapesArguments>();
-    app.option("NAME", options->name, "One of them, with all its dimensions (default: all)");
+    app.option("NAME", options->name, "One of them, or a file of your own (NAME.part.json), with all its dimensions (default: all)");
     app.option("--draw", options->draw, "Draw it at its defaults: .png or .svg");
-    app.closing_words("Example:  fettle shapes crank --draw crank.svg");
+    app.closing_words("Example:  fettle shapes geneva_wheel --draw wheel.svg");
     return {app, [options](Console& console) { return run_shapes(*options, console); }};
 }
 

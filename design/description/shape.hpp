@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// A part whose vertices are a function of named dimensions: what a parameter of kind `dimension` moves. The generators of ../shapes
-/// implement it (shapes/generated_part.hpp). Add one: derive from Shape, and hand it to the design (design.hpp).
+/// A part whose vertices are a function of named dimensions: what a parameter of kind `dimension` moves. The generators and the parts of
+/// files of ../shapes implement it (shapes/generated_part.hpp, file_part.hpp). Add one: derive from Shape, and hand it to the design
+/// (design.hpp).
 #pragma once
 
 #include <string>
@@ -14,7 +15,7 @@ namespace fettle::design::description {
 
 struct ShapeDimension {
     std::string name;
-    double value = 0;  ///< of the part as drawn [m]
+    double value = 0;  ///< of the part as drawn [SI: m, for an angle rad]
 };
 
 /// A part at given dimensions.

@@ -15,6 +15,20 @@ namespace fettle::design::exports {
 ///   circle(centre, radius, colour, width), box(corner, size, colour, width)     width 0: filled
 ///   text(place, words, colour, letters)   `place`: the left end of the baseline
 ///   within(corner, size, draw)            what draw() draws counts from this corner, and is cut off at the box
+///   group(name, draw)                     what draw() draws belongs together, under a name for those who work on the picture
+template <class Canvas>
+void put_marks(const Picture& picture, Canvas& canvas);
+
+template <class Canvas>
+void put_marker(const Picture& picture, Canvas& canvas) {
+    const Colour& colour = picture.marker_colour;
+    if (picture.hole > 0) canvas.circle(middle_of(*picture.marker), picture.hole, colour, 2);
+    for (const Vector2& end : {picture.marker->from, picture.marker->to}) canvas.circle(end, 5, white, 0);
+    canvas.lines({*picture.marker}, colour, 2.5);
+    for (const Vector2& end : {picture.marker->from, picture.marker->to}) canvas.circle(end, 3.5, colour, 0);
+    if (!picture.marker_text.empty()) canvas.text(text_place(picture), picture.marker_text, colour, marker_letters);
+}
+
 template <class Canvas>
 void put_marks(const Picture& picture, Canvas& canvas) {
     canvas.pixels(picture.surfaces);
@@ -24,14 +38,7 @@ void put_marks(const Picture& picture, Canvas& canvas) {
         canvas.within(picture.inset_place, size, [&] { put_marks(inset, canvas); });
         canvas.box(picture.inset_place, size, picture.marker_colour, 2);
     }
-    if (picture.marker) {
-        const Colour& colour = picture.marker_colour;
-        if (picture.hole > 0) canvas.circle(middle_of(*picture.marker), picture.hole, colour, 2);
-        for (const Vector2& end : {picture.marker->from, picture.marker->to}) canvas.circle(end, 5, white, 0);
-        canvas.lines({*picture.marker}, colour, 2.5);
-        for (const Vector2& end : {picture.marker->from, picture.marker->to}) canvas.circle(end, 3.5, colour, 0);
-        if (!picture.marker_text.empty()) canvas.text(text_place(picture), picture.marker_text, colour, marker_letters);
-    }
+    if (picture.marker) canvas.group("witness", [&] { put_marker(picture, canvas); });
     double y = 28;
     if (!picture.title.empty()) {
         canvas.text({12, y}, picture.title, ink, title_letters);

@@ -203,6 +203,11 @@ public:
         cairo_.restore(pen_.get());
     }
 
+    template <class Draw>
+    void group(const char*, const Draw& draw) {
+        draw();
+    }
+
     void finish() const { check(cairo_.status(pen_.get())); }
 
 private:

@@ -21,7 +21,7 @@ using core::parts::Loop;
 using core::parts::Profile;
 
 // Millimetres, to a nanometre; no "-0".
-std::string number(double metres) {
+std::string in_millimetres(double metres) {
     const double value = std::round(metres * 1e9) / 1e6 + 0.0;
     char text[40];
     const auto [end, code] = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, 6);
@@ -106,11 +106,12 @@ Box box_of(const Profile& profile, double chord) {
     return box;
 }
 
-std::string svg_point(const Vector2& p) { return number(p.x()) + " " + number(-p.y()); }
+std::string svg_point(const Vector2& p) { return in_millimetres(p.x()) + " " + in_millimetres(-p.y()); }
 
 std::string svg_arc(double radius, double sweep, const Vector2& end) {
     const bool is_large = std::abs(sweep) > std::numbers::pi;
-    return "A" + number(radius) + " " + number(radius) + " 0 " + (is_large ? "1 " : "0 ") + (sweep > 0 ? "0 " : "1 ") + svg_point(end);
+    return "A" + in_millimetres(radius) + " " + in_millimetres(radius) + " 0 " + (is_large ? "1 " : "0 ") + (sweep > 0 ? "0 " : "1 ") +
+           svg_point(end);
 }
 
 // One command for each curve; whole circles as two arcs, of which an end is not its start.
@@ -164,9 +165,9 @@ std::string profile_dxf(const Profile& profile, double chord) {
             const Vector2 centre = centre_of_circle(loop);
             pair(text, 0, "CIRCLE");
             pair(text, 8, layer);
-            pair(text, 10, number(centre.x()));
-            pair(text, 20, number(centre.y()));
-            pair(text, 40, number(knots[0].radius));
+            pair(text, 10, in_millimetres(centre.x()));
+            pair(text, 20, in_millimetres(centre.y()));
+            pair(text, 40, in_millimetres(knots[0].radius));
             continue;
         }
         pair(text, 0, "POLYLINE");
@@ -176,8 +177,8 @@ std::string profile_dxf(const Profile& profile, double chord) {
         for (const Knot& knot : knots) {
             pair(text, 0, "VERTEX");
             pair(text, 8, layer);
-            pair(text, 10, number(knot.at.x()));
-            pair(text, 20, number(knot.at.y()));
+            pair(text, 10, in_millimetres(knot.at.x()));
+            pair(text, 20, in_millimetres(knot.at.y()));
             if (knot.sweep == 0) continue;
             char bulge[40];
             const auto [end, code] = std::to_chars(bulge, bulge + sizeof bulge, std::tan(knot.sweep / 4), std::chars_format::general, 15);
@@ -196,9 +197,10 @@ std::string profile_svg(const Profile& profile, double chord) {
     std::string path;
     for (const Loop& loop : profile.loops)
         if (!loop.segments.empty()) path += svg_loop(loop, chord);
-    return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + number(size.x()) + "mm\" height=\"" + number(size.y()) +
-           "mm\" viewBox=\"" + number(box.low.x()) + " " + number(-box.high.y()) + " " + number(size.x()) + " " + number(size.y()) +
-           "\">\n<path fill=\"#d0d4da\" fill-rule=\"evenodd\" stroke=\"black\" stroke-width=\"0.1\" d=\"" + path + "\"/>\n</svg>\n";
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + in_millimetres(size.x()) + "mm\" height=\"" + in_millimetres(size.y()) +
+           "mm\" viewBox=\"" + in_millimetres(box.low.x()) + " " + in_millimetres(-box.high.y()) + " " + in_millimetres(size.x()) + " " +
+           in_millimetres(size.y()) + "\">\n<path fill=\"#d0d4da\" fill-rule=\"evenodd\" stroke=\"black\" stroke-width=\"0.1\" d=\"" +
+           path + "\"/>\n</svg>\n";
 }
 
 }  // namespace fettle::design::exports

@@ -64,6 +64,13 @@ public:
         out += "</svg>\n";
     }
 
+    template <class Draw>
+    void group(const char* name, const Draw& draw) {
+        out += std::string("<g class=\"") + name + "\">\n";
+        draw();
+        out += "</g>\n";
+    }
+
     std::string out;
 
 private:

@@ -167,7 +167,7 @@ private:
                 return body.shape == part.spec && part.mesh.vertices == body.mesh.vertices;
             };
             const auto found = std::find_if(parts_->begin(), parts_->end(), is_its_own);
-            if (found == parts_->end()) continue;
+            if (found == parts_->end() || found->shape->dimensions().empty()) continue;
             const description::Shape& shape = *found->shape;
             design_.shapes.back() = found->shape;
             description::describe(shape, body);

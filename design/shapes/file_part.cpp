@@ -58,9 +58,4 @@ Result<core::geometry::Mesh> FilePart::mesh(const std::vector<double>& values) c
     return std::move(drawn->mesh);
 }
 
-std::vector<std::string> FilePart::remarks(const std::vector<double>& values) const {
-    const Result<DrawnPart> drawn = file_.drawn(values, facets_, structure_, {.jacobian = false, .check = false});
-    return drawn ? drawn->changes : std::vector<std::string>();
-}
-
 }  // namespace fettle::design::shapes

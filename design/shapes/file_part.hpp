@@ -26,7 +26,6 @@ public:
     /// Those of the part as drawn are kept while they hold; where a plane face has to be cut into other triangles, it is.
     bool has_fixed_triangles() const override { return false; }
     bool is_always_solid() const override { return true; }  ///< what is drawn is checked
-    std::vector<std::string> remarks(const std::vector<double>& values) const override;
 
 private:
     explicit FilePart(core::part_files::PartFile file) : file_(std::move(file)) {}

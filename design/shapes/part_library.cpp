@@ -15,6 +15,7 @@ const std::vector<LibraryPart>& part_library() {
 }
 
 Result<PartFile> find_part(const std::string& part, const core::part_files::Counts& counts) {
+    if (part.starts_with('{')) return PartFile::parse(part, "shape", counts);
     if (part.ends_with(core::part_files::part_file_ending)) return PartFile::read(part, counts);
     std::vector<std::string_view> known;
     for (const LibraryPart& each : part_library()) {

@@ -18,8 +18,8 @@ struct LibraryPart {
 /// All, by name.
 const std::vector<LibraryPart>& part_library();
 
-/// The library's part of this name, or the file where `part` ends in ".part.json". Errors: neither, with the nearest name; those of
-/// PartFile::read.
+/// The library's part of this name, or the file where `part` ends in ".part.json", or a file's text, which begins with `{`. Errors: none of
+/// them, with the nearest name; those of PartFile::read.
 Result<core::part_files::PartFile> find_part(const std::string& part, const core::part_files::Counts& counts = {});
 
 }  // namespace fettle::design::shapes

@@ -8,6 +8,7 @@
 #include "fettle/design/cli/starters.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
+#include "fettle/design/shapes/part_library.hpp"
 #include "fettle/design/shapes/shape_generator.hpp"
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
@@ -28,7 +29,8 @@ using nlohmann::json;
 TEST_CASE("Lists: what the readers' tables have, entry for entry") {
     const json shapes = run("shapes --json").json()["shapes"];
     const auto table = shapes::generator_table();
-    REQUIRE(shapes.size() == table.size());
+    REQUIRE(shapes.size() == table.size() + shapes::part_library().size());
+    for (std::size_t i = table.size(); i < shapes.size(); ++i) CHECK(shapes[i]["name"] == shapes::part_library()[i - table.size()].name);
     for (std::size_t i = 0; i < table.size(); ++i) {
         CHECK(shapes[i]["name"] == table[i].name);
         REQUIRE(shapes[i]["dimensions"].size() == table[i].dimensions.size());
@@ -52,6 +54,12 @@ TEST_CASE("Lists: a shape is drawn, and its relations are those that refuse it")
     const TemporaryFolder folder;
     CHECK(run("shapes crank --draw " + folder.file("crank.svg")).code == 0);
     CHECK(contents(folder.file("crank.svg")).find("crank, default dimensions") != std::string::npos);
+    CHECK(run("shapes geneva_wheel --draw " + folder.file("wheel.svg")).code == 0);
+    CHECK(run("shapes geneva_wheel").says("or the slots break into the bore"));
+    const std::string own = folder.write("rod.part.json", R"({"fettle_part": 1, "dimensions": {"long": 5},
+        "solid": {"extrude": {"circle": 1}, "to": "= long"}})");
+    CHECK(run("shapes " + own + " --draw " + folder.file("rod.svg")).code == 0);
+    CHECK(run("shapes " + own).says("long"));
     CHECK(run("shapes --draw " + folder.file("x.svg")).code == 3);
     CHECK(run("shapes crank --draw " + folder.file("x.gif")).code == 3);
     for (const auto& info : shapes::generator_table()) {

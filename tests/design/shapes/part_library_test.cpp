@@ -135,7 +135,9 @@ TEST_CASE("part library: every part says what it is, is a solid as it stands, an
         for (const auto& relation : file.relations()) CHECK_FALSE(relation.otherwise.empty());
         CHECK(file.faults(defaults(file)).empty());
         const DrawnPart shape = drawn(file, defaults(file));
-        check_jacobian(file, defaults(file), shape);
+        const bool takes_long =
+            each.name == "spur_gear" || each.name == "ring_gear" || each.name.starts_with("plate_cam");  // laws: in the slow test
+        if (!takes_long) check_jacobian(file, defaults(file), shape);
         for (std::size_t k = 0; k < shape.jacobian.size(); ++k) {  // every dimension moves something
             INFO(file.dimensions()[k].name);
             const bool needs_count = file.name() == "link" && file.dimensions()[k].name == "middle";
@@ -216,11 +218,11 @@ TEST_CASE("part library: a Geneva wheel lets its pin pass with its clearance") {
             for (const auto& line : figure.lines) least = std::min(least, distance(p, line));
         }
         INFO(slots);
-        CHECK(least == Approx(pin + clearance).margin(wheel.deviation.out + 1e-9));
+        CHECK(least == Approx(pin + clearance).margin(wheel.deviation.in + 1e-9));
     }
 }
 
-TEST_CASE("part library: gears mesh over a pitch, and their play is the backlash of both") {
+TEST_CASE("part library: gears mesh over a pitch, and their play is the backlash of both", "[slow]") {
     struct Pair {
         int teeth_a, teeth_b;
         double shift;
