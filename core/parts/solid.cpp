@@ -108,6 +108,7 @@ Solid together(const std::vector<Solid>& solids) {
         for (const Facet& facet : solid.facets) out.facets.push_back({facet.surface + first_surface, facet.side});
         out.surfaces.insert(out.surfaces.end(), solid.surfaces.begin(), solid.surfaces.end());
         out.deviation.add(solid.deviation);
+        out.rounding = std::max(out.rounding, solid.rounding);
     }
     return out;
 }

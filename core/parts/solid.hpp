@@ -31,12 +31,18 @@ struct Deviation {
     }
 };
 
+/// Of vertices whose formulas are some tens of operations long, where the largest coordinate is so large [m].
+inline double usual_rounding(double largest) { return 64 * 0x1p-52 * largest; }
+
 struct Solid {
     std::vector<Point3> vertices;
     std::vector<geometry::Triangle> triangles;
     std::vector<Facet> facets;  ///< per triangle
     std::vector<Surface> surfaces;
     Deviation deviation;
+    /// What vertices may be off by beyond the usual rounding (some tens of units in the last place of the largest coordinate) [m]: points
+    /// where solids cut each other at small angles.
+    double rounding = 0;
 };
 
 Solid moved(const Solid& solid, const Point3& by);

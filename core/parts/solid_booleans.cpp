@@ -11,7 +11,6 @@
 #include "fettle/core/geometry/predicates.hpp"
 #include "fettle/core/parts/solid_cut.hpp"
 #include "fettle/core/solids/point_in_solid.hpp"
-#include "fettle/core/solids/self_intersection.hpp"
 
 namespace fettle::core::parts {
 namespace {
@@ -223,6 +222,19 @@ double drawn_out(const SolidCut& cut, const std::vector<Point3>& vertices) {
     return factor;
 }
 
+// Sine of the least angle at which an edge goes through a face: an error of the corners is so much larger where they meet.
+double least_steepness(const SolidCut& cut, const Mesh& a, const Mesh& b) {
+    double least = 1;
+    for (const VertexOrigin& origin : cut.vertices) {
+        if (origin.kind == Kind::vertex_of_a || origin.kind == Kind::vertex_of_b || origin.side >= 0) continue;
+        const bool of_a = origin.kind == Kind::edge_of_a;
+        const Mesh &mesh = of_a ? a : b, &other = of_a ? b : a;
+        const Vector3 way = mesh.vertices.col(origin.to) - mesh.vertices.col(origin.from);
+        least = std::min(least, std::abs(normal_of(corners_of(other, origin.triangle)).normalized().dot(way.normalized())));
+    }
+    return least;
+}
+
 Deviation combined_deviation(const Deviation& a, const Deviation& b, Combination combination, double factor) {
     Deviation out;
     if (combination == Combination::unite) {
@@ -304,6 +316,9 @@ Result<Solid> combined(Drawing& drawing, const Solid& a, const Solid& b, Combina
         }
         out.facets.push_back(facet);
     }
+    const double largest = std::max(mesh_a.vertices.cwiseAbs().maxCoeff(), mesh_b.vertices.cwiseAbs().maxCoeff());
+    const double steepness = least_steepness(*cut, mesh_a, mesh_b), of_corners = std::max(a.rounding, b.rounding);
+    out.rounding = steepness < 1 ? (usual_rounding(largest) + of_corners) / std::max(steepness, 1e-300) : of_corners;
     out.deviation = combined_deviation(a.deviation, b.deviation, combination, drawn_out(*cut, out.vertices));
     return out;
 }
