@@ -88,7 +88,7 @@ TEST_CASE("a cross bore through a shaft with a flat: derivatives through edges i
     };
     const DrawnPart drawn_part = checked(part, {4e-3, 20e-3, 2.5e-3, 1.2e-3, 0.37});
     // Covering shaft, tools within: nothing of the true part is outside.
-    CHECK(drawn_part.deviation.out < 1e-13);
+    CHECK(drawn_part.deviation.out < 1e-11);  // rounding where edges go through faces at small angles
     CHECK(drawn_part.deviation.out_is_proven);
     CHECK(drawn_part.deviation.in > 0);
     CHECK_FALSE(drawn_part.deviation.in_is_proven);
