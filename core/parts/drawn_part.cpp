@@ -93,7 +93,7 @@ Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::s
     part.facets = solid.facets;
     part.deviation = solid.deviation;
     // Vertices are rounded, and the formulas that lead to them are some tens of operations long.
-    const double rounding = 64 * 0x1p-52 * part.mesh.vertices.cwiseAbs().maxCoeff();
+    const double rounding = usual_rounding(part.mesh.vertices.cwiseAbs().maxCoeff()) + solid.rounding;
     part.deviation.out += rounding;
     part.deviation.in += rounding;
     part.structure = drawing.structure();

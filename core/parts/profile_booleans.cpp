@@ -70,7 +70,10 @@ std::vector<ArrangedCurve> curves_beside(const Profile& profile, const Number& d
             const Point2 start = foot(before, 1, whole[k]), end = foot(after, 0, whole[next]);
             if ((value(start) - value(end)).norm() <= 4 * tolerance) continue;
             const Vector2 in = at(before, 1).velocity, away = at(after, 0).velocity;
-            const bool turns_left = in.x() * away.y() - in.y() * away.x() > 0;
+            const double turn = in.x() * away.y() - in.y() * away.x();
+            // A cusp turns by half, either way: what its arc has too much of is cut off later.
+            const bool is_cusp = in.dot(away) < 0 && std::abs(turn) <= 1e-6 * in.norm() * away.norm();
+            const bool turns_left = is_cusp ? distance.value < 0 : turn > 0;
             if (turns_left == (distance.value > 0)) continue;  // they overlap there
             out.push_back({{Arc{start, end, corner, abs(distance), turns_left}, loop.segments[k].feature, loop.segments[k].facets}, 0});
         }

@@ -107,9 +107,8 @@ Solid together(const std::vector<Solid>& solids) {
         for (const auto& t : solid.triangles) out.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
         for (const Facet& facet : solid.facets) out.facets.push_back({facet.surface + first_surface, facet.side});
         out.surfaces.insert(out.surfaces.end(), solid.surfaces.begin(), solid.surfaces.end());
-        out.deviation.out = std::max(out.deviation.out, solid.deviation.out);
-        out.deviation.in = std::max(out.deviation.in, solid.deviation.in);
-        out.deviation.proven = out.deviation.proven && solid.deviation.proven;
+        out.deviation.add(solid.deviation);
+        out.rounding = std::max(out.rounding, solid.rounding);
     }
     return out;
 }

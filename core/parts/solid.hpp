@@ -3,6 +3,7 @@
 /// true surfaces that its facets stand for. Made by extrude.hpp, revolve.hpp, helix.hpp; cut and united by solid_booleans.hpp.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -19,8 +20,19 @@ namespace fettle::core::parts {
 /// So   distance of meshes - out_a - out_b <= distance of the parts <= distance of meshes + in_a + in_b.
 struct Deviation {
     double out = 0, in = 0;
-    bool proven = true;  ///< false: found from samples (curves of a law without bound), or beside sharp edges of Booleans to first order
+    /// False: found from samples (curves of a law without bound), or of what solids cut each other by (solid_booleans.hpp) to first order.
+    bool out_is_proven = true, in_is_proven = true;
+
+    void add(const Deviation& other) {
+        out = std::max(out, other.out);
+        in = std::max(in, other.in);
+        out_is_proven = out_is_proven && other.out_is_proven;
+        in_is_proven = in_is_proven && other.in_is_proven;
+    }
 };
+
+/// Of vertices whose formulas are some tens of operations long, where the largest coordinate is so large [m].
+inline double usual_rounding(double largest) { return 64 * 0x1p-52 * largest; }
 
 struct Solid {
     std::vector<Point3> vertices;
@@ -28,6 +40,9 @@ struct Solid {
     std::vector<Facet> facets;  ///< per triangle
     std::vector<Surface> surfaces;
     Deviation deviation;
+    /// What vertices may be off by beyond the usual rounding (some tens of units in the last place of the largest coordinate) [m]: points
+    /// where solids cut each other at small angles.
+    double rounding = 0;
 };
 
 Solid moved(const Solid& solid, const Point3& by);

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
-/// Union, difference and intersection of solids. This build has none (has_solid_booleans()): solids whose boxes are apart can be united,
-/// and all else is an error that says so. What they are to be: which faces cut which found with exact arithmetic (CGAL's corefinement),
-/// each new vertex recorded as the intersection of an edge with a face, or of three faces, of the operands, so that the derivative is
-/// exact.
+/// Union, difference and intersection of solids. Which faces cut which is found with exact arithmetic on the present values (CGAL's
+/// corefinement); each new vertex is then where an edge of one operand goes through a face of the other, as a recorded formula, and so its
+/// derivative is exact: an edge that an earlier cut made stays the intersection of its two faces. The combinatorics are a decision of the
+/// drawing (drawing.hpp): kept while the same sides go through the same triangles and none is turned over, and a change is told.
 ///
-/// For `Lean::cover` draw what is cut away with Lean::within: then the difference covers the true one.
+/// Needs CGAL when fettle is configured (FETTLE_CGAL); without it solids that do not meet can be combined, and all else is an error that
+/// says so. CGAL's corefinement is under the GPL.
+///
+/// Deviations: a union has the larger ones of its operands. For `Lean::cover` draw what is cut away with Lean::within: then the difference
+/// covers the true one, and its deviation outwards is 0, proven. What is not 0 is drawn out where faces meet at an angle phi, by
+/// 1 / sin(phi / 2): to first order, for faces are curved, so that it is not told as proven.
 #pragma once
 
 #include <vector>
@@ -13,10 +18,11 @@
 
 namespace fettle::core::parts {
 
-/// Whether this build has them.
+/// Whether this build can cut solids.
 bool has_solid_booleans();
 
-/// Errors: unsupported.
+/// Errors: unsupported (no CGAL); an empty result; a surface that touches itself along an edge: move one of the two by a little, or stack
+/// layers (extrude.hpp).
 Result<Solid> united(Drawing& drawing, const Solid& a, const Solid& b);
 Result<Solid> united(Drawing& drawing, const std::vector<Solid>& solids);
 Result<Solid> difference(Drawing& drawing, const Solid& a, const Solid& b);

@@ -53,11 +53,7 @@ public:
     }
 
     /// A bound of curves against their polygons: the whole part's is the largest.
-    void add_deviation(double out, double in, bool proven = true) {
-        solid_.deviation.out = std::max(solid_.deviation.out, out);
-        solid_.deviation.in = std::max(solid_.deviation.in, in);
-        solid_.deviation.proven = solid_.deviation.proven && proven;
-    }
+    void add_deviation(double out, double in, bool proven = true) { solid_.deviation.add({out, in, proven, proven}); }
 
     const Point3& vertex(int k) const { return solid_.vertices[static_cast<std::size_t>(k)]; }
     Solid take() { return std::move(solid_); }

@@ -32,7 +32,7 @@ TEST_CASE("a washer has the volume of its polygons, which cover the part by defa
     CHECK(volume(part) == Approx(pi * share * (rim * rim / (flat * flat) - bore * bore) * height).epsilon(1e-12));
     CHECK(part.deviation.out < 1e-15);
     CHECK(part.deviation.in == Approx(std::max(rim * (1 / flat - 1), bore * (1 - flat))));
-    CHECK(part.deviation.proven);
+    CHECK((part.deviation.out_is_proven && part.deviation.in_is_proven));
     // Faces: rim and bore stand for cylinders.
     int cylinders = 0;
     for (const DrawnSurface& surface : part.surfaces) {

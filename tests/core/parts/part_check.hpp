@@ -9,6 +9,7 @@
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/parts/drawn_part.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
+#include "fettle/tests/support/solid_oracle.hpp"
 
 namespace fettle::core::parts::part_check {
 
@@ -36,6 +37,7 @@ inline DrawnPart checked(const PartFunction& part, const std::vector<double>& di
     const auto drawn_part = draw(part, dimensions, facets);
     INFO(told(drawn_part.errors()));
     REQUIRE(drawn_part);
+    CHECK(tests::support::fault_of_solid(drawn_part->mesh) == "");
     const auto n = static_cast<Eigen::Index>(dimensions.size());
     const Eigen::Index rows = drawn_part->mesh.vertices.size();
     MatrixX jacobian(rows, n);
