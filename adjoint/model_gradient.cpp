@@ -46,7 +46,7 @@ void add(MechanismGradient& sum, const MechanismGradient& part) {
 
 TrajectoryGradient zero_trajectory_gradient(int steps, int bodies) {
     TrajectoryGradient g;
-    g.pose_bar.assign(static_cast<std::size_t>(steps) + 1, std::vector<Matrix34>(static_cast<std::size_t>(bodies), Matrix34::Zero()));
+    g.pose_bar.assign(static_cast<std::size_t>(steps) + 1, std::vector<Matrix34>(bodies, Matrix34::Zero()));
     return g;
 }
 
@@ -56,7 +56,7 @@ ModelGradient zero_model_gradient(const core::model::Model& model, int steps) {
     g.bodies.resize(model.bodies.size());
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         g.bodies[i].vertices_bar = Matrix3X::Zero(3, model.bodies[i].mesh.vertices.cols());
-        g.bodies[i].increment_bar.assign(static_cast<std::size_t>(steps), Vector6::Zero());
+        g.bodies[i].increment_bar.assign(steps, Vector6::Zero());
     }
     return g;
 }
@@ -81,7 +81,7 @@ void add(ModelGradient& sum, const ModelGradient& part) {
 }
 
 Seeds zero_seeds(const core::model::Model& model, int steps) {
-    return {zero_trajectory_gradient(steps, static_cast<int>(model.bodies.size())), zero_model_gradient(model, steps)};
+    return {zero_trajectory_gradient(steps, count_of(model.bodies)), zero_model_gradient(model, steps)};
 }
 
 ModelTangent zero_model_tangent(const core::model::Model& model, int steps) {
@@ -90,7 +90,7 @@ ModelTangent zero_model_tangent(const core::model::Model& model, int steps) {
     d.bodies.resize(model.bodies.size());
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         d.bodies[i].vertices_dot = Matrix3X::Zero(3, model.bodies[i].mesh.vertices.cols());
-        d.bodies[i].increment_dot.assign(static_cast<std::size_t>(steps), Vector6::Zero());
+        d.bodies[i].increment_dot.assign(steps, Vector6::Zero());
     }
     return d;
 }

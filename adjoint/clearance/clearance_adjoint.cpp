@@ -131,8 +131,7 @@ std::array<std::array<NodeShare, 2>, 2> shares_at(const core::model::Model& mode
     std::array<std::array<NodeShare, 2>, 2> out;
     for (int i = 0; i < 2; ++i) {
         const auto node = node_shares(model, trajectory, w.step, w.segment + i, a, b);
-        for (std::size_t body = 0; body < 2; ++body)
-            out[body][static_cast<std::size_t>(i)] = node ? (*node)[body] : NodeShare(NodeShare::Zero());
+        for (std::size_t body = 0; body < 2; ++body) out[body][i] = node ? (*node)[body] : NodeShare(NodeShare::Zero());
     }
     return out;
 }

@@ -52,7 +52,7 @@ std::vector<Witness> distinct_witnesses(const core::model::Model& model, const c
         gap.push_back(difference(start, places.back()));
     }
     std::vector<Witness> chosen;
-    while (static_cast<int>(chosen.size()) < most && count > 0) {
+    while (count_of(chosen) < most && count > 0) {
         const auto farthest = static_cast<std::size_t>(std::max_element(gap.begin(), gap.end()) - gap.begin());
         if (!(gap[farthest] >= least_difference)) break;
         std::size_t pick = farthest;

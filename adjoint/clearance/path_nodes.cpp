@@ -22,7 +22,7 @@ bool follows_curves(const Body& body) {
 }
 
 Vector6 coordinates(const TrajectoryStep& step, std::size_t k, int body) {
-    const core::kinematics::ChartPoint& point = step.nodes[k][static_cast<std::size_t>(body)];
+    const core::kinematics::ChartPoint& point = step.nodes[k][body];
     Vector6 out;
     out << point.position, point.rotation_vector;
     return out;
@@ -32,7 +32,7 @@ Vector6 coordinates(const TrajectoryStep& step, std::size_t k, int body) {
 NodeShare running_share(const Body& body, double begin, double end, double fraction) {
     NodeShare out = NodeShare::Zero();
     for (int dof = 0; dof < 6; ++dof) {
-        const core::scene::MotionCurve& curve = *body.prescribed[static_cast<std::size_t>(dof)];
+        const core::scene::MotionCurve& curve = *body.prescribed[dof];
         const double stop = curve.stop_time.value_or(end);
         const double whole = std::min(end, stop) - std::min(begin, stop);
         if (whole > 0) out[dof] = (std::min(begin + fraction * (end - begin), stop) - std::min(begin, stop)) / whole;
@@ -75,12 +75,11 @@ struct Change {
 };
 
 std::vector<Change> changes(const Model& model, const Trajectory& trajectory, int t) {
-    const TrajectoryStep& step = trajectory.steps[static_cast<std::size_t>(t)];
+    const TrajectoryStep& step = trajectory.steps[t];
     const std::size_t last = step.nodes.size() - 1;
     std::vector<Change> out{{0, 0}};
     if (!step.fractions.empty()) {
-        for (const auto& node :
-             core::stepper::prescribed_path(model, trajectory.poses[static_cast<std::size_t>(t)], time_at(trajectory, t))) {
+        for (const auto& node : core::stepper::prescribed_path(model, trajectory.poses[t], time_at(trajectory, t))) {
             const auto found = std::find(step.fractions.begin() + 1, step.fractions.end() - 1, node.fraction);
             if (found != step.fractions.end() - 1) out.push_back({node.fraction, static_cast<std::size_t>(found - step.fractions.begin())});
         }
@@ -92,14 +91,13 @@ std::vector<Change> changes(const Model& model, const Trajectory& trajectory, in
 }  // namespace
 
 std::optional<std::array<NodeShare, 2>> node_shares(const Model& model, const Trajectory& trajectory, int t, int k, int a, int b) {
-    const TrajectoryStep& step = trajectory.steps[static_cast<std::size_t>(t)];
+    const TrajectoryStep& step = trajectory.steps[t];
     const auto node = static_cast<std::size_t>(k);
     if (node == 0) return std::array<NodeShare, 2>{NodeShare::Zero(), NodeShare::Zero()};
     if (node + 1 == step.nodes.size()) return std::array<NodeShare, 2>{NodeShare::Ones(), NodeShare::Ones()};
     const std::vector<Change> known = changes(model, trajectory, t);
     const bool is_cut = known.size() > 2;
-    if (is_cut && !(follows_curves(model.bodies[static_cast<std::size_t>(a)]) && follows_curves(model.bodies[static_cast<std::size_t>(b)])))
-        return std::nullopt;
+    if (is_cut && !(follows_curves(model.bodies[a]) && follows_curves(model.bodies[b]))) return std::nullopt;
     const auto after = std::find_if(known.begin(), known.end(), [&](const Change& change) { return change.node >= node; });
     const Change& before = *(after - 1);
     const Stretch stretch{before.node, after->node, node};
@@ -108,7 +106,7 @@ std::optional<std::array<NodeShare, 2>> node_shares(const Model& model, const Tr
     std::array<NodeShare, 2> out;
     const double begin = time_at(trajectory, t), end = time_at(trajectory, t + 1);
     for (std::size_t i = 0; i < 2; ++i) {
-        const Body& body = model.bodies[static_cast<std::size_t>(i == 0 ? a : b)];
+        const Body& body = model.bodies[i == 0 ? a : b];
         const NodeShare from = is_cut ? running_share(body, begin, end, before.fraction) : NodeShare(NodeShare::Zero());
         const NodeShare to = is_cut ? running_share(body, begin, end, after->fraction) : NodeShare(NodeShare::Ones());
         out[i] = from + *share * (to - from);
@@ -122,8 +120,7 @@ std::string no_derivative_at(const Model& model, const Trajectory& trajectory, i
         if (witness.s == 1 - i) continue;  // the other node alone
         if (node_shares(model, trajectory, witness.step, witness.segment + i, a, b)) continue;
         const auto& bodies = model.bodies;
-        return "step " + std::to_string(witness.step + 1) + ": '" + bodies[static_cast<std::size_t>(a)].name + "' and '" +
-               bodies[static_cast<std::size_t>(b)].name +
+        return "step " + std::to_string(witness.step + 1) + ": '" + bodies[a].name + "' and '" + bodies[b].name +
                "' are nearest beside a node inside the step, which the solver's way to the step's end left there: where that is has no "
                "derivative; shorter steps, or ones that end where tables change, have fewer such nodes";
     }

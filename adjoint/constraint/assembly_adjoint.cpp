@@ -96,7 +96,7 @@ private:
         for (const core::measure::Frame& f : problem_.set.frames)
             rotations.push_back(f.body == core::measure::world ? Matrix3(Matrix3::Identity()) : poses_[f.body].rotation);
         out.frames.resize(problem_.set.frames.size());
-        out.targets_bar = VectorX::Zero(static_cast<Eigen::Index>(problem_.rows.size()));
+        out.targets_bar = VectorX::Zero(problem_.rows.size());
         for (const Row& row : problem_.rows) out.factors_bar.emplace_back(row.parts.size(), 0.0);
         for (std::size_t i = 0; i < rows_.size(); ++i) {
             out.targets_bar[kept_[i]] += mu[i];

@@ -65,7 +65,7 @@ VectorX add_rows_tangent(const RowsAtEnd& at, const std::vector<Matrix34>& poses
                          contact::PoseGradientTangent& out) {
     const Mechanism& mechanism = at.problem.model->mechanism;
     const std::vector<core::measure::PlacedFrame> frames = placed(mechanism.set.frames, at.poses);
-    VectorX change = VectorX::Zero(static_cast<Eigen::Index>(mechanism.rows.size()));
+    VectorX change = VectorX::Zero(mechanism.rows.size());
     for (std::size_t i = 0; i < mechanism.rows.size(); ++i) {
         const Row& row = mechanism.rows[i];
         for (std::size_t k = 0; k < row.parts.size(); ++k) {

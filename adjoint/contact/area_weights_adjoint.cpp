@@ -24,7 +24,7 @@ std::array<Vector3, 3> area_gradient(const Matrix3X& vertices, const Triangle& t
 }  // namespace
 
 AreaChange zero_areas(const core::model::Body& body) {
-    return {VectorX::Zero(body.mesh.vertices.cols()), VectorX::Zero(static_cast<Eigen::Index>(body.mesh.edges.size()))};
+    return {VectorX::Zero(body.mesh.vertices.cols()), VectorX::Zero(body.mesh.edges.size())};
 }
 
 void areas_adjoint(const core::geometry::Mesh& mesh, const AreaChange& areas_bar, Matrix3X& vertices_bar) {
@@ -43,7 +43,7 @@ void areas_adjoint(const core::geometry::Mesh& mesh, const AreaChange& areas_bar
 
 AreaChange areas_tangent(const core::geometry::Mesh& mesh, const Matrix3X& vertices_dot) {
     const core::geometry::EdgeIndex edges(mesh.edges);
-    AreaChange out{VectorX::Zero(mesh.vertices.cols()), VectorX::Zero(static_cast<Eigen::Index>(mesh.edges.size()))};
+    AreaChange out{VectorX::Zero(mesh.vertices.cols()), VectorX::Zero(mesh.edges.size())};
     for (const Triangle& t : mesh.triangles) {
         const std::array<Vector3, 3> gradient = area_gradient(mesh.vertices, t);
         double third_dot = 0;
@@ -63,7 +63,7 @@ core::contact::ContactAreas areas_of_contacts(const core::model::Model& model, c
 
 void add_weight_gradient(const std::vector<AreaShare>& shares, double weight_bar, std::vector<AreaChange>& areas_bar) {
     for (const AreaShare& share : shares) {
-        AreaChange& of_body = areas_bar[static_cast<std::size_t>(share.body)];
+        AreaChange& of_body = areas_bar[share.body];
         (share.is_edge ? of_body.edge : of_body.vertex)[share.element] += share.factor * weight_bar;
     }
 }
@@ -71,7 +71,7 @@ void add_weight_gradient(const std::vector<AreaShare>& shares, double weight_bar
 double weight_tangent(const std::vector<AreaShare>& shares, const std::vector<AreaChange>& areas_dot) {
     double sum = 0;
     for (const AreaShare& share : shares) {
-        const AreaChange& of_body = areas_dot[static_cast<std::size_t>(share.body)];
+        const AreaChange& of_body = areas_dot[share.body];
         sum += share.factor * (share.is_edge ? of_body.edge : of_body.vertex)[share.element];
     }
     return sum;

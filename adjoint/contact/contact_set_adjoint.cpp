@@ -17,7 +17,7 @@ using core::contact::ContactPair;
 class SharesInOrder {
 public:
     explicit SharesInOrder(const ContactsAtPose& at) : areas_(at.areas) {
-        FETTLE_ASSERT(areas_ == nullptr || static_cast<int>(areas_->shares.size()) == at.contacts.count, "each contact has its shares");
+        FETTLE_ASSERT(areas_ == nullptr || count_of(areas_->shares) == at.contacts.count, "each contact has its shares");
     }
     const std::vector<AreaShare>* next() { return areas_ == nullptr ? nullptr : &areas_->shares[next_++]; }
 

@@ -28,7 +28,7 @@ void add_tangent_of_friction(const StepEnd& at, const StepTangent& step, const M
 
 bool has_friction(const core::model::Model& model) {
     if (model.friction.rounds == 0 || !(model.friction.mu.maxCoeff() > 0)) return false;
-    const int count = static_cast<int>(model.bodies.size());
+    const int count = count_of(model.bodies);
     for (int a = 0; a < count; ++a)
         for (int b = a + 1; b < count; ++b)
             if (may_collide(model, a, b) && friction_coefficient(model, a, b) > 0) return true;

@@ -26,7 +26,7 @@ void build_friction_adjoint(const core::scene::Scene& scene, const FrictionGradi
     for (const auto& [pair, of_pair] : gradient) {
         const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
         if (const int listed = scene.friction.pair_of(scene.bodies[a].material, scene.bodies[b].material); listed >= 0) {
-            bar.friction.pairs[static_cast<std::size_t>(listed)].mu += of_pair;
+            bar.friction.pairs[listed].mu += of_pair;
             continue;
         }
         const Own of_a = own_coefficient(scene, a, bar), of_b = own_coefficient(scene, b, bar);

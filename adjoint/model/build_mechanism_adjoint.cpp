@@ -65,7 +65,7 @@ private:
             *bar.rest += reference;
             return;
         }
-        value_bar_[static_cast<std::size_t>(term.measure)] += reference;  // the start's, less preload/stiffness
+        value_bar_[term.measure] += reference;  // the start's, less preload/stiffness
         bar.preload -= reference / from.stiffness;
         bar.stiffness += reference * from.preload / (from.stiffness * from.stiffness);
     }
@@ -89,7 +89,7 @@ private:
 
     void reverse_row(std::size_t i) {
         const core::constraint::Row& row = mechanism_.rows[i];
-        const core::model::Joint& joint = mechanism_.joints[static_cast<std::size_t>(row.owner)];
+        const core::model::Joint& joint = mechanism_.joints[row.owner];
         const auto origin = static_cast<std::size_t>(joint.origin.index), first = static_cast<std::size_t>(row.parts[0].measure);
         const double constant = gradient_.row_constant[i];
         if (joint.is_motor) {
@@ -110,14 +110,12 @@ private:
         value_bar_[second] -= constant;
     }
 
-    Matrix3 rotation_of(int body) const {
-        return body == core::measure::world ? Matrix3(Matrix3::Identity()) : written_[static_cast<std::size_t>(body)].rotation;
-    }
+    Matrix3 rotation_of(int body) const { return body == core::measure::world ? Matrix3(Matrix3::Identity()) : written_[body].rotation; }
 
-    int body_of(int frame) const { return mechanism_.set.frames[static_cast<std::size_t>(frame)].body; }
+    int body_of(int frame) const { return mechanism_.set.frames[frame].body; }
 
     void add_pose(int body, const Vector6& bar) {
-        if (body != core::measure::world) start_.pose_bar[static_cast<std::size_t>(body)] += bar;
+        if (body != core::measure::world) start_.pose_bar[body] += bar;
     }
 
     // Of measures' values as written: in frames and poses.
@@ -147,9 +145,8 @@ private:
 
     // Axes of b: into z, and into the axes of a and both poses.
     Vector3 aligned_axes_adjoint(int frame_a, int frame_b) {
-        const core::measure::Frame &a = mechanism_.set.frames[static_cast<std::size_t>(frame_a)],
-                                   &b = mechanism_.set.frames[static_cast<std::size_t>(frame_b)];
-        const Matrix3& bar = frames_bar_[static_cast<std::size_t>(frame_b)].axes;
+        const core::measure::Frame &a = mechanism_.set.frames[frame_a], &b = mechanism_.set.frames[frame_b];
+        const Matrix3& bar = frames_bar_[frame_b].axes;
         const Matrix3 rotation_b = rotation_of(b.body);
         const Vector3 x = b.axes.col(0), z = b.axes.col(2), world = rotation_of(a.body) * a.axes.col(0);
         const Vector3 seen = rotation_b.transpose() * world, across = seen - z * z.dot(seen);
@@ -157,7 +154,7 @@ private:
         if (across.norm() < too_short) return free_axes_adjoint(b.axes, bar);
         const Vector3 x_bar = bar.col(0) + bar.col(1).cross(z), across_bar = normalised_adjoint(x, across.norm(), x_bar);
         const Vector3 seen_bar = rotation_b * (across_bar - z * z.dot(across_bar)), turn = world.cross(seen_bar);
-        frames_bar_[static_cast<std::size_t>(frame_a)].axes.col(0) += rotation_of(a.body).transpose() * seen_bar;
+        frames_bar_[frame_a].axes.col(0) += rotation_of(a.body).transpose() * seen_bar;
         Vector6 of_pose = Vector6::Zero();
         of_pose.tail<3>() = turn;
         add_pose(a.body, of_pose);
@@ -168,9 +165,8 @@ private:
     void reverse_ends(std::size_t k) {
         const int frame_a = static_cast<int>(2 * k), frame_b = frame_a + 1;
         const Vector3 z_bar_b = aligned_axes_adjoint(frame_a, frame_b);
-        const core::measure::Frame& a = mechanism_.set.frames[static_cast<std::size_t>(frame_a)];
-        const FrameGradient &bar_a = frames_bar_[static_cast<std::size_t>(frame_a)],
-                            &bar_b = frames_bar_[static_cast<std::size_t>(frame_b)];
+        const core::measure::Frame& a = mechanism_.set.frames[frame_a];
+        const FrameGradient &bar_a = frames_bar_[frame_a], &bar_b = frames_bar_[frame_b];
         const Vector3 z_bar_a = free_axes_adjoint(a.axes, bar_a.axes);
         const Origin& origin = mechanism_.ends[k];
         const auto i = static_cast<std::size_t>(origin.index);
@@ -187,7 +183,7 @@ private:
         out_a.point += bar_a.point;
         out_b.point += bar_b.point;
         out_a.axis += normalised_adjoint(a.axes.col(2), from_a.axis.norm(), z_bar_a);
-        out_b.axis += normalised_adjoint(mechanism_.set.frames[static_cast<std::size_t>(frame_b)].axes.col(2), from_b.axis.norm(), z_bar_b);
+        out_b.axis += normalised_adjoint(mechanism_.set.frames[frame_b].axes.col(2), from_b.axis.norm(), z_bar_b);
     }
 
     const core::scene::Mechanism& scene_;

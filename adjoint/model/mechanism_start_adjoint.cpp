@@ -47,8 +47,7 @@ std::vector<Pose> start_poses(const Model& model) {
 std::vector<Matrix3> frame_rotations(const Model& model) {
     std::vector<Matrix3> out;
     for (const core::measure::Frame& f : model.mechanism.set.frames)
-        out.push_back(f.body == core::measure::world ? Matrix3(Matrix3::Identity())
-                                                     : model.bodies[static_cast<std::size_t>(f.body)].pose_start.rotation);
+        out.push_back(f.body == core::measure::world ? Matrix3(Matrix3::Identity()) : model.bodies[f.body].pose_start.rotation);
     return out;
 }
 
@@ -92,8 +91,7 @@ public:
 private:
     VectorX rates() const {
         VectorX out(rows_.count());
-        for (int i = 0; i < rows_.count(); ++i)
-            out[i] = core::model::rate_at_start(problem_.rows[static_cast<std::size_t>(i)].curve, model_.timestep);
+        for (int i = 0; i < rows_.count(); ++i) out[i] = core::model::rate_at_start(problem_.rows[i].curve, model_.timestep);
         return out;
     }
 
@@ -125,17 +123,17 @@ private:
         for (std::size_t i = 0; i < problem_.rows.size(); ++i)
             for (std::size_t k = 0; k < problem_.rows[i].parts.size(); ++k) {
                 const RowPart& part = problem_.rows[i].parts[k];
-                const Measure& m = set.measures[static_cast<std::size_t>(part.measure)];
+                const Measure& m = set.measures[part.measure];
                 const core::measure::VectorFunction f = vector_function(m, frames_);
-                const int a = set.frames[static_cast<std::size_t>(m.a)].body, b = set.frames[static_cast<std::size_t>(m.b)].body;
+                const int a = set.frames[m.a].body, b = set.frames[m.b].body;
                 Vector12 v = Vector12::Zero();
-                if (a != core::measure::world) v.head<6>() = motion[static_cast<std::size_t>(a)];
-                if (b != core::measure::world) v.tail<6>() = motion[static_cast<std::size_t>(b)];
-                const double of_row = weights[static_cast<Eigen::Index>(i)], weight = part.factor * of_row;
+                if (a != core::measure::world) v.head<6>() = motion[a];
+                if (b != core::measure::world) v.tail<6>() = motion[b];
+                const double of_row = weights[i], weight = part.factor * of_row;
                 add_placement_gradient_of_change(m, f, weight, {frames_, rotations_}, v, gradient.mechanism.frames);
                 const Vector12 of_poses = weight * pose_gradient_of_change(m, f, frames_, v);
-                if (a != core::measure::world) pose_bar[static_cast<std::size_t>(a)] += of_poses.head<6>();
-                if (b != core::measure::world) pose_bar[static_cast<std::size_t>(b)] += of_poses.tail<6>();
+                if (a != core::measure::world) pose_bar[a] += of_poses.head<6>();
+                if (b != core::measure::world) pose_bar[b] += of_poses.tail<6>();
                 const core::measure::PoseGradients g = pose_gradients(m, f, frames_);
                 gradient.mechanism.row_factors[i][k] +=
                     of_row * (tangent_gradient(g.a).dot(v.head<6>()) + tangent_gradient(g.b).dot(v.tail<6>()));
@@ -146,7 +144,7 @@ private:
     void add_rates(const VectorX& bar, MechanismGradient& out) const {
         for (std::size_t i = 0; i < problem_.rows.size(); ++i) {
             core::scene::Curve curve = problem_.rows[i].curve;
-            const double weight = bar[static_cast<Eigen::Index>(i)];
+            const double weight = bar[i];
             std::fill(curve.values.begin(), curve.values.end(), 0.0);
             curve.rate = 1;
             out.row_rate[i] += weight * core::model::rate_at_start(curve, model_.timestep);
@@ -183,7 +181,7 @@ void reverse_assembly(const Model& model, const AssemblyProblem& problem, Motion
         mechanism.frames[f].axes += found.frames[f].axes;
     }
     for (std::size_t i = 0; i < problem.rows.size(); ++i) {
-        const double bar = found.targets_bar[static_cast<Eigen::Index>(i)];
+        const double bar = found.targets_bar[i];
         const core::scene::Curve& curve = problem.rows[i].curve;
         mechanism.row_constant[i] += bar;
         const std::vector<double> weights = core::scene::curve_weights(curve, 0);

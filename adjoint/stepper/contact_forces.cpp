@@ -31,7 +31,7 @@ contact::LaggedContacts those_of(const contact::LaggedContacts& all, const Conta
         place += list.contacts.size();
         if (!is_of(list, of)) continue;
         out.contacts.pairs.push_back(list);
-        out.contacts.count += static_cast<int>(list.contacts.size());
+        out.contacts.count += count_of(list.contacts);
         for (std::size_t k = begin; !all.areas.shares.empty() && k < place; ++k) out.areas.shares.push_back(all.areas.shares[k]);
     }
     return out;

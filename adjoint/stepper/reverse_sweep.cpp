@@ -37,7 +37,7 @@ public:
           dofs_(solver_.dofs()),
           history_(sweep_history(model, trajectory)) {
         const std::size_t bodies = model.bodies.size();
-        const int steps = static_cast<int>(trajectory.steps.size());
+        const int steps = count_of(trajectory.steps);
         for (const TrajectoryGradient& seed : seeds)
             FETTLE_ASSERT(seed.pose_bar.size() == trajectory.poses.size(), "a seed has one pose gradient per stored configuration");
         out_.assign(seeds.size(), zero_model_gradient(model, steps));
@@ -56,7 +56,7 @@ public:
     }
 
     Errors run() {
-        const int steps = static_cast<int>(trajectory_.steps.size());
+        const int steps = count_of(trajectory_.steps);
         add_seeds(steps, end_);
         if (steps > 0) add_seeds(steps - 1, start_);
         for (int t = steps - 1; t >= 0; --t) {
@@ -87,8 +87,8 @@ private:
     void add_seeds_of(int t, std::vector<std::vector<Matrix34>> TrajectoryGradient::*which, std::vector<std::vector<Matrix34>>& to) const {
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
             const std::vector<std::vector<Matrix34>>& bar = seeds_[s].*which;
-            if (bar.empty() || bar[static_cast<std::size_t>(t)].empty()) continue;
-            for (std::size_t i = 0; i < model_.bodies.size(); ++i) to[s][i] += bar[static_cast<std::size_t>(t)][i];
+            if (bar.empty() || bar[t].empty()) continue;
+            for (std::size_t i = 0; i < model_.bodies.size(); ++i) to[s][i] += bar[t][i];
         }
     }
 
@@ -241,7 +241,7 @@ private:
     bool solve(int t, const LinearisedStep& step, bool is_last) {
         for (std::size_t i = 0; i < model_.bodies.size(); ++i)
             left_jacobian_[i] = core::kinematics::left_jacobian(step.points[i].rotation_vector);
-        MatrixX rhs(dofs_.count, static_cast<Eigen::Index>(seeds_.size()));
+        MatrixX rhs(dofs_.count, seeds_.size());
         MatrixX of_rows = MatrixX::Zero(step.rows.count(), rhs.cols());
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
@@ -249,15 +249,14 @@ private:
                 y_bar_[s][i].tail<3>() =
                     left_jacobian_[i].transpose() * rotation_gradient(end_[s][i].leftCols<3>(), step.poses[i].rotation);
             }
-            rhs.col(static_cast<Eigen::Index>(s)) = gather(dofs_, y_bar_[s]);
-            if (const auto& bar = seeds_[s].multiplier_bar; is_last && !bar.empty() && bar[static_cast<std::size_t>(t)].size() > 0)
-                of_rows.col(static_cast<Eigen::Index>(s)) = bar[static_cast<std::size_t>(t)];
+            rhs.col(s) = gather(dofs_, y_bar_[s]);
+            if (const auto& bar = seeds_[s].multiplier_bar; is_last && !bar.empty() && bar[t].size() > 0) of_rows.col(s) = bar[t];
         }
         const StepSolver::Solution solution = solver_.solve(step, rhs, of_rows);
         const MatrixX &lambda = solution.y, &mu = solution.mu;
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
-            if (step.rows.count() > 0) mu_[s] = mu.col(static_cast<Eigen::Index>(s));
-            scatter(dofs_, lambda.col(static_cast<Eigen::Index>(s)), lambda_[s]);
+            if (step.rows.count() > 0) mu_[s] = mu.col(s);
+            scatter(dofs_, lambda.col(s), lambda_[s]);
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
                 motion_[s][i].head<3>() = lambda_[s][i].head<3>();
                 motion_[s][i].tail<3>() = left_jacobian_[i] * lambda_[s][i].tail<3>();

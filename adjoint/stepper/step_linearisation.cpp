@@ -38,7 +38,7 @@ std::vector<Matrix34> bdf2_velocities_at(const core::model::Model& model, const 
 
 core::energy::History history_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
                                  const SweepHistory& sweep) {
-    const std::vector<double>& angles = sweep.angles[static_cast<std::size_t>(t)];
+    const std::vector<double>& angles = sweep.angles[t];
     if (model.integrator == core::scene::Integrator::newmark)
         return {trajectory.poses[t], sweep.newmark.velocities[t], {}, {}, sweep.newmark.accelerations[t], angles};
     core::energy::History out{trajectory.poses[t], velocities_at(model, trajectory, t), {}, {}, {}, angles};
@@ -248,7 +248,7 @@ void StepRounds::add_end(std::vector<core::kinematics::ChartPoint> points, std::
 
 LinearisedStep StepRounds::linearise(int round, StepSolver& solver) const {
     const core::model::Model& model = *problem_.model;
-    const End& end = ends_[static_cast<std::size_t>(round)];
+    const End& end = ends_[round];
     LinearisedStep step;
     step.problem = problem_;
     step.poses = end.at->poses;

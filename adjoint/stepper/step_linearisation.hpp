@@ -108,7 +108,7 @@ public:
     StepRounds(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t, const SweepHistory& history,
                std::shared_ptr<const contact::LaggedContacts> known = nullptr);
 
-    int count() const { return static_cast<int>(ends_.size()) - 1; }
+    int count() const { return count_of(ends_) - 1; }
 
     /// Quasi-static steps with friction: one round, whose lag is that of its own end (solver/newton.hpp).
     bool is_fixed_point() const { return is_fixed_point_; }

@@ -66,7 +66,7 @@ public:
     }
 
     Errors run() {
-        for (int t = 0; t < static_cast<int>(trajectory_.steps.size()); ++t)
+        for (int t = 0; t < count_of(trajectory_.steps); ++t)
             if (Errors errors = step(t); !errors.empty()) return errors;
         return {};
     }

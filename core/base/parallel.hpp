@@ -56,8 +56,8 @@ void parallel_for(int count, int grain, Body&& body) {
 template <class T, class Map, class Combine>
 T ordered_reduce(int count, int grain, T initial, Map&& map, Combine&& combine) {
     FETTLE_ASSERT(count >= 0 && grain >= 1, "an empty grain");
-    std::vector<std::optional<T>> parts(static_cast<std::size_t>(count / grain + (count % grain != 0)));
-    parallel_pieces(count, grain, [&](int begin, int end) { parts[static_cast<std::size_t>(begin / grain)].emplace(map(begin, end)); });
+    std::vector<std::optional<T>> parts(count / grain + (count % grain != 0));
+    parallel_pieces(count, grain, [&](int begin, int end) { parts[begin / grain].emplace(map(begin, end)); });
     T result = std::move(initial);
     for (std::optional<T>& part : parts) result = combine(std::move(result), std::move(*part));
     return result;

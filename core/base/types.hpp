@@ -22,6 +22,12 @@ using Matrix34 = Eigen::Matrix<double, 3, 4>;
 using Matrix3X = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 using MatrixX = Eigen::MatrixXd;
 
+/// Bodies, vertices, steps and all else that is counted are indexed by `int`; how many a container has, as one.
+template <class Container>
+int count_of(const Container& container) {
+    return static_cast<int>(container.size());
+}
+
 /// Cross-product matrix: cross_matrix(a) * b = a x b.
 inline Matrix3 cross_matrix(const Vector3& a) {
     Matrix3 m;

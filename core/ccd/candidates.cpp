@@ -125,7 +125,7 @@ std::vector<std::pair<int, int>> close_bodies(const model::Model& model, const s
     std::vector<std::pair<int, int>> pairs;
     pairs.reserve(near.pairs.size());
     for (const auto& [a, b] : near.pairs)
-        if (boxes[static_cast<std::size_t>(a)].overlaps(boxes[static_cast<std::size_t>(b)])) pairs.emplace_back(a, b);
+        if (boxes[a].overlaps(boxes[b])) pairs.emplace_back(a, b);
     return pairs;
 }
 
@@ -173,7 +173,7 @@ std::vector<Task> make_tasks(const std::vector<BodyPairCandidates*>& searched, c
     std::vector<Task> tasks;
     tasks.reserve(searched.size());
     const auto size_of = [&](int body) { return along.swept[body].body->hierarchy->nodes().size(); };
-    for (int k = 0; k < static_cast<int>(searched.size()); ++k) {
+    for (int k = 0; k < count_of(searched); ++k) {
         if (parts < 2 || size_of(searched[k]->a) + size_of(searched[k]->b) < large) {
             tasks.push_back({k, {0, 0}, {}});
             continue;
@@ -197,7 +197,7 @@ void sort_by_distance(geometry::PrimitivePairs& pairs) {
 // Fills the lists of all that are searched.
 void search(const Search& along, const std::vector<BodyPairCandidates*>& searched) {
     std::vector<Task> tasks = make_tasks(searched, along);
-    base::parallel_for(static_cast<int>(tasks.size()), 1, [&](int k) {
+    base::parallel_for(count_of(tasks), 1, [&](int k) {
         Task& task = tasks[k];
         const SweptPair pair = along.of(*searched[task.pair]);  // large, and soon made: not kept
         search_leaves(pair, close_nodes(pair, task.from), task.found);
@@ -208,7 +208,7 @@ void search(const Search& along, const std::vector<BodyPairCandidates*>& searche
     for (std::size_t p = searched.size(); p-- > 0;) first[p] = std::min(first[p], first[p + 1]);
     std::size_t found = 0;
     for (const Task& task : tasks) found += task.found.size();
-    base::parallel_for(static_cast<int>(searched.size()), geometry::pairs_at_once(searched.size(), found), [&](int p) {
+    base::parallel_for(count_of(searched), geometry::pairs_at_once(searched.size(), found), [&](int p) {
         BodyPairCandidates& pair = *searched[p];
         pair.allowance = along.allowance;
         pair.along = {along.segments[pair.a], along.segments[pair.b]};
@@ -243,7 +243,7 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
     std::vector<geometry::Box>& boxes = box_memory;
     swept.resize(segments.size());
     boxes.resize(segments.size());
-    base::parallel_for(static_cast<int>(segments.size()), pairs_a_query, [&](int i) {
+    base::parallel_for(count_of(segments), pairs_a_query, [&](int i) {
         swept[i] = swept_body(model.bodies[i], segments[i]);
         boxes[i] = swept_box(swept[i], 0.5 * (activation + allowance));
     });
@@ -252,7 +252,7 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
     static thread_local std::vector<char> fresh_memory;
     std::vector<char>& is_fresh = fresh_memory;
     is_fresh.resize(candidates.pairs.size());
-    base::parallel_for(static_cast<int>(candidates.pairs.size()), pairs_a_query, [&](int k) {
+    base::parallel_for(count_of(candidates.pairs), pairs_a_query, [&](int k) {
         BodyPairCandidates& pair = candidates.pairs[k];
         pair.fresh = pair.fresh || !(motion_over(model, pair, segments, swept[pair.a].ends[0], swept[pair.b].ends[0]) <= pair.allowance);
         is_fresh[k] = pair.fresh ? 1 : 0;

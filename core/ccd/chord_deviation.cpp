@@ -58,7 +58,7 @@ IntervalArc::IntervalArc(const Vector3& theta, const Vector3& w) {
     const Interval3 start = exact(theta);
     Interval3 end, during;
     for (std::size_t k = 0; k < 3; ++k) {
-        end[k] = start[k] + Interval(w[static_cast<Eigen::Index>(k)]);
+        end[k] = start[k] + Interval(w[k]);
         during[k] = hull(start[k], end[k]);
     }
     start_ = turn_by(start);

@@ -58,7 +58,7 @@ public:
         if (first_[node] >= 0) return first_[node];
         const geometry::BodyHierarchy& hierarchy = *body_->body->hierarchy;
         const geometry::HierarchyNode& leaf = hierarchy.nodes()[node];
-        first_[node] = static_cast<int>(elements_.size());
+        first_[node] = count_of(elements_);
         filled_.push_back(node);
         for (int k = leaf.first; k < leaf.first + leaf.count; ++k)
             elements_.push_back(swept_element(*body_, hierarchy.elements()[k], origin_));

@@ -49,7 +49,7 @@ public:
     StepSearch(const model::Model& model, const std::vector<PathSegment>& segments, Limits limits,
                const std::vector<BodyDistance>* start = nullptr)
         : model_(model), segments_(segments), limits_(limits), start_(start), starts_(segments.size()), start_roundings_(segments.size()) {
-        base::parallel_for(static_cast<int>(segments.size()), bodies_at_once, [&](int i) {
+        base::parallel_for(count_of(segments), bodies_at_once, [&](int i) {
             starts_[i] = pose_at(segments[i], 0);
             start_roundings_[i] = place_rounding(segments[i]);
         });
@@ -57,7 +57,7 @@ public:
 
     SafeStep longest(const Candidates& candidates) {
         return base::ordered_reduce(
-            static_cast<int>(candidates.pairs.size()), candidates.pairs_at_once(), SafeStep{},
+            count_of(candidates.pairs), candidates.pairs_at_once(), SafeStep{},
             [&](int begin, int end) {
                 SafeStep shortest;
                 for (int k = begin; k < end; ++k) visit(candidates.pairs[k], shortest);
@@ -68,7 +68,7 @@ public:
 
     // Is the least fraction 1?
     bool is_free(const Candidates& candidates) {
-        base::parallel_for(static_cast<int>(candidates.pairs.size()), candidates.pairs_at_once(), [&](int k) {
+        base::parallel_for(count_of(candidates.pairs), candidates.pairs_at_once(), [&](int k) {
             SafeStep shortest;
             if (least_ == 1) visit(candidates.pairs[k], shortest);
         });

@@ -191,7 +191,7 @@ ClosestDirection closest_direction(geometry::PairType type, const Differences& r
 
 CandidateDirections candidate_directions(geometry::PairType type, const Differences& r) {
     CandidateDirections c;
-    const auto add = [&](const Vector3& direction) { c.direction[static_cast<std::size_t>(c.count++)] = direction; };
+    const auto add = [&](const Vector3& direction) { c.direction[c.count++] = direction; };
     const PointEdges pe = point_edges(type, r);
     const bool face = type == geometry::PairType::point_triangle;
     for (Eigen::Index i = 0; i < (face ? 3 : 4); ++i) {

@@ -98,14 +98,14 @@ private:
 
     void find_places() {
         if (!certificate_.motion) places_.push_back({});
-        for (int t = 0; certificate_.motion && t < static_cast<int>(trajectory_.steps.size()); ++t)
+        for (int t = 0; certificate_.motion && t < count_of(trajectory_.steps); ++t)
             for (int k = 0; k < stepper::segment_count(trajectory_, t); ++k) places_.push_back({t, k});
     }
 
     const PairCertificate& pair(std::size_t i) const { return certificate_.pairs[i]; }
     static std::string name(std::size_t i) { return "/pairs/" + std::to_string(i); }
-    const geometry::Mesh& mesh(int body) const { return model_.bodies[static_cast<std::size_t>(body)].mesh; }
-    const std::vector<Part>& parts(int body) const { return bodies_[static_cast<std::size_t>(body)]->parts(); }
+    const geometry::Mesh& mesh(int body) const { return model_.bodies[body].mesh; }
+    const std::vector<Part>& parts(int body) const { return bodies_[body]->parts(); }
 
     std::size_t trees_of(const PairCertificate& pair) const { return pair.lower > 0 ? places_.size() : 0; }
 
@@ -121,7 +121,7 @@ private:
         }
         if (report_.faults.size() == most_faults) return last;  // no more can be told
         std::vector<CertificateReport> reports(trees.size());
-        base::parallel_for(static_cast<int>(trees.size()), 1, [&](int i) {
+        base::parallel_for(count_of(trees), 1, [&](int i) {
             const auto k = static_cast<std::size_t>(i);
             const std::size_t of = trees[k][0], place = trees[k][1];
             with_prover(pair(of), place, [&](auto& prover) {
@@ -141,7 +141,7 @@ private:
         return last;
     }
 
-    bool is_body(int body) const { return body >= 0 && body < static_cast<int>(model_.bodies.size()); }
+    bool is_body(int body) const { return body >= 0 && body < count_of(model_.bodies); }
 
     // Can the rest of it be looked at?
     bool check_pair(const PairCertificate& pair, const std::string& where) {
@@ -164,9 +164,9 @@ private:
 
     // The body's parts, once; false if its lists are wrong.
     bool prepare(int index, const std::string& where) {
-        std::optional<CertifiedBody>& body = bodies_[static_cast<std::size_t>(index)];
+        std::optional<CertifiedBody>& body = bodies_[index];
         if (!body) {
-            auto made = certified_body(certificate_.bodies[static_cast<std::size_t>(index)], mesh(index));
+            auto made = certified_body(certificate_.bodies[index], mesh(index));
             for (const base::Error& e : made.errors()) fault("/bodies/" + std::to_string(index) + e.where, e.message);
             body.emplace(made ? std::move(made).value() : CertifiedBody());
         }
@@ -178,7 +178,7 @@ private:
     template <class Use>
     void with_prover(const PairCertificate& pair, std::size_t place, const Use& use) const {
         if (certificate_.linkage) {
-            const auto start = [&](int body) { return trajectory_.poses.front()[static_cast<std::size_t>(body)]; };
+            const auto start = [&](int body) { return trajectory_.poses.front()[body]; };
             RangeProver prover(*certificate_.linkage, linked_pair(*certificate_.linkage, pair.a, pair.b), start(pair.a), start(pair.b));
             use(prover);
         } else {
@@ -236,7 +236,7 @@ private:
             if (pending.empty()) return ended("more cells than the tree has room for");
             const Cell cell = pending.back();
             pending.pop_back();
-            const Part &a = parts_a[static_cast<std::size_t>(cell.a)], &b = parts_b[static_cast<std::size_t>(cell.b)];
+            const Part &a = parts_a[cell.a], &b = parts_b[cell.b];
             if (kind == '.' || kind == ':') {
                 const std::size_t count = kind == '.' ? 1 : std::size_t{1} << prover.coordinates();
                 if (used + count > normals.size()) return ended("the vectors of leaf " + std::to_string(leaf) + " are missing");
@@ -282,11 +282,11 @@ private:
     void check_solids(const std::vector<std::size_t>& proven) {
         for (const std::size_t i : proven)
             for (const int body : {pair(i).a, pair(i).b}) {
-                std::optional<SolidMesh>& solid = solids_[static_cast<std::size_t>(body)];
-                if (!solid) solid = solid_of(model_.bodies[static_cast<std::size_t>(body)]);
+                std::optional<SolidMesh>& solid = solids_[body];
+                if (!solid) solid = solid_of(model_.bodies[body]);
             }
         std::vector<CertificateReport> reports(proven.size());
-        base::parallel_for(static_cast<int>(proven.size()), 1, [&](int i) {
+        base::parallel_for(count_of(proven), 1, [&](int i) {
             const auto k = static_cast<std::size_t>(i);
             reports[k] = solids_report(pair(proven[k]), name(proven[k]) + "/solids");
         });
@@ -297,7 +297,7 @@ private:
         CertificateReport report;
         const auto ended = [&](const std::string& message) { return add(report, {where, message}), std::move(report); };
         if (pair.solids == Solids::overlap) return ended("the solids overlap: there is no clearance to certify");
-        const SolidMesh &a = *solids_[static_cast<std::size_t>(pair.a)], &b = *solids_[static_cast<std::size_t>(pair.b)];
+        const SolidMesh &a = *solids_[pair.a], &b = *solids_[pair.b];
         PairStart start{trajectory_, places_[0].step, places_[0].segment, pair.a, pair.b};
         if (!certificate_.linkage && ask_for_path(a, b)) start.path = places_;
         if (joints_are_sound_) start.charge = joint_charge(*certificate_.joints, pair.a, pair.b);

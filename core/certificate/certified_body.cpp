@@ -15,8 +15,8 @@ using base::ErrorCode;
 std::vector<int> wanted_elements(const geometry::Mesh& mesh) {
     std::vector<int> wanted;
     std::set<std::pair<int, int>> of_triangles;
-    std::vector<bool> used(static_cast<std::size_t>(mesh.vertices.cols()), false);
-    const auto triangles = static_cast<int>(mesh.triangles.size()), edges = static_cast<int>(mesh.edges.size());
+    std::vector<bool> used(mesh.vertices.cols(), false);
+    const auto triangles = count_of(mesh.triangles), edges = count_of(mesh.edges);
     for (int i = 0; i < triangles; ++i) {
         wanted.push_back(i);
         const auto& t = mesh.triangles[i];
@@ -28,7 +28,7 @@ std::vector<int> wanted_elements(const geometry::Mesh& mesh) {
         if (of_triangles.count(std::minmax(e[0], e[1])) == 0) wanted.push_back(triangles + i);
         for (const int v : e) used[v] = true;
     }
-    for (int v = 0; v < static_cast<int>(used.size()); ++v)
+    for (int v = 0; v < count_of(used); ++v)
         if (!used[v]) wanted.push_back(triangles + edges + v);
     return wanted;
 }
@@ -55,7 +55,7 @@ base::Errors split_parts(const BodyPieces& pieces, const std::vector<Vector3>& c
     while (!pending.empty()) {
         const Range range = pending.back();
         pending.pop_back();
-        const int part = static_cast<int>(parts.size());
+        const int part = count_of(parts);
         parts.emplace_back();
         parts[part].region.points = std::span<const Vector3>(corners).subspan(3 * range.first, 3 * range.count);
         if (range.parent >= 0) (range.second ? parts[range.parent].right : parts[range.parent].left) = part;
@@ -92,7 +92,7 @@ void measure(const std::vector<Part>& parts, Part& part) {
 }  // namespace
 
 std::vector<int> element_vertices(const geometry::Mesh& mesh, int number) {
-    const auto triangles = static_cast<int>(mesh.triangles.size()), edges = static_cast<int>(mesh.edges.size());
+    const auto triangles = count_of(mesh.triangles), edges = count_of(mesh.edges);
     if (number < 0) return {};
     if (number < triangles) return {mesh.triangles[number].begin(), mesh.triangles[number].end()};
     if (number < triangles + edges) return {mesh.edges[number - triangles].begin(), mesh.edges[number - triangles].end()};
@@ -113,7 +113,7 @@ base::Result<CertifiedBody> certified_body(const BodyPieces& pieces, const geome
 }
 
 bool point_of(const geometry::Mesh& mesh, const CertifiedPoint& point, Interval3& X) {
-    const auto triangles = static_cast<int>(mesh.triangles.size()), edges = static_cast<int>(mesh.edges.size());
+    const auto triangles = count_of(mesh.triangles), edges = count_of(mesh.edges);
     const int count = point.kind == Primitive::triangle ? triangles
                       : point.kind == Primitive::edge   ? edges
                                                         : static_cast<int>(mesh.vertices.cols());
@@ -128,8 +128,7 @@ bool point_of(const geometry::Mesh& mesh, const CertifiedPoint& point, Interval3
         const double weight = point.weight[i];
         if (!(weight >= 0 && weight <= 2)) return false;
         total = total + Interval(weight);
-        for (std::size_t k = 0; k < 3; ++k)
-            X[k] = X[k] + Interval(weight) * Interval(mesh.vertices(static_cast<Eigen::Index>(k), corners[i]));
+        for (std::size_t k = 0; k < 3; ++k) X[k] = X[k] + Interval(weight) * Interval(mesh.vertices(k, corners[i]));
     }
     if (!(total.low > 0.5)) return false;
     for (Interval& x : X) x = x / total;

@@ -84,7 +84,7 @@ SolidMesh solid_mesh(const geometry::Mesh& mesh, bool is_sheet) {
     solid.samples = solids::samples_of(mesh);
     solid.shells.resize(mesh.shell_names.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        SolidMesh::Shell& part = solid.shells[static_cast<std::size_t>(mesh.triangle_shell[t])];
+        SolidMesh::Shell& part = solid.shells[mesh.triangle_shell[t]];
         if (part.triangles.empty()) part.low = part.high = mesh.vertices.col(mesh.triangles[t][0]);
         part.triangles.push_back(mesh.triangles[t]);
         for (const int v : mesh.triangles[t]) {

@@ -152,7 +152,7 @@ BodyPath body_path(const stepper::Trajectory& trajectory, int step, int segment,
         path.twist_norm = norm_bound(path.twist);
         for (int j = 0; j < 3; ++j) {
             const Interval3 column = cross(path.step, exactly(path.base.col(j)));
-            for (std::size_t i = 0; i < 3; ++i) path.sweep[i][static_cast<std::size_t>(j)] = column[i];
+            for (std::size_t i = 0; i < 3; ++i) path.sweep[i][j] = column[i];
         }
     }
     // |B|^2 is at most the largest absolute row sum of B^T B.
@@ -177,7 +177,7 @@ IntervalPose pose_at(const BodyPath& path, double s) {
                               Interval3{bt[0] * t[2] - at[1], bt[1] * t[2] + at[0], cosine + bt[2] * t[2]}};
     IntervalPose pose;
     for (std::size_t i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) pose.rotation[i][static_cast<std::size_t>(j)] = dot(turn[i], exactly(path.base.col(j)));
+        for (int j = 0; j < 3; ++j) pose.rotation[i][j] = dot(turn[i], exactly(path.base.col(j)));
     const Coefficients k = coefficients(z, a, b);
     const Interval3 t_twist = cross(t, path.twist);
     pose.omega = path.step + k.b * path.twist + k.c * t_twist;

@@ -41,7 +41,7 @@ inline Vector3 middle(const Interval3& x) {
 }
 inline Matrix3 middle(const IntervalMatrix& m) {
     Matrix3 out;
-    for (int i = 0; i < 3; ++i) out.row(i) = middle(m[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 3; ++i) out.row(i) = middle(m[i]);
     return out;
 }
 inline Interval3 exactly(const Vector3& v) { return {v.x(), v.y(), v.z()}; }

@@ -195,11 +195,11 @@ public:
     ProvenDeviations run() const {
         ProvenDeviations out;
         std::vector<std::pair<int, int>> places;
-        for (int t = 0; t < static_cast<int>(trajectory_.steps.size()); ++t)
+        for (int t = 0; t < count_of(trajectory_.steps); ++t)
             for (int k = 0; k < segment_count(trajectory_, t); ++k) places.emplace_back(t, k);
         std::vector<std::vector<double>> found(places.size());
         std::vector<std::string> faults(places.size());
-        base::parallel_for(static_cast<int>(places.size()), 1, [&](int i) {
+        base::parallel_for(count_of(places), 1, [&](int i) {
             const auto at = static_cast<std::size_t>(i);
             const Segment segment = segment_of(places[at].first, places[at].second);
             faults[at] = refusal(segment);
@@ -226,10 +226,10 @@ private:
     };
 
     void use(int measure) {
-        const Measure& m = joints_.set.measures[static_cast<std::size_t>(measure)];
-        used_[static_cast<std::size_t>(measure)] = true;
+        const Measure& m = joints_.set.measures[measure];
+        used_[measure] = true;
         for (const int frame : {m.a, m.b}) {
-            const int body = joints_.set.frames[static_cast<std::size_t>(frame)].body;
+            const int body = joints_.set.frames[frame].body;
             if (body != measure::world) framed_.push_back(body);
         }
     }
@@ -252,16 +252,16 @@ private:
     Segment segment_of(int step, int index) const {
         Segment out{step, index, std::vector<BodyPath>(model_.bodies.size()), time_at(trajectory_, step, index, 0),
                     time_at(trajectory_, step, index, 1)};
-        for (const int body : framed_) out.paths[static_cast<std::size_t>(body)] = body_path(trajectory_, step, index, body);
+        for (const int body : framed_) out.paths[body] = body_path(trajectory_, step, index, body);
         return out;
     }
 
     // What this way of proving does not deal with; empty: nothing.
     std::string refusal(const Segment& segment) const {
-        if (static_cast<int>(joints_.rows.size()) > most_rows) return "more than " + std::to_string(most_rows) + " rows of joints";
+        if (count_of(joints_.rows) > most_rows) return "more than " + std::to_string(most_rows) + " rows of joints";
         const auto speed = [&](int frame) {
-            const int body = joints_.set.frames[static_cast<std::size_t>(frame)].body;
-            return body == measure::world ? 0.0 : segment.paths[static_cast<std::size_t>(body)].speed;
+            const int body = joints_.set.frames[frame].body;
+            return body == measure::world ? 0.0 : segment.paths[body].speed;
         };
         for (const BodyPath& path : segment.paths)
             if (!(path.magnitude < base::largest_magnitude)) return "numbers too large";
@@ -275,17 +275,17 @@ private:
 
     Derivatives derivatives(const Measure& m, const std::vector<MovingBody>& bodies, double half, const Box* box, bool& is_usable) const {
         const auto vector = [&](int frame, int axis) {
-            const measure::Frame& f = joints_.set.frames[static_cast<std::size_t>(frame)];
+            const measure::Frame& f = joints_.set.frames[frame];
             const bool is_point = axis < 0;
             const Vector3 X = is_point ? f.point : Vector3(f.axes.col(axis));
             if (f.body == measure::world) return MovingVector{is_point ? Interval3{0, 0, 0} : exactly(X), exactly(X), {0, 0, 0}, {0, 0, 0}};
-            const int slot = slots_[static_cast<std::size_t>(f.body)];
+            const int slot = slots_[f.body];
             double turned = 0, shifted = 0;
             if (box != nullptr && slot >= 0) {
                 shifted = box->half.segment<3>(6 * slot).norm() * inflation;
                 turned = box->half.segment<3>(6 * slot + 3).norm() * inflation;
             }
-            return moving_vector(bodies[static_cast<std::size_t>(f.body)], X, is_point, half, turned, shifted);
+            return moving_vector(bodies[f.body], X, is_point, half, turned, shifted);
         };
         if (m.kind == MeasureKind::product) return product_of(vector(m.a, m.axis_a), vector(m.b, m.axis_b));
         if (m.kind == MeasureKind::angle) {
@@ -313,8 +313,7 @@ private:
     // Nothing where an angle has no value.
     std::optional<RowSystem> system_over(const Segment& segment, const Part& part, const Box* box) const {
         std::vector<MovingBody> bodies(model_.bodies.size());
-        for (const int body : framed_)
-            bodies[static_cast<std::size_t>(body)] = moving_body(segment.paths[static_cast<std::size_t>(body)], part);
+        for (const int body : framed_) bodies[body] = moving_body(segment.paths[body], part);
         std::vector<Derivatives> of(joints_.set.measures.size());
         for (std::size_t i = 0; i < of.size(); ++i) {
             bool is_usable = true;
@@ -342,9 +341,9 @@ private:
     // One body's part of a row's gradient; the same column may come more than once.
     void add_entries(int frame, const Interval& factor, const Interval3& force, const Interval3& torque, const Box* box,
                      std::vector<Entry>& entries) const {
-        const int body = joints_.set.frames[static_cast<std::size_t>(frame)].body;
-        if (body == measure::world || slots_[static_cast<std::size_t>(body)] < 0) return;
-        const int column = 6 * slots_[static_cast<std::size_t>(body)];
+        const int body = joints_.set.frames[frame].body;
+        if (body == measure::world || slots_[body] < 0) return;
+        const int column = 6 * slots_[body];
         // The left Jacobian of the box's turn is within |phi|/2 of 1.
         const double turn = box == nullptr ? 0 : 0.5 * box->half.segment<3>(column + 3).norm() * inflation;
         const double skewed = up(turn, norm_bound(torque));
@@ -369,13 +368,13 @@ private:
         const double begin = segment.begin + part.start * length, end = segment.begin + part.end * length;
         const Interval most = square(Interval(part.half())) * Interval(0.5);
         Residual out;
-        out.off.resize(static_cast<Eigen::Index>(joints_.rows.size()));
+        out.off.resize(joints_.rows.size());
         for (std::size_t r = 0; r < joints_.rows.size(); ++r) {
             const Row& row = joints_.rows[r];
             out.low.push_back(unmet(segment, row, *low, part.start));
             out.high.push_back(unmet(segment, row, *high, part.end));
             out.bent.push_back(Interval(most.high) * over.second[r]);
-            out.off[static_cast<Eigen::Index>(r)] = chord_deviation(row.curve, begin, end) + 4 * target_rounding(row, end);
+            out.off[r] = chord_deviation(row.curve, begin, end) + 4 * target_rounding(row, end);
         }
         return out;
     }
@@ -385,7 +384,7 @@ private:
         const double time = segment.begin + share * (segment.end - segment.begin);
         Interval out = -widened(Interval(target_at(row, time)), target_rounding(row, time));
         for (const constraint::RowPart& part : row.parts)
-            out = out + Interval(part.factor) * counted(segment, part.measure, at.measured[static_cast<std::size_t>(part.measure)], share);
+            out = out + Interval(part.factor) * counted(segment, part.measure, at.measured[part.measure], share);
         return out;
     }
 
@@ -393,7 +392,7 @@ private:
     Interval counted(const Segment& segment, int index, const Interval& value, double share) const {
         const auto m = static_cast<std::size_t>(index);
         if (joints_.set.measures[m].kind != MeasureKind::angle) return value;
-        const auto& nodes = turned_[static_cast<std::size_t>(segment.step)];
+        const auto& nodes = turned_[segment.step];
         const auto k = static_cast<std::size_t>(segment.index);
         const double near = nodes[k][m] + share * (nodes[k + 1][m] - nodes[k][m]);
         const double turns = std::round((near - 0.5 * (value.low + value.high)) / (2 * std::numbers::pi));
@@ -446,13 +445,13 @@ private:
         return false;
     }
 
-    VectorX floor_of() const { return VectorX::Constant(static_cast<Eigen::Index>(joints_.rows.size()), 1e-13 * size_); }
+    VectorX floor_of() const { return VectorX::Constant(joints_.rows.size(), 1e-13 * size_); }
 
     MatrixX middles(const RowSystem& system) const {
         const auto n = static_cast<Eigen::Index>(joints_.rows.size());
         MatrixX out = MatrixX::Zero(n, n);
         for (Eigen::Index r = 0; r < n; ++r)
-            for (const Entry& e : system.entries[static_cast<std::size_t>(r)]) out(r, e.column) += 0.5 * (e.value.low + e.value.high);
+            for (const Entry& e : system.entries[r]) out(r, e.column) += 0.5 * (e.value.low + e.value.high);
         return out;
     }
 
@@ -461,7 +460,7 @@ private:
         const auto n = static_cast<Eigen::Index>(x.size());
         VectorX middle(n), radius(n);
         for (Eigen::Index i = 0; i < n; ++i) {
-            const Interval& each = x[static_cast<std::size_t>(i)];
+            const Interval& each = x[i];
             middle[i] = 0.5 * (each.low + each.high);
             radius[i] = (each - Interval(middle[i])).magnitude();
         }
@@ -475,7 +474,7 @@ private:
         const double rounding = static_cast<double>(4 * n + 64) * unit;  // of a column's sum, in the sizes of its terms
         MatrixX off = MatrixX::Identity(n, n), loose = rounding * MatrixX::Identity(n, n);
         for (Eigen::Index r = 0; r < n; ++r)
-            for (const Entry& e : system.entries[static_cast<std::size_t>(r)]) {
+            for (const Entry& e : system.entries[r]) {
                 const double middle = 0.5 * (e.value.low + e.value.high);
                 off.col(e.column) -= middle * A.col(r);
                 loose.col(e.column) += ((e.value - Interval(middle)).magnitude() + rounding * e.value.magnitude()) * A.col(r).cwiseAbs();
@@ -508,20 +507,20 @@ std::vector<IdealJoints> connected_parts(const IdealJoints& joints) {
     std::vector<int> root(joints.bodies.size());
     std::iota(root.begin(), root.end(), 0);
     const auto root_of = [&](int i) {
-        while (root[static_cast<std::size_t>(i)] != i) i = root[static_cast<std::size_t>(i)];
+        while (root[i] != i) i = root[i];
         return i;
     };
     std::vector<int> first_of_row;  // a body that it moves; -1: none
     for (const Row& row : joints.rows) {
         int first = -1;
         for (const constraint::RowPart& part : row.parts) {
-            const Measure& m = joints.set.measures[static_cast<std::size_t>(part.measure)];
+            const Measure& m = joints.set.measures[part.measure];
             for (const int frame : {m.a, m.b}) {
-                const int body = joints.set.frames[static_cast<std::size_t>(frame)].body;
+                const int body = joints.set.frames[frame].body;
                 const auto found = std::lower_bound(joints.bodies.begin(), joints.bodies.end(), body);
                 if (found == joints.bodies.end() || *found != body) continue;
                 const int slot = root_of(static_cast<int>(found - joints.bodies.begin()));
-                if (first >= 0) root[static_cast<std::size_t>(slot)] = root_of(first);
+                if (first >= 0) root[slot] = root_of(first);
                 if (first < 0) first = slot;
             }
         }
@@ -529,9 +528,9 @@ std::vector<IdealJoints> connected_parts(const IdealJoints& joints) {
     }
     std::vector<IdealJoints> parts(joints.bodies.size());
     for (std::size_t r = 0; r < joints.rows.size(); ++r)
-        if (first_of_row[r] >= 0) parts[static_cast<std::size_t>(root_of(first_of_row[r]))].rows.push_back(joints.rows[r]);
+        if (first_of_row[r] >= 0) parts[root_of(first_of_row[r])].rows.push_back(joints.rows[r]);
     for (std::size_t i = 0; i < joints.bodies.size(); ++i) {
-        IdealJoints& part = parts[static_cast<std::size_t>(root_of(static_cast<int>(i)))];
+        IdealJoints& part = parts[root_of(static_cast<int>(i))];
         part.set = joints.set;
         part.bodies.push_back(joints.bodies[i]);
     }
@@ -550,7 +549,7 @@ ProvenDeviations prove_deviations(const IdealJoints& joints, const model::Model&
         if (!of_part.fault.empty()) return of_part;
         for (std::size_t i = 0; i < part.bodies.size(); ++i) {
             const auto at = std::lower_bound(joints.bodies.begin(), joints.bodies.end(), part.bodies[i]) - joints.bodies.begin();
-            out.of_body[static_cast<std::size_t>(at)] = of_part.of_body[i];
+            out.of_body[at] = of_part.of_body[i];
         }
     }
     return out;

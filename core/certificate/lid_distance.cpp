@@ -44,7 +44,7 @@ Piece triangle_of(const LidSurface& surface, const std::array<Vector3, 3>& corne
 }
 
 Piece node_of(const LidSurface& surface, int index) {
-    const geometry::HierarchyNode& node = surface.hierarchy.nodes()[static_cast<std::size_t>(index)];
+    const geometry::HierarchyNode& node = surface.hierarchy.nodes()[index];
     Piece out;
     out.surface = &surface;
     out.node = index;
@@ -67,15 +67,13 @@ std::vector<Piece> parts_of(const Piece& piece) {
         const Vector3 middle = 0.5 * (a + b);
         return {triangle_of(surface, {a, middle, c}), triangle_of(surface, {middle, b, c})};
     }
-    const geometry::HierarchyNode& node = surface.hierarchy.nodes()[static_cast<std::size_t>(piece.node)];
+    const geometry::HierarchyNode& node = surface.hierarchy.nodes()[piece.node];
     if (!node.is_leaf()) return {node_of(surface, node.left), node_of(surface, node.right)};
     std::vector<Piece> out;
     for (int i = node.first; i < node.first + node.count; ++i) {
-        const geometry::HierarchyElement& element = surface.hierarchy.elements()[static_cast<std::size_t>(i)];
+        const geometry::HierarchyElement& element = surface.hierarchy.elements()[i];
         std::array<Vector3, 3> corners;
-        for (int k = 0; k < 3; ++k)
-            corners[static_cast<std::size_t>(k)] =
-                surface.mesh.vertices.col(element.vertices[static_cast<std::size_t>(std::min(k, element.vertex_count - 1))]);
+        for (int k = 0; k < 3; ++k) corners[k] = surface.mesh.vertices.col(element.vertices[std::min(k, element.vertex_count - 1)]);
         out.push_back(triangle_of(surface, corners));
     }
     return out;
@@ -86,7 +84,7 @@ double reach_along(const Piece& piece, const IntervalMatrix& rotation, const Int
     const Interval3 m = transposed_times(rotation, world);  // the direction in the piece's frame
     double reach = 0;
     if (piece.node >= 0) {
-        for (int k = 0; k < 3; ++k) reach += m[static_cast<std::size_t>(k)].magnitude() * piece.half[k];
+        for (int k = 0; k < 3; ++k) reach += m[k].magnitude() * piece.half[k];
     } else {
         for (const Vector3& corner : piece.corners) reach = std::max(reach, dot(m, exactly(corner - piece.centre)).magnitude());
     }

@@ -20,8 +20,8 @@ bool ends_in_the_world(const Linkage& linkage, std::size_t body) {
     int at = static_cast<int>(body);
     for (std::size_t k = 0; k <= linkage.bodies.size(); ++k) {
         if (at == -1) return true;
-        if (at < 0 || at >= static_cast<int>(linkage.bodies.size())) return false;
-        at = linkage.bodies[static_cast<std::size_t>(at)].parent;
+        if (at < 0 || at >= count_of(linkage.bodies)) return false;
+        at = linkage.bodies[at].parent;
     }
     return false;
 }
@@ -29,7 +29,7 @@ bool ends_in_the_world(const Linkage& linkage, std::size_t body) {
 // From the world on.
 std::vector<int> ancestry(const Linkage& linkage, int body) {
     std::vector<int> out;
-    for (int at = body; at >= 0; at = linkage.bodies[static_cast<std::size_t>(at)].parent) out.push_back(at);
+    for (int at = body; at >= 0; at = linkage.bodies[at].parent) out.push_back(at);
     std::reverse(out.begin(), out.end());
     return out;
 }
@@ -46,7 +46,7 @@ base::Errors check_linkage(const Linkage& linkage, std::size_t bodies) {
         const bool usable = base::is_usable_number(c.low) && base::is_usable_number(c.high);
         if (!usable || !(c.low <= c.start && c.start <= c.high)) return fault("coordinates", k, "low <= start <= high is expected");
     }
-    const auto count = static_cast<int>(linkage.coordinates.size());
+    const auto count = count_of(linkage.coordinates);
     for (std::size_t k = 0; k < bodies; ++k) {
         for (const Screw& screw : linkage.bodies[k].screws)
             if (!is_usable_screw(screw, count)) return fault("links", k, "a screw of it is wrong");
@@ -62,7 +62,7 @@ LinkedPair linked_pair(const Linkage& linkage, int a, int b) {
     LinkedPair pair;
     const auto collect = [&](const std::vector<int>& line, std::vector<Screw>& out) {
         for (std::size_t i = common; i < line.size(); ++i) {
-            const auto& screws = linkage.bodies[static_cast<std::size_t>(line[i])].screws;
+            const auto& screws = linkage.bodies[line[i]].screws;
             out.insert(out.end(), screws.begin(), screws.end());
         }
         for (const Screw& screw : out) pair.coordinates.push_back(screw.coordinate);

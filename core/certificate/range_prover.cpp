@@ -41,8 +41,8 @@ double least_along(const Interval3& f, const Region& region, bool by_box) {
     Vector3 middle;
     Interval3 width;
     for (std::size_t k = 0; k < 3; ++k) {
-        middle[static_cast<Eigen::Index>(k)] = 0.5 * (f[k].low + f[k].high);
-        width[k] = Interval((f[k] - Interval(middle[static_cast<Eigen::Index>(k)])).magnitude());
+        middle[k] = 0.5 * (f[k].low + f[k].high);
+        width[k] = Interval((f[k] - Interval(middle[k])).magnitude());
     }
     double low = std::numeric_limits<double>::infinity();
     for (const Vector3& x : region.points) {
@@ -56,11 +56,9 @@ double least_along(const Interval3& f, const Region& region, bool by_box) {
 }  // namespace
 
 RangeProver::RangeProver(const Linkage& linkage, const LinkedPair& pair, const kinematics::Pose& start_a, const kinematics::Pose& start_b)
-    : a_(side_of(linkage, pair, pair.a, start_a)),
-      b_(side_of(linkage, pair, pair.b, start_b)),
-      count_(static_cast<int>(pair.coordinates.size())) {
+    : a_(side_of(linkage, pair, pair.a, start_a)), b_(side_of(linkage, pair, pair.b, start_b)), count_(count_of(pair.coordinates)) {
     for (std::size_t k = 0; k < pair.coordinates.size(); ++k) {
-        const LinkageCoordinate& c = linkage.coordinates[static_cast<std::size_t>(pair.coordinates[k])];
+        const LinkageCoordinate& c = linkage.coordinates[pair.coordinates[k]];
         box_.low[k] = c.low;
         box_.high[k] = c.high;
     }
@@ -77,8 +75,8 @@ RangeProver::Side RangeProver::side_of(const Linkage& linkage, const LinkedPair&
                                        const kinematics::Pose& start) {
     Side side{screws, {}, {}, start, {}};
     for (std::size_t j = 0; j < screws.size(); ++j) {
-        const int coordinate = pair.coordinates[static_cast<std::size_t>(screws[j].coordinate)];
-        side.starts.push_back(linkage.coordinates[static_cast<std::size_t>(coordinate)].start);
+        const int coordinate = pair.coordinates[screws[j].coordinate];
+        side.starts.push_back(linkage.coordinates[coordinate].start);
         Interval tilt = 0;
         for (std::size_t i = 0; i < j; ++i)
             if (screws[i].turn != 0)
@@ -106,11 +104,10 @@ const RangeProver::Placement& RangeProver::move(Side& side, std::size_t screw, d
 RangeProver::Placement RangeProver::after(Side& side, std::size_t first, const Coordinates& at) {
     Placement out;
     for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j)
-            out.rotation[i][j] = Interval(side.start.rotation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+        for (std::size_t j = 0; j < 3; ++j) out.rotation[i][j] = Interval(side.start.rotation(i, j));
     out.place = exactly(side.start.position);
     for (std::size_t j = side.screws.size(); j-- > first;) {
-        const Placement& by = move(side, j, at[static_cast<std::size_t>(side.screws[j].coordinate)]);
+        const Placement& by = move(side, j, at[side.screws[j].coordinate]);
         out = {product3(by.rotation, out.rotation), times(by.rotation, out.place) + by.place};
     }
     return out;

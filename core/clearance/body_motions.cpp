@@ -11,7 +11,7 @@ namespace fettle::core::clearance {
 
 std::vector<PathPlace> path_places(const stepper::Trajectory& trajectory, bool motion) {
     if (!motion || trajectory.steps.empty()) return {{}};
-    return path_places(trajectory, 0, static_cast<int>(trajectory.steps.size()));
+    return path_places(trajectory, 0, count_of(trajectory.steps));
 }
 
 std::vector<PathPlace> path_places(const stepper::Trajectory& trajectory, int first, int last) {
@@ -23,7 +23,7 @@ std::vector<PathPlace> path_places(const stepper::Trajectory& trajectory, int fi
 
 kinematics::PathSegment segment_at(const stepper::Trajectory& trajectory, const PathPlace& place, int body) {
     if (place.step >= 0) return stepper::path_segment(trajectory, place.step, place.segment, body);
-    const kinematics::Pose& pose = trajectory.poses.front()[static_cast<std::size_t>(body)];
+    const kinematics::Pose& pose = trajectory.poses.front()[body];
     kinematics::PathSegment held;
     held.base = pose.rotation;
     held.position_t0 = pose.position;
@@ -34,7 +34,7 @@ std::vector<char> have_usable_numbers(const model::Model& model, const stepper::
                                       const std::vector<PathPlace>& places) {
     const auto is_usable = [](const auto& x) { return (x.array().abs() < 1e30).all(); };  // false of what is no number
     const auto are_usable = [&](const PathPlace& place, std::size_t body) {
-        const kinematics::Pose& pose = trajectory.poses[static_cast<std::size_t>(std::max(place.step, 0))][body];
+        const kinematics::Pose& pose = trajectory.poses[std::max(place.step, 0)][body];
         if (!is_usable(pose.rotation) || !is_usable(pose.position)) return false;
         if (place.step < 0) return true;
         const auto& nodes = trajectory.steps[place.step].nodes;
@@ -58,9 +58,8 @@ std::vector<BodyShape> body_shapes(const model::Model& model, const std::vector<
     std::unordered_map<const geometry::BodyHierarchy*, std::size_t> known;  // copies of a part share it
     std::vector<std::size_t> first;  // of each of `bodies`: the first of them that is a copy of the same part
     first.reserve(bodies.size());
-    for (const int body : bodies)
-        first.push_back(known.try_emplace(model.bodies[static_cast<std::size_t>(body)].hierarchy.get(), first.size()).first->second);
-    parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
+    for (const int body : bodies) first.push_back(known.try_emplace(model.bodies[body].hierarchy.get(), first.size()).first->second);
+    parallel_for(count_of(bodies), 1, [&](int i) {
         const model::Body& body = model.bodies[bodies[i]];
         const model::Body& earlier = model.bodies[bodies[first[i]]];
         const bool is_copy =

@@ -15,7 +15,7 @@ namespace fettle::core::clearance {
 namespace {
 
 certificate::BodyPieces body_pieces(const PieceTree& tree) {
-    const auto triangles = static_cast<int>(tree.mesh->triangles.size()), edges = static_cast<int>(tree.mesh->edges.size());
+    const auto triangles = count_of(tree.mesh->triangles), edges = count_of(tree.mesh->edges);
     certificate::BodyPieces body;
     for (const PieceElement& e : tree.elements) {
         const int offset = e.corners.count == 3 ? 0 : e.corners.count == 2 ? triangles : triangles + edges;
@@ -110,9 +110,9 @@ std::vector<certificate::CertifiedBody> certified_bodies(const certificate::Cert
 
 void thin_certificate(const PairMotion& pair, const certificate::CertifiedBody& a, const certificate::CertifiedBody& b, double room,
                       certificate::PairCertificate& certificate) {
-    base::parallel_for(static_cast<int>(certificate.boxes.size()), 1, [&](int i) {
-        const PairSegment& segment = pair.segments[static_cast<std::size_t>(i)];
-        certificate::BoxProof& proof = certificate.boxes[static_cast<std::size_t>(i)];
+    base::parallel_for(count_of(certificate.boxes), 1, [&](int i) {
+        const PairSegment& segment = pair.segments[i];
+        certificate::BoxProof& proof = certificate.boxes[i];
         const auto path = [&](int body) { return certificate::body_path(pair.trajectory, segment.step, segment.segment, body); };
         proof = certificate::thinned(proof, a, b, path(certificate.a), path(certificate.b), certificate.lower + room);
     });

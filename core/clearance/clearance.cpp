@@ -29,10 +29,10 @@ std::vector<BodyMotion> body_motions(const model::Model& model, const stepper::T
                                      const std::vector<int>& bodies, const std::vector<BodyShape>& shapes) {
     std::vector<BodyMotion> motions(model.bodies.size());
     const std::vector<char> usable = have_usable_numbers(model, trajectory, places);
-    parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
+    parallel_for(count_of(bodies), 1, [&](int i) {
         const int body = bodies[i];
         motions[body].shape = shapes[body];
-        if (usable[static_cast<std::size_t>(body)] == 0) return;
+        if (usable[body] == 0) return;
         motions[body].segments.reserve(places.size());
         for (const PathPlace& place : places) motions[body].segments.push_back(body_segment(segment_at(trajectory, place, body)));
     });
@@ -61,7 +61,7 @@ WindowMinimum window_minimum(PairMotion pair, std::size_t begin, std::size_t end
     pair.segments = std::vector<PairSegment>(at(begin), at(end));
     const SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
     if (!(found.upper <= search.enough)) return {};
-    const auto count = static_cast<int>(pair.segments.size());
+    const auto count = count_of(pair.segments);
     return {witness_of(pair, found.nearest), found.nearest.segment == 0 && found.nearest.s == 0,
             found.nearest.segment == count - 1 && found.nearest.s == 1};
 }
@@ -118,7 +118,7 @@ public:
           places_(path_places(trajectory, options.motion)) {}
 
     std::vector<PairClearance> run() {
-        const std::vector<int> bodies = bodies_of(pairs_, static_cast<int>(model_.bodies.size()));
+        const std::vector<int> bodies = bodies_of(pairs_, count_of(model_.bodies));
         const std::vector<BodyShape> shapes = body_shapes(model_, bodies);
         far_ = far_pairs(model_, trajectory_, places_, pairs_, shapes, options_);
         std::vector<PairRequest> wanted;  // those to look at one by one: a far one too, if its proof is to be recorded
@@ -127,18 +127,18 @@ public:
             indices_.push_back(static_cast<int>(i));
             wanted.push_back(pairs_[i]);
         }
-        motions_ = body_motions(model_, trajectory_, places_, bodies_of(wanted, static_cast<int>(model_.bodies.size())), shapes);
+        motions_ = body_motions(model_, trajectory_, places_, bodies_of(wanted, count_of(model_.bodies)), shapes);
         if (is_recorded()) start_record();
         std::vector<PairClearance> results(pairs_.size());
         for (std::size_t i = 0; i < pairs_.size(); ++i) {
             if (far_[i]) results[i] = *far_[i];
         }
-        const auto count = static_cast<int>(pairs_.size()), left = static_cast<int>(indices_.size());
+        const auto count = count_of(pairs_), left = count_of(indices_);
         std::mutex report;
         int done = count - left;
         // Each pair is a search of its own: the number of threads cannot change a result.
         parallel_for(left, 1, [&](int k) {
-            const auto i = static_cast<std::size_t>(indices_[static_cast<std::size_t>(k)]);
+            const auto i = static_cast<std::size_t>(indices_[k]);
             results[i] = certified(i);
             if (!options_.on_pair) return;
             const std::lock_guard<std::mutex> lock(report);
@@ -165,12 +165,11 @@ private:
         const PairRequest& request = pairs_[i];
         std::optional<PairRecord> record;
         if (is_recorded()) {
-            record.emplace(PairRecord{record_->pairs[i], certified_[static_cast<std::size_t>(request.a)],
-                                      certified_[static_cast<std::size_t>(request.b)]});
+            record.emplace(PairRecord{record_->pairs[i], certified_[request.a], certified_[request.b]});
             record->certificate.a = request.a;
             record->certificate.b = request.b;
         }
-        const BodyMotion &a = motions_[static_cast<std::size_t>(request.a)], &b = motions_[static_cast<std::size_t>(request.b)];
+        const BodyMotion &a = motions_[request.a], &b = motions_[request.b];
         if (a.segments.empty() || b.segments.empty()) return unmeasured(request, unusable_numbers);
         const PairMotion motion = pair_motion(a, b, trajectory_, places_);
         if (far_[i]) {
@@ -247,9 +246,9 @@ public:
         std::vector<PairRequest> pairs;
         pairs.reserve(windows.size());
         for (const NearWindow& window : windows) pairs.push_back({window.a, window.b, 0});
-        const std::vector<int> bodies = bodies_of(pairs, static_cast<int>(model.bodies.size()));
+        const std::vector<int> bodies = bodies_of(pairs, count_of(model.bodies));
         shapes_ = body_shapes(model, bodies);
-        const int length = std::max(longest_stretch, (1 << 17) / std::max(static_cast<int>(bodies.size()), 1));
+        const int length = std::max(longest_stretch, (1 << 17) / std::max(count_of(bodies), 1));
         for (const NearWindow& window : windows) {
             if (!window.measurable) {
                 parts_.push_back(window);
@@ -259,7 +258,7 @@ public:
                 const int stretch = first / length;
                 last = std::min(window.last, (stretch + 1) * length);
                 if (stretches_.size() <= static_cast<std::size_t>(stretch)) stretches_.resize(static_cast<std::size_t>(stretch) + 1);
-                stretches_[static_cast<std::size_t>(stretch)].push_back(static_cast<int>(parts_.size()));
+                stretches_[stretch].push_back(count_of(parts_));
                 parts_.push_back({window.a, window.b, first, last});
             }
         }
@@ -275,7 +274,7 @@ public:
                 last = make_batch(stretch, first);
                 parallel_for(static_cast<int>(last - first), 1, [&](int k) {
                     const int part = stretch[first + static_cast<std::size_t>(k)];
-                    results[static_cast<std::size_t>(part)] = searched(parts_[static_cast<std::size_t>(part)]);
+                    results[part] = searched(parts_[part]);
                 });
             }
         }
@@ -292,13 +291,13 @@ private:
         int count() const { return last - first; }
     };
 
-    Stretch& body(int i) { return bodies_[static_cast<std::size_t>(i)]; }
+    Stretch& body(int i) { return bodies_[i]; }
 
     void begin_stretch(const std::vector<int>& stretch) {
         forget([](const Stretch&) { return true; });
         for (Stretch& known : bodies_) known.first = known.last = 0;
         for (const int index : stretch) {
-            const NearWindow& part = parts_[static_cast<std::size_t>(index)];
+            const NearWindow& part = parts_[index];
             for (const int i : {part.a, part.b}) {
                 const bool is_new = body(i).count() == 0;
                 body(i).first = is_new ? part.first : std::min(body(i).first, part.first);
@@ -323,7 +322,7 @@ private:
         std::vector<int> missing;
         std::size_t last = first;
         for (int kept = 0; last < stretch.size(); ++last) {
-            const NearWindow& part = parts_[static_cast<std::size_t>(stretch[last])];
+            const NearWindow& part = parts_[stretch[last]];
             int more = 0;
             for (const int i : {part.a, part.b}) more += body(i).batch == batch_ ? 0 : body(i).count();
             if (last > first && kept + more > most_body_segments) break;
@@ -346,19 +345,19 @@ private:
                 body(i).segments = std::move(spare_.back());
                 spare_.pop_back();
             }
-            body(i).segments.reserve(static_cast<std::size_t>(body(i).count()));
+            body(i).segments.reserve(body(i).count());
         }
-        const auto count = static_cast<int>(missing.size());
+        const auto count = count_of(missing);
         parallel_for((count + bodies_at_once - 1) / bodies_at_once, 1, [&](int block) {
             const auto from = missing.begin() + block * bodies_at_once,
                        to = missing.begin() + std::min(count, (block + 1) * bodies_at_once);
-            int begin = static_cast<int>(places_.size()), end = 0;
+            int begin = count_of(places_), end = 0;
             for (auto i = from; i != to; ++i) {
                 begin = std::min(begin, body(*i).first);
                 end = std::max(end, body(*i).last);
             }
             for (int k = begin; k < end; ++k) {
-                const PathPlace& place = places_[static_cast<std::size_t>(k)];
+                const PathPlace& place = places_[k];
                 for (auto i = from; i != to; ++i) {
                     Stretch& known = body(*i);
                     if (known.first <= k && k < known.last) known.segments.push_back(body_segment(segment_at(trajectory_, place, *i)));
@@ -368,14 +367,13 @@ private:
     }
 
     PairClearance searched(const NearWindow& part) const {
-        const BodyShape &shape_a = shapes_[static_cast<std::size_t>(part.a)], &shape_b = shapes_[static_cast<std::size_t>(part.b)];
-        const Stretch &a = bodies_[static_cast<std::size_t>(part.a)], &b = bodies_[static_cast<std::size_t>(part.b)];
+        const BodyShape &shape_a = shapes_[part.a], &shape_b = shapes_[part.b];
+        const Stretch &a = bodies_[part.a], &b = bodies_[part.b];
         PairMotion pair{*shape_a.tree, *shape_b.tree, trajectory_, {}, *shape_a.solid, *shape_b.solid};
-        pair.segments.reserve(static_cast<std::size_t>(part.last - part.first));
+        pair.segments.reserve(part.last - part.first);
         for (int i = part.first; i < part.last; ++i) {
-            const PathPlace& place = places_[static_cast<std::size_t>(i)];
-            pair.segments.push_back(pair_segment(a.segments[static_cast<std::size_t>(i - a.first)],
-                                                 b.segments[static_cast<std::size_t>(i - b.first)], pair.a.radius(), pair.b.radius()));
+            const PathPlace& place = places_[i];
+            pair.segments.push_back(pair_segment(a.segments[i - a.first], b.segments[i - b.first], pair.a.radius(), pair.b.radius()));
             pair.segments.back().step = place.step;
             pair.segments.back().segment = place.segment;
         }
@@ -416,16 +414,14 @@ NearClearances certify_near(const model::Model& model, const stepper::Trajectory
 
 NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, StepRange steps, double reach,
                             ClearanceOptions options) {
-    FETTLE_ASSERT(steps.first >= 0 && steps.first < steps.last && steps.last <= static_cast<int>(trajectory.steps.size()),
-                  "steps of the trajectory");
+    FETTLE_ASSERT(steps.first >= 0 && steps.first < steps.last && steps.last <= count_of(trajectory.steps), "steps of the trajectory");
     return certify_near(model, trajectory, path_places(trajectory, steps.first, steps.last), reach, std::move(options));
 }
 
 std::vector<Witness> nearest_by_window(const model::Model& model, const stepper::Trajectory& trajectory, const PairRequest& pair,
                                        const TimeWindows& windows, double reach, double tolerance) {
     const int steps = windows.last - windows.first;
-    FETTLE_ASSERT(windows.first >= 0 && steps > 0 && windows.last <= static_cast<int>(trajectory.steps.size()),
-                  "windows of the trajectory");
+    FETTLE_ASSERT(windows.first >= 0 && steps > 0 && windows.last <= count_of(trajectory.steps), "windows of the trajectory");
     const std::vector<PathPlace> places = path_places(trajectory, windows.first, windows.last);
     const std::vector<BodyMotion> motions = body_motions(model, trajectory, places, {pair.a, pair.b}, body_shapes(model, {pair.a, pair.b}));
     const BodyMotion &a = motions[pair.a], &b = motions[pair.b];
@@ -435,7 +431,7 @@ std::vector<Witness> nearest_by_window(const model::Model& model, const stepper:
     search.tolerance = tolerance;
     search.enough = reach;
     const int count = std::clamp(windows.count, 1, steps);
-    std::vector<WindowMinimum> minima(static_cast<std::size_t>(count));
+    std::vector<WindowMinimum> minima(count);
     const auto begin_of = [&](int w) {
         const int step = windows.first + static_cast<int>(static_cast<long>(w) * steps / count);
         const auto before = [](const PathPlace& place, int t) { return place.step < t; };

@@ -89,7 +89,7 @@ FirstContact first_contact(const PairMotion& pair, const Encounter& known, const
     double s_apart = 0, s_open = 1;
     for (int i = 0; i < time_halvings; ++i) {
         const double middle = 0.5 * (s_apart + s_open);
-        if (halving.is_apart({part_of(pair.segments[static_cast<std::size_t>(apart)], s_apart, middle)}, met)) {
+        if (halving.is_apart({part_of(pair.segments[apart], s_apart, middle)}, met)) {
             s_apart = middle;
         } else {
             first.encounter = met;

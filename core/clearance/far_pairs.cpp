@@ -62,13 +62,13 @@ public:
 private:
     // Of bodies that boxes keep apart neither is inside the other.
     Solids solids_of_boxes(const PairRequest& request) const {
-        const auto is_closed = [&](int body) { return shapes_[static_cast<std::size_t>(body)].solid->is_closed; };
+        const auto is_closed = [&](int body) { return shapes_[body].solid->is_closed; };
         return is_closed(request.a) && is_closed(request.b) ? Solids::disjoint : Solids::not_closed;
     }
 
     Solids solids_at_start(const PairRequest& request, double lower) const {
         const PathPlace& first = places_.front();
-        const auto &a = *shapes_[static_cast<std::size_t>(request.a)].solid, &b = *shapes_[static_cast<std::size_t>(request.b)].solid;
+        const auto &a = *shapes_[request.a].solid, &b = *shapes_[request.b].solid;
         certificate::PairStart start{trajectory_, first.step, first.segment, request.a, request.b};
         if (ask_for_path(a, b)) start.path = places_;
         start.charge = request.charge;
@@ -90,7 +90,7 @@ std::vector<std::optional<PairClearance>> far_pairs(const model::Model& model, c
                                                     const std::vector<BodyShape>& shapes, const ClearanceOptions& options) {
     std::vector<std::optional<PairClearance>> answers(pairs.size());
     const FarSearch search(model, trajectory, places, pairs, shapes, options);
-    parallel_for(static_cast<int>(pairs.size()), 64, [&](int i) { answers[i] = search.answer(pairs[i]); });
+    parallel_for(count_of(pairs), 64, [&](int i) { answers[i] = search.answer(pairs[i]); });
     return answers;
 }
 

@@ -37,13 +37,13 @@ struct Descent {
     // What is no number is not left out.
     void visit(int index, double reaches) {
         if (reaches <= best.value) return;
-        const Piece& piece = tree.pieces[static_cast<std::size_t>(index)];
+        const Piece& piece = tree.pieces[index];
         if (piece.is_element()) {
-            take(tree.elements[static_cast<std::size_t>(piece.first)]);
+            take(tree.elements[piece.first]);
             return;
         }
-        const double left = reach(tree.pieces[static_cast<std::size_t>(piece.left)], direction);
-        const double right = reach(tree.pieces[static_cast<std::size_t>(piece.right)], direction);
+        const double left = reach(tree.pieces[piece.left], direction);
+        const double right = reach(tree.pieces[piece.right], direction);
         if (left < right) {
             visit(piece.right, right);
             visit(piece.left, left);
@@ -69,22 +69,21 @@ Nearest nearest_of(const std::array<Vector3, 4>& x, int count) {
     }
     // Of fewer than three the last one is repeated.
     const auto of_triangle = [&](int i, int j, int k) {
-        const geometry::ClosestPoints closest = geometry::point_triangle_closest(
-            Vector3::Zero(), x[static_cast<std::size_t>(i)], x[static_cast<std::size_t>(j)], x[static_cast<std::size_t>(k)]);
+        const geometry::ClosestPoints closest = geometry::point_triangle_closest(Vector3::Zero(), x[i], x[j], x[k]);
         Nearest found;
         found.point = -closest.difference;
-        found.weight[static_cast<std::size_t>(i)] -= closest.weight[1];
-        found.weight[static_cast<std::size_t>(j)] -= closest.weight[2];
-        found.weight[static_cast<std::size_t>(k)] -= closest.weight[3];
+        found.weight[i] -= closest.weight[1];
+        found.weight[j] -= closest.weight[2];
+        found.weight[k] -= closest.weight[3];
         return found;
     };
     if (count <= 3) return of_triangle(0, 1, count - 1);
     bool outside = false;
     double least = 0;
     for (const auto& [i, j, k, other] : {std::array{0, 1, 2, 3}, std::array{0, 1, 3, 2}, std::array{0, 2, 3, 1}, std::array{1, 2, 3, 0}}) {
-        const Vector3& origin = x[static_cast<std::size_t>(i)];
-        const Vector3 normal = (x[static_cast<std::size_t>(j)] - origin).cross(x[static_cast<std::size_t>(k)] - origin);
-        const double inside = normal.dot(x[static_cast<std::size_t>(other)] - origin);
+        const Vector3& origin = x[i];
+        const Vector3 normal = (x[j] - origin).cross(x[k] - origin);
+        const double inside = normal.dot(x[other] - origin);
         if (normal.dot(-origin) * inside > 0) continue;
         const Nearest found = of_triangle(i, j, k);
         const double squared = found.point.squaredNorm();
@@ -99,10 +98,10 @@ Nearest nearest_of(const std::array<Vector3, 4>& x, int count) {
 }  // namespace
 
 Support support(const PieceTree& tree, const Vector3& direction, const Support& guess, int piece) {
-    const Piece& root = tree.pieces[static_cast<std::size_t>(piece)];
+    const Piece& root = tree.pieces[piece];
     Descent descent{tree, direction, value_of(*guess.element, guess.corner, direction)};
     if (root.count <= most_elements_in_turn) {
-        for (int i = root.first; i < root.first + root.count; ++i) descent.take(tree.elements[static_cast<std::size_t>(i)]);
+        for (int i = root.first; i < root.first + root.count; ++i) descent.take(tree.elements[i]);
     } else {
         descent.visit(piece, reach(root, direction));
     }
@@ -117,19 +116,18 @@ HullDirection::HullDirection(const PieceTree& a, const PieceTree& b, int piece_a
 // To the vertices that hold the point nearest to the origin, which is returned.
 Vector3 HullDirection::reduce() {
     std::array<Vector3, 4> points;
-    for (int i = 0; i < count_; ++i) points[static_cast<std::size_t>(i)] = simplex_[static_cast<std::size_t>(i)].difference;
+    for (int i = 0; i < count_; ++i) points[i] = simplex_[i].difference;
     const Nearest nearest = nearest_of(points, count_);
     int kept = 0;
     for (int i = 0; i < count_; ++i)
-        if (nearest.weight[static_cast<std::size_t>(i)] > 0)
-            simplex_[static_cast<std::size_t>(kept++)] = simplex_[static_cast<std::size_t>(i)];
+        if (nearest.weight[i] > 0) simplex_[kept++] = simplex_[i];
     count_ = std::max(kept, 1);  // none where four hold the origin
     return nearest.point;
 }
 
 HullDirection::Bound HullDirection::at(const RelativePose& pose, double tolerance) {
     for (int i = 0; i < count_; ++i) {
-        Vertex& vertex = simplex_[static_cast<std::size_t>(i)];
+        Vertex& vertex = simplex_[i];
         vertex.difference = pose.rotation * vertex.a.point() + pose.offset - vertex.b.point();
     }
     return approach(pose, [tolerance](double nearest, double apart) { return !(nearest - apart > tolerance); });
@@ -161,10 +159,10 @@ HullDirection::Bound HullDirection::approach(const RelativePose& pose, const IsD
         if (apart > best.apart) best = {n, apart};
         if (is_done(nearest.norm(), best.apart)) return best;
         for (int i = 0; i < count_; ++i) {
-            const Vertex& known = simplex_[static_cast<std::size_t>(i)];
+            const Vertex& known = simplex_[i];
             if (known.a.point() == next.a.point() && known.b.point() == next.b.point()) return best;
         }
-        simplex_[static_cast<std::size_t>(count_++)] = next;
+        simplex_[count_++] = next;
     }
     return best;
 }

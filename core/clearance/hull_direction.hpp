@@ -23,9 +23,7 @@ struct Support {
 
     Vector3 point() const { return element->corners.x.col(corner); }
 };
-inline Support any_support(const PieceTree& tree, int piece = 0) {
-    return {&tree.elements[static_cast<std::size_t>(tree.pieces[static_cast<std::size_t>(piece)].first)], 0, 0};
-}
+inline Support any_support(const PieceTree& tree, int piece = 0) { return {&tree.elements[tree.pieces[piece].first], 0, 0}; }
 /// The direction of the corners of a piece; 0: all.
 /// @param guess  one of them to begin with: the nearer to the answer, the faster
 Support support(const PieceTree& tree, const Vector3& direction, const Support& guess, int piece = 0);

@@ -27,7 +27,7 @@ constexpr double covered = 1 + 1e-15;  // a turn in spite of rounding
 bool is_held(const model::Body& body) {
     for (int k = 0; k < 6; ++k) {
         if (model::is_free(body, k)) return false;
-        const scene::MotionCurve& curve = *body.prescribed[static_cast<std::size_t>(k)];
+        const scene::MotionCurve& curve = *body.prescribed[k];
         const bool still = std::all_of(curve.values.begin(), curve.values.end(), [](double u) { return u == 0; });
         if (curve.rate != 0 || !still) return false;
     }
@@ -78,11 +78,11 @@ private:
 
     bool is_world(int body) const {
         if (body < 0) return true;
-        const model::Body& b = model_.bodies[static_cast<std::size_t>(body)];
+        const model::Body& b = model_.bodies[body];
         return b.type == scene::BodyType::static_body || is_held(b);
     }
 
-    const std::string& name_of(int body) const { return model_.bodies[static_cast<std::size_t>(body)].name; }
+    const std::string& name_of(int body) const { return model_.bodies[body].name; }
 
     void check_joints() {
         for (const Joint* joint : joints_) {
@@ -94,7 +94,7 @@ private:
                         "joints");
             for (const int body : {joint->a, joint->b}) {
                 if (is_world(body)) continue;
-                const model::Body& b = model_.bodies[static_cast<std::size_t>(body)];
+                const model::Body& b = model_.bodies[body];
                 bool free = b.type == scene::BodyType::dynamic_body;
                 for (int k = 0; k < 6; ++k) free = free && model::is_free(b, k);
                 if (!free)
@@ -110,12 +110,12 @@ private:
         std::vector<bool> reached(model_.bodies.size(), false);
         std::vector<bool> used(joints_.size(), false);
         std::vector<int> pending;
-        for (int i = 0; i < static_cast<int>(model_.bodies.size()); ++i) reached[static_cast<std::size_t>(i)] = is_world(i);
+        for (int i = 0; i < count_of(model_.bodies); ++i) reached[i] = is_world(i);
         grow(-1, reached, used, pending);
-        for (int i = 0; i < static_cast<int>(model_.bodies.size()); ++i) {
-            if (reached[static_cast<std::size_t>(i)]) continue;
+        for (int i = 0; i < count_of(model_.bodies); ++i) {
+            if (reached[i]) continue;
             out_.held.push_back(name_of(i));
-            reached[static_cast<std::size_t>(i)] = true;
+            reached[i] = true;
             grow(i, reached, used, pending);
         }
     }
@@ -132,11 +132,11 @@ private:
                 used[k] = true;
                 const int other = is_at(joint.a) ? joint.b : joint.a;
                 if (is_at(other)) continue;  // between two things that do not move
-                if (reached[static_cast<std::size_t>(other)]) {
+                if (reached[other]) {
                     name_loop(joint, at, other);
                     continue;
                 }
-                reached[static_cast<std::size_t>(other)] = true;
+                reached[other] = true;
                 hang(joint, at, other);
                 pending.push_back(other);
             }
@@ -145,7 +145,7 @@ private:
 
     std::vector<const Joint*> line_of(int body) const {
         std::vector<const Joint*> out;
-        for (int at = body; at >= 0; at = out_.linkage.bodies[static_cast<std::size_t>(at)].parent) {
+        for (int at = body; at >= 0; at = out_.linkage.bodies[at].parent) {
             const auto by = hung_by_.find(at);
             if (by != hung_by_.end()) out.push_back(by->second);
         }
@@ -168,11 +168,11 @@ private:
     }
 
     void hang(const Joint& joint, int parent, int body) {
-        certificate::LinkedBody& link = out_.linkage.bodies[static_cast<std::size_t>(body)];
+        certificate::LinkedBody& link = out_.linkage.bodies[body];
         link.parent = parent;
         hung_by_[body] = &joint;
         if (joint.kind == JointKind::fixed) return;
-        const measure::PlacedFrame& frame = frames_[static_cast<std::size_t>(joint.frame_a)];
+        const measure::PlacedFrame& frame = frames_[joint.frame_a];
         const double sense = body == joint.b ? 1 : -1;  // the coordinate is of b against a
         Screw screw{0, frame.point, frame.axes.col(2), 0, 0};
         const bool turns = joint.kind == JointKind::revolute || joint.kind == JointKind::screw;
@@ -188,7 +188,7 @@ private:
     }
 
     int add_variable(const Joint& joint, int measure, bool is_angle) {
-        const auto place = static_cast<int>(variables_.size());
+        const auto place = count_of(variables_);
         double start = 0;
         if (measure >= 0) {
             const auto m = static_cast<std::size_t>(measure);
@@ -201,7 +201,7 @@ private:
     template <class Visit>
     void for_rows(const Visit& visit) const {
         for (const auto* rows : {&model_.mechanism.rows, &model_.mechanism.dependent})
-            for (const constraint::Row& row : *rows) visit(row, model_.mechanism.joints[static_cast<std::size_t>(row.owner)]);
+            for (const constraint::Row& row : *rows) visit(row, model_.mechanism.joints[row.owner]);
     }
 
     // [m] per radian: the row is slide + factor angle = constant.
@@ -225,7 +225,7 @@ private:
             if (!couples_joints(owner.kind)) return;
             const int first = variable_of(row.parts[0].measure), second = variable_of(row.parts[1].measure);
             if (first < 0 || second < 0) return;  // of joints between what does not move
-            const Affine a = variables_[static_cast<std::size_t>(first)].is, b = variables_[static_cast<std::size_t>(second)].is;
+            const Affine a = variables_[first].is, b = variables_[second].is;
             const double f = row.parts[0].factor, g = row.parts[1].factor;
             if (a.free == b.free) {
                 if (std::abs(f * a.scale + g * b.scale) > 1e-12 * std::abs(f * a.scale))
@@ -244,13 +244,13 @@ private:
         std::vector<int> place(variables_.size(), -1);
         for (std::size_t i = 0; i < variables_.size(); ++i) {
             if (variables_[i].is.free != static_cast<int>(i)) continue;
-            place[i] = static_cast<int>(out_.linkage.coordinates.size());
+            place[i] = count_of(out_.linkage.coordinates);
             out_.linkage.coordinates.push_back(coordinate_of(static_cast<int>(i)));
         }
         for (certificate::LinkedBody& body : out_.linkage.bodies)
             for (Screw& screw : body.screws) {
-                const Affine& is = variables_[static_cast<std::size_t>(screw.coordinate)].is;
-                screw.coordinate = place[static_cast<std::size_t>(is.free)];
+                const Affine& is = variables_[screw.coordinate].is;
+                screw.coordinate = place[is.free];
                 screw.turn *= is.scale;
                 screw.slide *= is.scale;
             }
@@ -258,7 +258,7 @@ private:
 
     LinkageCoordinate coordinate_of(int free) {
         LinkageCoordinate out;
-        out.start = variables_[static_cast<std::size_t>(free)].start;
+        out.start = variables_[free].start;
         out.low = -std::numeric_limits<double>::infinity();
         out.high = -out.low;
         const Variable* slides = nullptr;

@@ -32,8 +32,8 @@ public:
     std::set<int> bodies_of(const constraint::Row& row) const {
         std::set<int> out;
         for (const constraint::RowPart& part : row.parts) {
-            const measure::Measure& m = mechanism_.set.measures[static_cast<std::size_t>(part.measure)];
-            for (const int frame : {m.a, m.b}) out.insert(mechanism_.set.frames[static_cast<std::size_t>(frame)].body);
+            const measure::Measure& m = mechanism_.set.measures[part.measure];
+            for (const int frame : {m.a, m.b}) out.insert(mechanism_.set.frames[frame].body);
         }
         out.erase(measure::world);
         return out;
@@ -49,9 +49,9 @@ public:
 
 private:
     int place_of_measure(int measure) {
-        const auto [known, is_new] = measures_.try_emplace(measure, static_cast<int>(joints.set.measures.size()));
+        const auto [known, is_new] = measures_.try_emplace(measure, count_of(joints.set.measures));
         if (is_new) {
-            measure::Measure copy = mechanism_.set.measures[static_cast<std::size_t>(measure)];
+            measure::Measure copy = mechanism_.set.measures[measure];
             copy.a = place_of_frame(copy.a);
             copy.b = place_of_frame(copy.b);
             joints.set.measures.push_back(copy);
@@ -60,8 +60,8 @@ private:
     }
 
     int place_of_frame(int frame) {
-        const auto [known, is_new] = frames_.try_emplace(frame, static_cast<int>(joints.set.frames.size()));
-        if (is_new) joints.set.frames.push_back(mechanism_.set.frames[static_cast<std::size_t>(frame)]);
+        const auto [known, is_new] = frames_.try_emplace(frame, count_of(joints.set.frames));
+        if (is_new) joints.set.frames.push_back(mechanism_.set.frames[frame]);
         return known->second;
     }
 
@@ -125,7 +125,7 @@ PairClearance charged(PairClearance pair, double minimum, double charge) {
 base::Result<IdealJoints> ideal_joints(const model::Model& model, const std::vector<std::string>& held) {
     Gathering gathering(model.mechanism);
     const std::set<std::string> still(held.begin(), held.end());
-    const auto body_of = [&](int i) -> const model::Body& { return model.bodies[static_cast<std::size_t>(i)]; };
+    const auto body_of = [&](int i) -> const model::Body& { return model.bodies[i]; };
     std::set<int> moved;
     for (const constraint::Row& row : model.mechanism.rows) {
         const std::set<int> bodies = gathering.bodies_of(row);
@@ -147,11 +147,11 @@ base::Result<IdealJoints> ideal_joints(const model::Model& model, const std::vec
 
 std::vector<int> jointed_bodies(const model::Model& model, const std::vector<std::string>& held) {
     const Gathering gathering(model.mechanism);
-    const auto is_held = [&](int i) { return std::count(held.begin(), held.end(), model.bodies[static_cast<std::size_t>(i)].name) > 0; };
+    const auto is_held = [&](int i) { return std::count(held.begin(), held.end(), model.bodies[i].name) > 0; };
     std::set<int> out;
     for (const constraint::Row& row : model.mechanism.rows)
         for (const int i : gathering.bodies_of(row))
-            if (!is_wholly(model.bodies[static_cast<std::size_t>(i)], false) && !is_held(i)) out.insert(i);
+            if (!is_wholly(model.bodies[i], false) && !is_held(i)) out.insert(i);
     return {out.begin(), out.end()};
 }
 

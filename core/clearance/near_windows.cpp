@@ -29,10 +29,10 @@ class NearSearch {
 public:
     NearSearch(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PathPlace>& places, double reach,
                const PairFilter& wanted)
-        : trajectory_(trajectory), places_(places), reach_(reach), wanted_(wanted), bodies_(static_cast<int>(model.bodies.size())) {
-        spans_.segments = static_cast<int>(places.size());
+        : trajectory_(trajectory), places_(places), reach_(reach), wanted_(wanted), bodies_(count_of(model.bodies)) {
+        spans_.segments = count_of(places);
         spans_.count = std::clamp(most_boxes / std::max(bodies_, 1), 1, std::min(spans_.segments, most_time_spans));
-        boxes_.resize(static_cast<std::size_t>(bodies_));
+        boxes_.resize(bodies_);
         usable_ = have_usable_numbers(model, trajectory, places);
         parallel_for(bodies_, 1, [&](int i) { boxes_[i] = box_of(model.bodies[i].mesh); });
         const double telling = telling_spans();
@@ -40,11 +40,11 @@ public:
     }
 
     NearWindows run() {
-        std::vector<geometry::BoxSweep::Pairs> near(static_cast<std::size_t>(spans_.count));
+        std::vector<geometry::BoxSweep::Pairs> near(spans_.count);
         parallel_for(spans_.count, 1, [&](int k) { near[k] = near_in(k); });
         std::vector<NearSpan> rows;
         for (int k = 0; k < spans_.count; ++k) {
-            for (const auto& [a, b] : near[static_cast<std::size_t>(k)]) rows.push_back({a, b, k});
+            for (const auto& [a, b] : near[k]) rows.push_back({a, b, k});
         }
         rows = sorted_by_body(sorted_by_body(rows, &NearSpan::b), &NearSpan::a);
         NearWindows result;
@@ -58,7 +58,7 @@ private:
     // So many spans that each body goes a small share of its size in each, about: more would tell no better what comes near.
     double telling_spans() const {
         constexpr double share = 0.1;
-        std::vector<double> way(static_cast<std::size_t>(bodies_), 0);
+        std::vector<double> way(bodies_, 0);
         parallel_for((bodies_ + bodies_at_once - 1) / bodies_at_once, 1, [&](int block) {
             const int first = block * bodies_at_once, last = std::min(bodies_, first + bodies_at_once);
             measure_ways({trajectory_, places_, first, last}, boxes_, way.data() + first);
@@ -79,21 +79,19 @@ private:
         for (const NearSpan& row : rows) ++next[static_cast<std::size_t>(row.*body) + 1];
         std::partial_sum(next.begin(), next.end(), next.begin());
         std::vector<NearSpan> sorted(rows.size());
-        for (const NearSpan& row : rows) sorted[next[static_cast<std::size_t>(row.*body)]++] = row;
+        for (const NearSpan& row : rows) sorted[next[row.*body]++] = row;
         return sorted;
     }
 
     geometry::BoxSweep::Pairs near_in(int span) const {
         const int first = spans_.first(span), last = spans_.first(span + 1);
-        std::vector<geometry::Box> boxes(static_cast<std::size_t>(bodies_));
-        sweep(
-            {trajectory_, std::span(places_).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(last - first)), 0, bodies_},
-            boxes_, boxes.data());
+        std::vector<geometry::Box> boxes(bodies_);
+        sweep({trajectory_, std::span(places_).subspan(first, static_cast<std::size_t>(last - first)), 0, bodies_}, boxes_, boxes.data());
         std::vector<int> usable;
         usable.reserve(boxes.size());
         for (int i = 0; i < bodies_; ++i)
-            if (usable_[static_cast<std::size_t>(i)] != 0) usable.push_back(i);
-        const auto count = static_cast<int>(usable.size());
+            if (usable_[i] != 0) usable.push_back(i);
+        const auto count = count_of(usable);
         geometry::BoxSweep::Pairs pairs;
         geometry::BoxSweep(boxes, std::move(usable)).find(0, count, reach_, pairs);
         pairs.erase(std::remove_if(pairs.begin(), pairs.end(), [&](const auto& pair) { return !wanted_(pair.first, pair.second); }),
@@ -113,9 +111,9 @@ private:
     void add_unmeasurable(std::vector<NearWindow>& windows) const {
         const std::size_t measurable = windows.size();
         for (int i = 0; i < bodies_; ++i) {
-            if (usable_[static_cast<std::size_t>(i)] != 0) continue;
+            if (usable_[i] != 0) continue;
             for (int j = 0; j < bodies_; ++j) {
-                const bool told = usable_[static_cast<std::size_t>(j)] == 0 && j < i;
+                const bool told = usable_[j] == 0 && j < i;
                 const int a = std::min(i, j), b = std::max(i, j);
                 if (!told && i != j && wanted_(a, b)) windows.push_back({a, b, 0, spans_.segments, false});
             }
@@ -162,9 +160,9 @@ PairMotion window_motion(const std::vector<BodyShape>& shapes, const stepper::Tr
                          const NearWindow& window) {
     const BodyShape &a = shapes[window.a], &b = shapes[window.b];
     PairMotion pair{*a.tree, *b.tree, trajectory, {}, *a.solid, *b.solid};
-    pair.segments.reserve(static_cast<std::size_t>(window.last - window.first));
+    pair.segments.reserve(window.last - window.first);
     for (int i = window.first; i < window.last; ++i) {
-        const PathPlace& place = places[static_cast<std::size_t>(i)];
+        const PathPlace& place = places[i];
         pair.segments.push_back(pair_segment(segment_at(trajectory, place, window.a), segment_at(trajectory, place, window.b),
                                              pair.a.radius(), pair.b.radius()));
         pair.segments.back().step = place.step;

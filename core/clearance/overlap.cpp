@@ -23,16 +23,16 @@ double distance_to_surface(const Vector3& x, const PieceTree& tree) {
     double squared = infinity;
     std::vector<std::pair<double, int>> pending{{0, 0}};
     const auto apart = [&](int i) {
-        const Piece& p = tree.pieces[static_cast<std::size_t>(i)];
+        const Piece& p = tree.pieces[i];
         return ((p.axes.transpose() * (x - p.center)).cwiseAbs() - p.half_extent).cwiseMax(0).squaredNorm();
     };
     while (!pending.empty()) {
         const auto [least, index] = pending.back();
         pending.pop_back();
         if (least >= squared) continue;
-        const Piece& piece = tree.pieces[static_cast<std::size_t>(index)];
+        const Piece& piece = tree.pieces[index];
         if (piece.is_element()) {
-            const Corners& c = tree.elements[static_cast<std::size_t>(piece.first)].corners;
+            const Corners& c = tree.elements[piece.first].corners;
             if (c.count == 3)
                 squared = std::min(squared, geometry::point_triangle_closest(x, c.x.col(0), c.x.col(1), c.x.col(2)).distance_squared);
             continue;

@@ -210,7 +210,7 @@ private:
     std::vector<Instant> instants() const {
         std::vector<Instant> list{{found_.nearest.segment, found_.nearest.s}};
         if (known_.segment >= 0) list.push_back({known_.segment, known_.s});
-        const auto count = static_cast<int>(pair_.segments.size());
+        const auto count = count_of(pair_.segments);
         const int nodes = std::min(count, most_instants - 3);
         for (int i = 0; i < nodes; ++i) list.push_back({static_cast<int>(static_cast<long>(i) * count / nodes), 0});
         list.push_back({count - 1, 1});
@@ -223,7 +223,7 @@ private:
     }
 
     std::optional<Overlap> overlap_at(const Instant& at, int cells) const {
-        const PairSegment& segment = pair_.segments[static_cast<std::size_t>(at.segment)];
+        const PairSegment& segment = pair_.segments[at.segment];
         auto overlap = clearance::overlap_at({pair_.a, pair_.solid_a}, {pair_.b, pair_.solid_b}, segment, at.s, cells);
         if (!overlap) return overlap;
         overlap->time = time_of(pair_, at.segment, at.s);

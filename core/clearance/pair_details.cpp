@@ -52,7 +52,7 @@ std::vector<Witness> all_witnesses(const PairMotion& pair, const Encounter& firs
     const auto nearer = [](const Encounter& x, const Encounter& y) { return x.pair.distance < y.pair.distance; };
     std::stable_sort(found.begin(), found.end(), nearer);
     for (const Encounter& encounter : found) {
-        if (static_cast<int>(witnesses.size()) >= most) break;
+        if (count_of(witnesses) >= most) break;
         const Witness w = witness_of(pair, encounter);
         const auto same = [&](const Witness& other) { return is_same(w, other, pair.trajectory.timestep); };
         if (std::none_of(witnesses.begin(), witnesses.end(), same)) witnesses.push_back(w);
@@ -64,7 +64,7 @@ std::vector<MarginInterval> margin_curve(const PairMotion& pair, const SearchRes
     std::vector<MarginInterval> margin;
     SearchOptions options = search;
     options.exact_witness = false;
-    for (int i = 0; i < static_cast<int>(pair.segments.size()); ++i) {
+    for (int i = 0; i < count_of(pair.segments); ++i) {
         const PairSegment& segment = pair.segments[i];
         // A first search to a thousandth of the distance, then finer where that is not enough.
         options.tolerance = std::max(search.tolerance, 1e-3 * whole.upper);
@@ -77,7 +77,7 @@ std::vector<MarginInterval> margin_curve(const PairMotion& pair, const SearchRes
         options.seed = found.nearest;  // the same elements a moment later
         options.seed->segment = 0;
         options.seed->s = 0;
-        if (i + 1 < static_cast<int>(pair.segments.size())) {
+        if (i + 1 < count_of(pair.segments)) {
             const Encounter& last = found.nearest;
             options.seed->pair = placed_distance(instant_at(pair.segments[i + 1], 0), pair.a.elements[last.element_a].corners,
                                                  pair.b.elements[last.element_b].corners);

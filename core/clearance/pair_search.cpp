@@ -46,9 +46,9 @@ class SegmentSearch {
 public:
     explicit SegmentSearch(SearchFront& front)
         : front_(front), recorder_(front.options.proof != nullptr, front.segments.size()), hulls_(front.a, front.b) {
-        const auto count = static_cast<int>(front_.segments.size());
-        intervals_.resize(static_cast<std::size_t>(count));
-        bounds_.resize(static_cast<std::size_t>(count));
+        const auto count = count_of(front_.segments);
+        intervals_.resize(count);
+        bounds_.resize(count);
         if (is_nodes_only()) {
             for (int i = 0; i < count; ++i) make_whole(i);
             const int end = add_instant(front_.segments.back(), 1);
@@ -58,9 +58,9 @@ public:
 
     /// Both whole bodies, over every segment.
     void try_roots() {
-        const auto roots = static_cast<int>(intervals_.size());
+        const auto roots = count_of(intervals_);
         for (int i = 0; i < roots; ++i) {
-            if (i < static_cast<int>(front_.segments.size())) make_whole(i);
+            if (i < count_of(front_.segments)) make_whole(i);
             try_pieces(i, 0, 0, {recorder_.root(intervals_[i].segment)});
         }
     }
@@ -125,7 +125,7 @@ public:
     /// time itself right, whose error is the square root of that.
     void refine_nearest() {
         SearchResult& result = front_.result;
-        const PairSegment& segment = front_.segments[static_cast<std::size_t>(result.nearest.segment)];
+        const PairSegment& segment = front_.segments[result.nearest.segment];
         const bool was_crossing = result.nearest.pair.intersecting;
         const Encounter better = refined(segment, front_.a, front_.b, result.nearest);
         if (better.pair.intersecting != was_crossing) return;
@@ -164,7 +164,7 @@ private:
 
     void make_whole(int segment) {
         if (intervals_[segment].start >= 0) return;
-        const PairSegment& moving = front_.segments[static_cast<std::size_t>(segment)];
+        const PairSegment& moving = front_.segments[segment];
         const int start = add_instant(moving, 0);
         if (is_nodes_only() || is_still(moving)) return set_interval(segment, {segment, start, start, start, -1, -1, 0});
         const int middle = add_instant(moving, 0.5), end = add_instant(moving, 1);
@@ -179,12 +179,12 @@ private:
     void push_interval(const Interval& i) {
         intervals_.push_back(i);
         bounds_.emplace_back();
-        set_interval(static_cast<int>(intervals_.size()) - 1, i);
+        set_interval(count_of(intervals_) - 1, i);
     }
 
     int add_instant(const PairSegment& segment, double s) {
         instants_.push_back(instant_at(segment, s));
-        return static_cast<int>(instants_.size()) - 1;
+        return count_of(instants_) - 1;
     }
 
     void make_halves(int index) {
@@ -192,7 +192,7 @@ private:
         const double s0 = instants_[interval.start].s, s1 = instants_[interval.end].s;
         const int first = add_instant(segment_of(interval), 0.75 * s0 + 0.25 * s1);
         const int second = add_instant(segment_of(interval), 0.25 * s0 + 0.75 * s1);
-        interval.first_half = static_cast<int>(intervals_.size());
+        interval.first_half = count_of(intervals_);
         interval.second_half = interval.first_half + 1;
         push_interval({interval.segment, interval.start, first, interval.middle, -1, -1, interval.halvings + 1});
         push_interval({interval.segment, interval.middle, second, interval.end, -1, -1, interval.halvings + 1});
@@ -317,8 +317,7 @@ private:
 
     Separation measure(int segment_index, const Instant& at, int element_a, int element_b) {
         const bool again = measured_.segment >= 0 && measured_.element_a == element_a && measured_.element_b == element_b;
-        const Corners &corners_a = front_.a.elements[static_cast<std::size_t>(element_a)].corners,
-                      &corners_b = front_.b.elements[static_cast<std::size_t>(element_b)].corners;
+        const Corners &corners_a = front_.a.elements[element_a].corners, &corners_b = front_.b.elements[element_b].corners;
         const ElementPairDistance pair = placed_distance(at, corners_a, corners_b, again ? &measured_.pair : nullptr);
         measured_ = {segment_index, at.s, element_a, element_b, pair};
         front_.take_upper(measured_);
@@ -389,7 +388,7 @@ private:
     }
 
     bool is_nodes_only() const { return front_.options.nodes_only; }
-    const PairSegment& segment_of(const Interval& interval) const { return front_.segments[static_cast<std::size_t>(interval.segment)]; }
+    const PairSegment& segment_of(const Interval& interval) const { return front_.segments[interval.segment]; }
     const Piece& piece_a(int i) const { return front_.a.pieces[i]; }
     const Piece& piece_b(int i) const { return front_.b.pieces[i]; }
     const Corners& corners_a(int piece) const { return front_.a.elements[front_.a.pieces[piece].first].corners; }
@@ -465,8 +464,8 @@ private:
         int nearest = 0;                               // node: where the pieces are likely to be nearest
     };
 
-    const Piece& piece_a(int i) const { return front_.a.pieces[static_cast<std::size_t>(i)]; }
-    const Piece& piece_b(int i) const { return front_.b.pieces[static_cast<std::size_t>(i)]; }
+    const Piece& piece_a(int i) const { return front_.a.pieces[i]; }
+    const Piece& piece_b(int i) const { return front_.b.pieces[i]; }
     bool are_elements(const Entry& entry) const { return piece_a(entry.a).is_element() && piece_b(entry.b).is_element(); }
     Entry whole_group(int index, int a, int b, double lower) const {
         const SpanGroup& group = spans_.group(index);
@@ -544,8 +543,8 @@ private:
         for_bits(open, [&](int j) {
             ++front_.result.evaluations;
             const HullDirection::Bound bound = hulls_.at(group.at(j), tolerance);
-            planes.n[static_cast<std::size_t>(j)] = bound.n;
-            planes.f[static_cast<std::size_t>(j)] = bound.apart;
+            planes.n[j] = bound.n;
+            planes.f[j] = bound.apart;
             if (!(bound.apart < front_.cutoff())) return;
             const int of_moving = hulls_.element_a(), of_fixed = hulls_.element_b();
             segments_.measure_at(group.end_at(j), frame_.exchanged ? of_fixed : of_moving, frame_.exchanged ? of_moving : of_fixed);
@@ -623,7 +622,7 @@ private:
     // Bounds along the direction of the closest points at a node, which is an upper bound, too.
     void measure_at(Entry& entry, int node) {
         const SegmentEnd place = spans_.group(entry.group).end_at(node);
-        const BodySegment& fixed = frame_.fixed(front_.segments[static_cast<std::size_t>(place.segment)]);
+        const BodySegment& fixed = frame_.fixed(front_.segments[place.segment]);
         const Matrix3& frame = fixed.poses[place.at_end ? 2 : 0].rotation;
         const Separation found = segments_.measure_at(place, piece_a(entry.a).first, piece_b(entry.b).first);
         entry.nearest = node;
@@ -702,7 +701,7 @@ private:
     void take_nearest_at_instant() {
         constexpr long most_evaluations = 2000;  // of faces that slide along each other many are as near
         const Encounter known = front_.result.nearest;
-        const PairSegment& segment = front_.segments[static_cast<std::size_t>(known.segment)];
+        const PairSegment& segment = front_.segments[known.segment];
         const std::vector<PairSegment> held{held_at(segment, known.s, front_.a.radius(), front_.b.radius())};
         SearchOptions options;
         options.tolerance = 3 * held.front().slack;  // what bounds are told less by, and distances more

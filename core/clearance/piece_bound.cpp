@@ -46,12 +46,12 @@ IntervalBound::IntervalBound(const PairSegment& segment, const Instant& start, c
     const double third = 1.0 / 3;
     const auto prepare = [&](const Matrix3& r0, const Matrix3& rm, const Matrix3& r1, std::array<Functionals, 3>& out) {
         const Matrix3 first = third * (4 * rm - r1), second = third * (4 * rm - r0);
-        for (int k = 0; k < 3; ++k) out[static_cast<std::size_t>(k)] << r0.row(k), first.row(k), second.row(k), r1.row(k);
+        for (int k = 0; k < 3; ++k) out[k] << r0.row(k), first.row(k), second.row(k), r1.row(k);
     };
     prepare(start.rotation_a, middle.rotation_a, end.rotation_a, of_a_);
     prepare(start.rotation_b, middle.rotation_b, end.rotation_b, of_b_);
     const Vector3 first = third * (4 * middle.offset - end.offset), second = third * (4 * middle.offset - start.offset);
-    for (int k = 0; k < 3; ++k) offset_[static_cast<std::size_t>(k)] << start.offset[k], first[k], second[k], end.offset[k];
+    for (int k = 0; k < 3; ++k) offset_[k] << start.offset[k], first[k], second[k], end.offset[k];
     const double half = 0.5 * length_, cube = length_ * length_ * length_ / 36 * rounded_up;
     drift_ = half * (segment.a->path.position_step - segment.b->path.position_step).norm() * rounded_up;
     rate_a_ = half * segment.a->speed * segment.a->base_norm * rounded_up;

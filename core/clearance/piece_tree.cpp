@@ -39,7 +39,7 @@ public:
     // Once all pieces are there: what they hold does not depend on their boxes.
     void finish() {
         constexpr int pieces_at_once = 64;  // that a thread takes
-        base::parallel_for(static_cast<int>(tree_.pieces.size()), pieces_at_once, [&](int i) {
+        base::parallel_for(count_of(tree_.pieces), pieces_at_once, [&](int i) {
             Piece& piece = tree_.pieces[i];
             if (piece.count <= most_elements_of_turned_box) turn_box(piece);
             piece.size = piece.half_extent.norm();
@@ -49,7 +49,7 @@ public:
 private:
     int start(const Piece& piece) {
         tree_.pieces.push_back(piece);
-        return static_cast<int>(tree_.pieces.size()) - 1;
+        return count_of(tree_.pieces) - 1;
     }
 
     // By the covariance of the corners; kept if the faces of the new box are smaller.

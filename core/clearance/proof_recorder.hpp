@@ -19,17 +19,17 @@ public:
     /// By '0' (time), 'a' or 'b': the two new cells, in order.
     std::pair<int, int> split(int cell, char kind) {
         if (!on_) return {-1, -1};
-        const int first = static_cast<int>(cells_.size());
-        cells_[static_cast<std::size_t>(cell)].split = kind;
-        cells_[static_cast<std::size_t>(cell)].first_child = first;
+        const int first = count_of(cells_);
+        cells_[cell].split = kind;
+        cells_[cell].first_child = first;
         cells_.resize(cells_.size() + 2);
         return {first, first + 1};
     }
     void set_plane(int cell, const certificate::LeafPlane& plane) {
-        if (on_) cells_[static_cast<std::size_t>(cell)].plane = plane;
+        if (on_) cells_[cell].plane = plane;
     }
     /// What was set; not if off.
-    certificate::LeafPlane plane(int cell) const { return on_ ? cells_[static_cast<std::size_t>(cell)].plane : certificate::LeafPlane{}; }
+    certificate::LeafPlane plane(int cell) const { return on_ ? cells_[cell].plane : certificate::LeafPlane{}; }
     /// One proof per segment.
     void write(std::vector<certificate::BoxProof>& proof) const {
         const std::size_t segments = segment_count();

@@ -21,7 +21,7 @@ using kinematics::Pose;
 ScrewedBody screwed_body(const std::vector<Screw>& screws, const Coordinates& start, const Pose& pose) {
     ScrewedBody out{screws, {}, {}, pose};
     for (std::size_t j = 0; j < screws.size(); ++j) {
-        out.starts.push_back(start[static_cast<std::size_t>(screws[j].coordinate)]);
+        out.starts.push_back(start[screws[j].coordinate]);
         double tilt = 0;
         for (std::size_t i = 0; i < j; ++i)
             if (screws[i].turn != 0) tilt += 2 * screws[i].axis.cross(screws[j].axis).norm();
@@ -83,16 +83,16 @@ Coordinates middle_of(const CoordinateBox& box) {
 
 ScrewedPair screwed_pair(const PieceTree& a, const PieceTree& b, const certificate::Linkage& linkage, const LinkedPair& linked,
                          const Pose& start_a, const Pose& start_b) {
-    ScrewedPair out{a, b, {}, {}, static_cast<int>(linked.coordinates.size()), {}, {}, {}, 0};
+    ScrewedPair out{a, b, {}, {}, count_of(linked.coordinates), {}, {}, {}, 0};
     std::array<int, most_coordinates> screws{};
     for (std::size_t k = 0; k < linked.coordinates.size(); ++k) {
-        const certificate::LinkageCoordinate& c = linkage.coordinates[static_cast<std::size_t>(linked.coordinates[k])];
+        const certificate::LinkageCoordinate& c = linkage.coordinates[linked.coordinates[k]];
         out.start[k] = c.start;
         out.ranges.low[k] = c.low;
         out.ranges.high[k] = c.high;
     }
     for (const auto* side : {&linked.a, &linked.b})
-        for (const Screw& screw : *side) ++screws[static_cast<std::size_t>(screw.coordinate)];
+        for (const Screw& screw : *side) ++screws[screw.coordinate];
     for (std::size_t k = 0; k < screws.size(); ++k) out.is_single[k] = screws[k] == 1;
     out.body_a = screwed_body(linked.a, out.start, start_a);
     out.body_b = screwed_body(linked.b, out.start, start_b);
@@ -103,7 +103,7 @@ ScrewedPair screwed_pair(const PieceTree& a, const PieceTree& b, const certifica
 Pose pose_of(const ScrewedBody& body, const Coordinates& at) {
     Pose out = body.start;
     for (std::size_t j = body.screws.size(); j-- > 0;)
-        out = after(motion_of(body.screws[j], at[static_cast<std::size_t>(body.screws[j].coordinate)] - body.starts[j]), out);
+        out = after(motion_of(body.screws[j], at[body.screws[j].coordinate] - body.starts[j]), out);
     return out;
 }
 
@@ -137,7 +137,7 @@ BoxBound::Radii BoxBound::radii(const View& view, const Piece& piece, const Corn
     double moved = 0;
     for (std::size_t j = view.body.screws.size(); j-- > 0;) {
         const Screw& screw = view.body.screws[j];
-        const double half = half_[static_cast<std::size_t>(screw.coordinate)];
+        const double half = half_[screw.coordinate];
         double r = 0;
         if (element != nullptr) {
             for (int i = 0; i < element->count; ++i)
@@ -175,7 +175,7 @@ void BoxBound::add_losses(const View& view, const Radii& r, const std::vector<Ve
 RangeBound BoxBound::bound(const std::array<double, 1 << most_coordinates>& values, double at_middle, const Losses& losses) const {
     RangeBound out;
     double low = std::numeric_limits<double>::infinity(), widest = -1;
-    for (int c = 0; c < corners(); ++c) low = least_of(low, values[static_cast<std::size_t>(c)]);
+    for (int c = 0; c < corners(); ++c) low = least_of(low, values[c]);
     out.lower = low - losses.total * base::rounded_up - pair_.slack;
     out.loosened = at_middle - out.lower;
     for (std::size_t k = 0; k < static_cast<std::size_t>(pair_.count); ++k) {

@@ -47,17 +47,17 @@ public:
           certificate_(certificate),
           start_(as_assembled(model)),
           usable_(have_usable_numbers(model, start_, {{}})),
-          shapes_(body_shapes(model, bodies_of(pairs, static_cast<int>(model.bodies.size())))) {}
+          shapes_(body_shapes(model, bodies_of(pairs, count_of(model.bodies)))) {}
 
     std::vector<PairClearance> run() {
         if (certificate_ != nullptr) start_record();
         std::vector<PairClearance> results(pairs_.size());
         std::mutex report;
         int done = 0;
-        const auto count = static_cast<int>(pairs_.size());
+        const auto count = count_of(pairs_);
         // Each pair is a search of its own: the number of threads cannot change a result.
         base::parallel_for(count, 1, [&](int i) {
-            results[static_cast<std::size_t>(i)] = certified(static_cast<std::size_t>(i));
+            results[i] = certified(static_cast<std::size_t>(i));
             if (!options_.on_pair) return;
             const std::lock_guard<std::mutex> lock(report);
             options_.on_pair(++done, count);
@@ -79,7 +79,7 @@ private:
         PairClearance out = unmeasured({request.a, request.b, request.minimum}, "");
         const certificate::LinkedPair linked = linked_pair(ranges_.linkage, request.a, request.b);
         out.coordinates = linked.coordinates;
-        for (const int k : linked.coordinates) out.at.push_back(ranges_.linkage.coordinates[static_cast<std::size_t>(k)].start);
+        for (const int k : linked.coordinates) out.at.push_back(ranges_.linkage.coordinates[k].start);
         if (linked.coordinates.size() > static_cast<std::size_t>(most_coordinates)) {
             out.reason = std::to_string(linked.coordinates.size()) + " coordinates move the two against each other; at most " +
                          std::to_string(most_coordinates) + " can be looked at together";
@@ -90,7 +90,7 @@ private:
             return out;
         }
         for (const int body : {request.a, request.b})
-            if (!usable_[static_cast<std::size_t>(body)]) {
+            if (!usable_[body]) {
                 out.reason = "its numbers are not finite, or larger than 1e30";
                 return out;
             }
@@ -98,10 +98,10 @@ private:
         return out;
     }
 
-    const kinematics::Pose& start(int body) const { return start_.poses.front()[static_cast<std::size_t>(body)]; }
+    const kinematics::Pose& start(int body) const { return start_.poses.front()[body]; }
 
     void measure(const certificate::LinkedPair& linked, std::size_t index, PairClearance& out) const {
-        const BodyShape &shape_a = shapes_[static_cast<std::size_t>(out.a)], &shape_b = shapes_[static_cast<std::size_t>(out.b)];
+        const BodyShape &shape_a = shapes_[out.a], &shape_b = shapes_[out.b];
         const ScrewedPair pair = screwed_pair(*shape_a.tree, *shape_b.tree, ranges_.linkage, linked, start(out.a), start(out.b));
         const double size = pair.a.radius() + pair.b.radius();
         out.tolerance = pair.count > 2 && options_.coarse > 0 ? std::max(options_.tolerance, options_.coarse * size) : options_.tolerance;
@@ -159,8 +159,7 @@ private:
     // Surfaces that never meet leave one thing to ask, whose answer is the same everywhere in the box.
     void decide_solids(PairClearance& out) const {
         if (out.intersecting || !(out.lower > 0)) return;
-        out.solids = certificate::solids_of(*shapes_[static_cast<std::size_t>(out.a)].solid,
-                                            *shapes_[static_cast<std::size_t>(out.b)].solid, {start_, -1, 0, out.a, out.b}, out.lower);
+        out.solids = certificate::solids_of(*shapes_[out.a].solid, *shapes_[out.b].solid, {start_, -1, 0, out.a, out.b}, out.lower);
         if (out.solids != Solids::overlap) return;
         out.lower = out.upper = 0;
     }
@@ -191,7 +190,7 @@ ProvenClearances certify_ranges_with_proof(const model::Model& model, const Join
 
 kinematics::Pose pose_at_witness(const model::Model& model, const JointRanges& ranges, const PairClearance& pair, int body) {
     const certificate::Linkage& linkage = ranges.linkage;
-    const auto parent = [&](int of) { return linkage.bodies[static_cast<std::size_t>(of)].parent; };
+    const auto parent = [&](int of) { return linkage.bodies[of].parent; };
     // What moves both of the pair stays as at the start, for all bodies.
     std::set<int> of_a, of_both;
     for (int k = pair.a; k >= 0; k = parent(k)) of_a.insert(k);
@@ -201,12 +200,12 @@ kinematics::Pose pose_at_witness(const model::Model& model, const JointRanges& r
     for (int k = body; k >= 0; k = parent(k))
         if (of_both.count(k) == 0) line.push_back(k);
     ScrewedBody moved;
-    moved.start = model.bodies[static_cast<std::size_t>(body)].pose_start;
+    moved.start = model.bodies[body].pose_start;
     for (auto k = line.rbegin(); k != line.rend(); ++k) {
-        for (certificate::Screw screw : linkage.bodies[static_cast<std::size_t>(*k)].screws) {
+        for (certificate::Screw screw : linkage.bodies[*k].screws) {
             const auto place = std::find(pair.coordinates.begin(), pair.coordinates.end(), screw.coordinate);
             if (place == pair.coordinates.end()) continue;
-            moved.starts.push_back(linkage.coordinates[static_cast<std::size_t>(screw.coordinate)].start);
+            moved.starts.push_back(linkage.coordinates[screw.coordinate].start);
             screw.coordinate = static_cast<int>(place - pair.coordinates.begin());
             moved.screws.push_back(screw);
         }

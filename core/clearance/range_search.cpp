@@ -39,7 +39,7 @@ public:
     /// Sets the cell's bound and what to split it by. `wanted`: a bound of this much is enough.
     CellProof evaluate(const BoxBound& box, RangeCell& cell, double wanted) {
         ++result.bounds;
-        const Piece &a = pair_.a.pieces[static_cast<std::size_t>(cell.a)], &b = pair_.b.pieces[static_cast<std::size_t>(cell.b)];
+        const Piece &a = pair_.a.pieces[cell.a], &b = pair_.b.pieces[cell.b];
         const Corners *element_a = element(pair_.a, a), *element_b = element(pair_.b, b);
         const bool elements = element_a != nullptr && element_b != nullptr;
         Vector3 n;
@@ -72,7 +72,7 @@ public:
 
     /// '0' + k, 'a', 'b', or no_split: at the limit of rounding.
     char choice(const RangeCell& cell) const {
-        const Piece &a = pair_.a.pieces[static_cast<std::size_t>(cell.a)], &b = pair_.b.pieces[static_cast<std::size_t>(cell.b)];
+        const Piece &a = pair_.a.pieces[cell.a], &b = pair_.b.pieces[cell.b];
         const double size_a = a.is_element() ? -1 : a.size, size_b = b.is_element() ? -1 : b.size, size = std::max(size_a, size_b);
         if (size < 0 || cell.loosened > 0.5 * size)
             for (int i = 0; i < pair_.count; ++i) {
@@ -87,7 +87,7 @@ public:
     /// Contract: a choice but no_split.
     std::array<RangeCell, 2> split(const RangeCell& cell, char by) const {
         std::array<RangeCell, 2> out{cell, cell};
-        const Piece &a = pair_.a.pieces[static_cast<std::size_t>(cell.a)], &b = pair_.b.pieces[static_cast<std::size_t>(cell.b)];
+        const Piece &a = pair_.a.pieces[cell.a], &b = pair_.b.pieces[cell.b];
         if (by == 'a') {
             out[0].a = a.left;
             out[1].a = a.right;
@@ -113,7 +113,7 @@ public:
 
 private:
     static const Corners* element(const PieceTree& tree, const Piece& piece) {
-        return piece.is_element() ? &tree.elements[static_cast<std::size_t>(piece.first)].corners : nullptr;
+        return piece.is_element() ? &tree.elements[piece.first].corners : nullptr;
     }
 
     std::vector<Vector3> corner_normals(const BoxBound& box, const RangeCell& cell, const Corners& a, const Corners& b) {
@@ -125,8 +125,7 @@ private:
                 const auto i = static_cast<std::size_t>(k);
                 at[i] = (c >> k & 1) != 0 ? cell.box.high[i] : cell.box.low[i];
             }
-            take({at, pair_.a.pieces[static_cast<std::size_t>(cell.a)].first, pair_.b.pieces[static_cast<std::size_t>(cell.b)].first,
-                  found});
+            take({at, pair_.a.pieces[cell.a].first, pair_.b.pieces[cell.b].first, found});
             normals.push_back(unit_direction(found.difference));
         }
         return normals;
@@ -198,8 +197,8 @@ private:
             search_pair(pair_.a, pair_.b, {pair_segment(held_a, held_b, pair_.a.radius(), pair_.b.radius())}, search);
         if (found.nearest.segment < 0) return infinity;
         const BoxBound point(pair_, {at, at});
-        const ElementPairDistance pair = point.distance(pair_.a.elements[static_cast<std::size_t>(found.nearest.element_a)].corners,
-                                                        pair_.b.elements[static_cast<std::size_t>(found.nearest.element_b)].corners, -1);
+        const ElementPairDistance pair =
+            point.distance(pair_.a.elements[found.nearest.element_a].corners, pair_.b.elements[found.nearest.element_b].corners, -1);
         cells_.take({at, found.nearest.element_a, found.nearest.element_b, pair});
         return pair.distance;
     }

@@ -89,9 +89,9 @@ private:
     [[gnu::always_inline]] inline void find(int first) {
         Bodies a, b;
         for (int j = 0; j < lanes; ++j) {
-            const PairSegment& segment = segments[static_cast<std::size_t>(std::min(first + j, chain.segments_ - 1))];
-            a[static_cast<std::size_t>(j)] = &frame.moving(segment);
-            b[static_cast<std::size_t>(j)] = &frame.fixed(segment);
+            const PairSegment& segment = segments[std::min(first + j, chain.segments_ - 1)];
+            a[j] = &frame.moving(segment);
+            b[j] = &frame.fixed(segment);
         }
         std::array<RelativePoses, 3> at;
         Four reach = {0, 0, 0, 0}, norm;
@@ -124,9 +124,9 @@ private:
     [[gnu::always_inline]] inline void keep(int first, const RelativePoses& start, const RelativePoses& end) {
         for (int k = 0; k < entries; ++k) {
             double* values = chain.row(k);
-            store(start[static_cast<std::size_t>(k)], values + first);
+            store(start[k], values + first);
             if (first + lanes < chain.segments_) continue;
-            const double last = end[static_cast<std::size_t>(k)][lanes - 1];
+            const double last = end[k][lanes - 1];
             std::fill(values + chain.segments_, values + chain.length_, last);
         }
     }
@@ -204,7 +204,7 @@ FETTLE_WIDE void find_rest_wide(const RelativeChain& chain, int first, int last,
 }  // namespace
 
 RelativeChain::RelativeChain(const std::vector<PairSegment>& segments, Frame frame, double radius_a, double radius_b)
-    : segments_(static_cast<int>(segments.size())),
+    : segments_(count_of(segments)),
       length_(segments.size() + 1 + padding),
       values_(std::make_unique_for_overwrite<double[]>(rows * length_)) {
     FETTLE_ASSERT(!segments.empty(), "a chain of no segments");

@@ -305,7 +305,7 @@ NodesAt nodes_at(const SpanGroup& group, const SpanMiddles* middles, const Turni
         if (group.length == 1) {
             std::memcpy(nodes[k].data(), values + group.first_segment, sizeof(Lanes));
         } else {
-            for (int j = 0; j <= most_spans; ++j) nodes[k][static_cast<std::size_t>(j)] = values[group.place_of(j)];
+            for (int j = 0; j <= most_spans; ++j) nodes[k][j] = values[group.place_of(j)];
         }
         nodes[k].back() = nodes[k][most_spans];
         std::memcpy((k < 9 ? group.rotation[k] : group.offset[k - 9]).data(), nodes[k].data(), sizeof(Lanes));
@@ -342,8 +342,8 @@ FETTLE_WIDE void fill_wide(const RelativeChain& chain, SpanGroup& group) { fill(
 RelativePose SpanGroup::at(int j) const {
     RelativePose pose;
     for (int row = 0; row < 3; ++row) {
-        for (int k = 0; k < 3; ++k) pose.rotation(row, k) = rotation[static_cast<std::size_t>(3 * row + k)][j];
-        pose.offset[row] = offset[static_cast<std::size_t>(row)][j];
+        for (int k = 0; k < 3; ++k) pose.rotation(row, k) = rotation[3 * row + k][j];
+        pose.offset[row] = offset[row][j];
     }
     return pose;
 }
@@ -362,8 +362,8 @@ RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, Frame fra
     const auto groups_of = [](int spans) { return (spans + most_spans - 1) / most_spans; };
     int all = 1;
     for (int groups = groups_of(total); groups > 1; groups = groups_of(groups)) all += groups;
-    groups_.reserve(static_cast<std::size_t>(all));
-    middles_.reserve(static_cast<std::size_t>(groups_of(total)));
+    groups_.reserve(all);
+    middles_.reserve(groups_of(total));
     int begin = 0, spans = total, length = 1;  // spans of the level begin at this index, and last so many segments
     for (int level = 0;; ++level) {
         const int groups = groups_of(spans);
@@ -382,7 +382,7 @@ RelativeSpans::RelativeSpans(const std::vector<PairSegment>& segments, Frame fra
             if (level == 0) fill_middles(chain, group, middles_.emplace_back());
         }
         if (groups == 1) break;
-        begin = static_cast<int>(groups_.size()) - groups;
+        begin = count_of(groups_) - groups;
         spans = groups;
         length *= most_spans;
     }
@@ -406,7 +406,7 @@ SpanBounds RelativeSpans::of_planes(const SpanGroup& group, const NodePlanes& pl
     NodeFunctions found;
     for (std::size_t j = 0; j <= most_spans; ++j) {
         found.f[j] = planes.f[j];
-        for (int k = 0; k < 3; ++k) found.direction[static_cast<std::size_t>(k)][j] = planes.n[j][k];
+        for (int k = 0; k < 3; ++k) found.direction[k][j] = planes.n[j][k];
     }
     SpanBounds out;
     cover_spans(group, found, true, radius_, {shrink_, slack_}, out);

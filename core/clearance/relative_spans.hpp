@@ -109,9 +109,9 @@ class RelativeSpans {
 public:
     RelativeSpans(const std::vector<PairSegment>& segments, Frame frame, double radius_a, double radius_b);
 
-    const SpanGroup& group(int i) const { return groups_[static_cast<std::size_t>(i)]; }
+    const SpanGroup& group(int i) const { return groups_[i]; }
     /// The group that holds all segments.
-    int root() const { return static_cast<int>(groups_.size()) - 1; }
+    int root() const { return count_of(groups_) - 1; }
 
     /// Bounds at the nodes of `wanted` (bits), and over the spans between two of them.
     SpanBounds of_boxes(const SpanGroup& group, const TurningPlane& plane, const Piece& a, const Piece& b,

@@ -33,16 +33,16 @@ public:
     int add(const Entry& entry) {
         if (free_.empty()) {
             entries_.push_back(entry);
-            return static_cast<int>(entries_.size()) - 1;
+            return count_of(entries_) - 1;
         }
         const int index = free_.back();
         free_.pop_back();
-        entries_[static_cast<std::size_t>(index)] = entry;
+        entries_[index] = entry;
         return index;
     }
     Entry take(int index) {
         free_.push_back(index);
-        return entries_[static_cast<std::size_t>(index)];
+        return entries_[index];
     }
 
 private:
@@ -154,7 +154,7 @@ public:
     }
 
     void take_upper(const Encounter& encounter) {
-        const double slack = segments[static_cast<std::size_t>(encounter.segment)].slack, sum = encounter.pair.distance + slack;
+        const double slack = segments[encounter.segment].slack, sum = encounter.pair.distance + slack;
         const double upper = std::isnan(sum) ? infinity : sum;
         const bool clash = encounter.pair.intersecting && encounter.pair.depth > 8 * slack;
         if ((encounter.s == 0 || encounter.s == 1) && encounter.pair.distance < result.sampled.pair.distance) result.sampled = encounter;

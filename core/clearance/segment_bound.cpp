@@ -93,7 +93,7 @@ PairSegment held_at(const PairSegment& segment, double s, double radius_a, doubl
 
 Instant instant_at(const PairSegment& segment, double s) {
     const auto pose = [&](const BodySegment& body) {
-        if (s == 0 || s == 0.5 || s == 1) return body.poses[static_cast<std::size_t>(2 * s)];
+        if (s == 0 || s == 0.5 || s == 1) return body.poses[2 * s];
         return kinematics::pose_at(body.path, s);
     };
     const kinematics::Pose a = pose(*segment.a), b = pose(*segment.b);

@@ -83,8 +83,7 @@ struct Boxes {
 
 [[gnu::always_inline]] inline void gather_boxes(const BodyRange& range, const std::vector<BodyBox>& boxes, int first, Boxes& out) {
     FourOf<BodyBox> box;
-    for (int j = 0; j < lanes; ++j)
-        box[static_cast<std::size_t>(j)] = &boxes[static_cast<std::size_t>(std::min(first + j, range.last - 1))];
+    for (int j = 0; j < lanes; ++j) box[j] = &boxes[std::min(first + j, range.last - 1)];
     std::array<Four, 8> numbers;
     base::gather(box, numbers);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -156,13 +155,13 @@ struct Boxes {
         }
         for (int j = 0; j < count; ++j) {
             const int body = first + j;
-            if (!(room[j] >= 0)) take_segment(segment_at(range.trajectory, place, body), boxes[static_cast<std::size_t>(body)], out[j]);
+            if (!(room[j] >= 0)) take_segment(segment_at(range.trajectory, place, body), boxes[body], out[j]);
         }
     }
     for (int j = 0; j < count; ++j) {
         for (Eigen::Index k = 0; k < 3; ++k) {
-            base::take_smaller<double>(low[static_cast<std::size_t>(k)][j], out[j].low[k]);
-            base::take_larger<double>(high[static_cast<std::size_t>(k)][j], out[j].high[k]);
+            base::take_smaller<double>(low[k][j], out[j].low[k]);
+            base::take_larger<double>(high[k][j], out[j].high[k]);
         }
     }
 }

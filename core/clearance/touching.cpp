@@ -54,13 +54,13 @@ bool winds_once(const geometry::Mesh& mesh) {
 geometry::Mesh thinner(const geometry::Mesh& mesh, double by) {
     geometry::Mesh out = mesh;
     const double outwards = geometry::solid_moments(mesh.vertices, mesh.triangles)(3, 3) < 0 ? -1 : 1;
-    std::vector<std::vector<Vector3>> normals(static_cast<std::size_t>(mesh.vertices.cols()));
+    std::vector<std::vector<Vector3>> normals(mesh.vertices.cols());
     for (const geometry::Triangle& t : mesh.triangles) {
         const Vector3 a = mesh.vertices.col(t[0]), b = mesh.vertices.col(t[1]), c = mesh.vertices.col(t[2]);
         const Vector3 n = outwards * (b - a).cross(c - a);
         if (!(n.norm() > 0)) continue;
         for (const int v : t) {
-            auto& list = normals[static_cast<std::size_t>(v)];
+            auto& list = normals[v];
             const Vector3 unit = n.normalized();
             if (std::none_of(list.begin(), list.end(), [&](const Vector3& other) { return other.dot(unit) > 1 - 1e-9; }))
                 list.push_back(unit);
@@ -71,7 +71,7 @@ geometry::Mesh thinner(const geometry::Mesh& mesh, double by) {
         const Vector3 d = common_direction(normals[v]);
         const double length = d.norm();
         if (!(length > 0)) continue;
-        out.vertices.col(static_cast<Eigen::Index>(v)) -= std::min(0.5 * by, by / length) * d;
+        out.vertices.col(v) -= std::min(0.5 * by, by / length) * d;
     }
     return out;
 }
@@ -170,7 +170,7 @@ std::optional<double> proven_touch(const PairMotion& pair, const certificate::Pa
 }
 
 TouchingArea touching_area(const PairMotion& pair, int segment, double s, double depth) {
-    const Looked looked{pair, instant_at(pair.segments[static_cast<std::size_t>(segment)], s), depth};
+    const Looked looked{pair, instant_at(pair.segments[segment], s), depth};
     TouchingArea found;
     long looks = 0;
     std::vector<std::pair<int, int>> open{{0, 0}};
@@ -181,7 +181,7 @@ TouchingArea touching_area(const PairMotion& pair, int segment, double s, double
         }
         const auto [i, j] = open.back();
         open.pop_back();
-        const Piece &a = pair.a.pieces[static_cast<std::size_t>(i)], &b = pair.b.pieces[static_cast<std::size_t>(j)];
+        const Piece &a = pair.a.pieces[i], &b = pair.b.pieces[j];
         if (!looked.are_near(a, b)) continue;
         if (!a.is_element() && (b.is_element() || a.size >= b.size)) {
             open.emplace_back(a.left, j);
@@ -190,7 +190,7 @@ TouchingArea touching_area(const PairMotion& pair, int segment, double s, double
             open.emplace_back(i, b.left);
             open.emplace_back(i, b.right);
         } else {
-            const auto &x = pair.a.elements[static_cast<std::size_t>(a.first)], &y = pair.b.elements[static_cast<std::size_t>(b.first)];
+            const auto &x = pair.a.elements[a.first], &y = pair.b.elements[b.first];
             if (x.vertices[2] < 0 || y.vertices[2] < 0) continue;
             std::array<Vector3, 3> of_a, of_b;
             for (std::size_t k = 0; k < 3; ++k) {

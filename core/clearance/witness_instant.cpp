@@ -71,9 +71,9 @@ Encounter refined(const PairSegment& segment, const PieceTree& a, const PieceTre
 int primitive_index(const PieceTree& tree, int element, Primitive kind, int corner) {
     const PieceElement& e = tree.elements[element];
     if (kind == Primitive::triangle) return e.primitive;
-    if (kind == Primitive::vertex) return e.vertices[static_cast<std::size_t>(corner)];
+    if (kind == Primitive::vertex) return e.vertices[corner];
     if (e.corners.count == 2) return e.primitive;
-    const int v0 = e.vertices[static_cast<std::size_t>(corner)], v1 = e.vertices[static_cast<std::size_t>((corner + 1) % 3)];
+    const int v0 = e.vertices[corner], v1 = e.vertices[(corner + 1) % 3];
     const auto same = [&](const geometry::Edge& edge) { return (edge[0] == v0 && edge[1] == v1) || (edge[0] == v1 && edge[1] == v0); };
     const auto& edges = tree.mesh->edges;
     const auto found = std::find_if(edges.begin(), edges.end(), same);

@@ -45,7 +45,7 @@ public:
         at_.poses = start;
         at_.angles = angles_at(problem.set, start, {});
         measure_gaps(at_);
-        multipliers_ = VectorX::Zero(static_cast<Eigen::Index>(rows_.size()));
+        multipliers_ = VectorX::Zero(rows_.size());
     }
 
     // Poses, angles and iterations.
@@ -70,7 +70,7 @@ private:
         place.remaining = targets_ - row_values(problem_.set, rows_, placed(problem_.set.frames, place.poses), place.angles);
         double square = 0;
         for (std::size_t i = 0; i < rows_.size(); ++i) {
-            const double gap = place.remaining[static_cast<Eigen::Index>(i)] * rows_[i].length;
+            const double gap = place.remaining[i] * rows_[i].length;
             square += gap * gap;
         }
         place.gap = std::sqrt(square);
@@ -170,7 +170,7 @@ std::vector<DependentRow> dependent_at(const AssemblyProblem& problem, const std
 
 VectorX gaps_at(const AssemblyProblem& problem, const std::vector<Pose>& poses, const std::vector<double>& angles) {
     VectorX out = (row_values(problem.set, problem.rows, placed(problem.set.frames, poses), angles) - problem.targets).cwiseAbs();
-    for (std::size_t i = 0; i < problem.rows.size(); ++i) out[static_cast<Eigen::Index>(i)] *= problem.rows[i].length;
+    for (std::size_t i = 0; i < problem.rows.size(); ++i) out[i] *= problem.rows[i].length;
     return out;
 }
 

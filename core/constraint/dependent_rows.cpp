@@ -12,7 +12,7 @@ namespace {
 // Of what is free, as if what is not had the mass 1.
 Matrix6 free_mass(Matrix6 mass, const std::array<int, 6>& index) {
     for (int k = 0; k < 6; ++k) {
-        if (index[static_cast<std::size_t>(k)] >= 0) continue;
+        if (index[k] >= 0) continue;
         mass.row(k).setZero();
         mass.col(k).setZero();
         mass(k, k) = 1;
@@ -51,10 +51,10 @@ RowJacobian without(const RowJacobian& rows, const std::vector<DependentRow>& le
     RowJacobian out;
     for (int i = 0; i < rows.count(); ++i) {
         if (std::any_of(left_out.begin(), left_out.end(), [&](const DependentRow& d) { return d.row == i; })) continue;
-        out.first.push_back(static_cast<int>(out.entries.size()));
+        out.first.push_back(count_of(out.entries));
         out.entries.insert(out.entries.end(), rows.entries.begin() + rows.first[i], rows.entries.begin() + rows.first[i + 1]);
     }
-    out.first.push_back(static_cast<int>(out.entries.size()));
+    out.first.push_back(count_of(out.entries));
     return out;
 }
 

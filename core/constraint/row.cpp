@@ -11,9 +11,9 @@ using measure::MeasureKind;
 using measure::MeasureSet;
 using measure::PlacedFrame;
 
-const Measure& measure_of(const MeasureSet& set, int i) { return set.measures[static_cast<std::size_t>(i)]; }
+const Measure& measure_of(const MeasureSet& set, int i) { return set.measures[i]; }
 
-int body_of(const MeasureSet& set, int frame) { return set.frames[static_cast<std::size_t>(frame)].body; }
+int body_of(const MeasureSet& set, int frame) { return set.frames[frame].body; }
 
 void add_entry(int body, const Vector6& gradient, std::size_t first, std::vector<RowGradient>& entries) {
     if (body == measure::world) return;
@@ -99,15 +99,14 @@ std::vector<double> angles_at(const MeasureSet& set, const std::vector<kinematic
 double value_at(const MeasureSet& set, int measure, const std::vector<PlacedFrame>& frames, const std::vector<double>& angles) {
     const Measure& m = measure_of(set, measure);
     const double value = value_of(m, frames);
-    return m.kind == MeasureKind::angle ? measure::nearest_turn(value, angles[static_cast<std::size_t>(measure)]) : value;
+    return m.kind == MeasureKind::angle ? measure::nearest_turn(value, angles[measure]) : value;
 }
 
 VectorX row_values(const MeasureSet& set, const std::vector<Row>& rows, const std::vector<PlacedFrame>& frames,
                    const std::vector<double>& angles) {
-    VectorX out = VectorX::Zero(static_cast<Eigen::Index>(rows.size()));
+    VectorX out = VectorX::Zero(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
-        for (const RowPart& part : rows[i].parts)
-            out[static_cast<Eigen::Index>(i)] += part.factor * value_at(set, part.measure, frames, angles);
+        for (const RowPart& part : rows[i].parts) out[i] += part.factor * value_at(set, part.measure, frames, angles);
     return out;
 }
 
@@ -125,13 +124,13 @@ RowJacobian row_jacobian(const MeasureSet& set, const std::vector<Row>& rows, co
             add_entry(body_of(set, m.b), part.factor * tangent_gradient(g.b), first, out.entries);
         }
     }
-    out.first.push_back(static_cast<int>(out.entries.size()));
+    out.first.push_back(count_of(out.entries));
     return out;
 }
 
 void to_chart(const std::vector<Matrix3>& left_jacobians, RowJacobian& jacobian) {
     for (RowGradient& entry : jacobian.entries)
-        entry.gradient.tail<3>() = left_jacobians[static_cast<std::size_t>(entry.body)].transpose() * entry.gradient.tail<3>();
+        entry.gradient.tail<3>() = left_jacobians[entry.body].transpose() * entry.gradient.tail<3>();
 }
 
 void add_row_curvature(const MeasureSet& set, const std::vector<Row>& rows, const VectorX& multipliers,
@@ -139,8 +138,7 @@ void add_row_curvature(const MeasureSet& set, const std::vector<Row>& rows, cons
                        kinematics::BlockHessian& hessian) {
     Curvature sum(hessian.diagonal.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        for (const RowPart& part : rows[i].parts)
-            sum.add(set, measure_of(set, part.measure), part.factor * multipliers[static_cast<Eigen::Index>(i)], frames);
+        for (const RowPart& part : rows[i].parts) sum.add(set, measure_of(set, part.measure), part.factor * multipliers[i], frames);
         add_row_pattern(set, rows[i], sum.blocks);
     }
     std::vector<Matrix6> to_tangent(hessian.diagonal.size(), Matrix6::Identity());
@@ -150,8 +148,7 @@ void add_row_curvature(const MeasureSet& set, const std::vector<Row>& rows, cons
         hessian.diagonal[i] += to_tangent[i].transpose() * sum.diagonal[i] * to_tangent[i];
         hessian.diagonal[i].bottomRightCorner<3, 3>() += kinematics::chart_curvature(sum.arms[i], rotation_vectors[i]);
     }
-    for (kinematics::OffDiagonalBlock& b : sum.blocks)
-        b.block = to_tangent[static_cast<std::size_t>(b.a)].transpose() * b.block * to_tangent[static_cast<std::size_t>(b.b)];
+    for (kinematics::OffDiagonalBlock& b : sum.blocks) b.block = to_tangent[b.a].transpose() * b.block * to_tangent[b.b];
     linear::add_blocks(sum.blocks, hessian);
 }
 

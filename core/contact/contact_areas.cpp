@@ -42,13 +42,11 @@ private:
     }
 
     int edge_of(int body, int a, int b) {
-        const auto entry = edges_.try_emplace(body, model_.bodies[static_cast<std::size_t>(body)].mesh.edges).first;
+        const auto entry = edges_.try_emplace(body, model_.bodies[body].mesh.edges).first;
         return entry->second.find(a, b);
     }
 
-    double area_of(int body, int edge) const {
-        return model_.bodies[static_cast<std::size_t>(body)].edge_area[static_cast<std::size_t>(edge)];
-    }
+    double area_of(int body, int edge) const { return model_.bodies[body].edge_area[edge]; }
 
     const model::Model& model_;
     const std::vector<kinematics::Pose>& poses_;

@@ -72,16 +72,15 @@ double contact_damping_potential(const DampedContacts& damped) {
     const ContactSet& set = damped.contacts;
     const ContactDamping& damping = damped.damping;
     std::vector<double> values(set.pairs.size());
-    base::parallel_for(static_cast<int>(set.pairs.size()), geometry::pairs_at_once(set.pairs.size(), static_cast<std::size_t>(set.count)),
-                       [&](int k) {
-                           const BodyPairContacts& list = set.pairs[k];
-                           for (const ContactPair& contact : list.contacts) {
-                               const bool apart = is_apart(contact, damping.closeness);
-                               const DampedPair pair = apart ? damped_pair(model, damping, list, contact) : DampedPair{};
-                               values[k] += apart ? 0.5 * pair.stiffness * pair.closeness * (pair.closeness - 2 * pair.closeness_t0)
-                                                  : std::numeric_limits<double>::infinity();
-                           }
-                       });
+    base::parallel_for(count_of(set.pairs), geometry::pairs_at_once(set.pairs.size(), static_cast<std::size_t>(set.count)), [&](int k) {
+        const BodyPairContacts& list = set.pairs[k];
+        for (const ContactPair& contact : list.contacts) {
+            const bool apart = is_apart(contact, damping.closeness);
+            const DampedPair pair = apart ? damped_pair(model, damping, list, contact) : DampedPair{};
+            values[k] += apart ? 0.5 * pair.stiffness * pair.closeness * (pair.closeness - 2 * pair.closeness_t0)
+                               : std::numeric_limits<double>::infinity();
+        }
+    });
     double sum = 0;
     for (const double value : values) sum += value;
     return sum;

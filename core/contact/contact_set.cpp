@@ -34,7 +34,7 @@ void add_contacts(const NearAt& at, CountingPlan* plan, Found& found) {
     found.least = least_of(found.least, least);
     if (std::isfinite(least)) found.set.distances.push_back({list.a, list.b, std::sqrt(least)});
     for (BodyPairContacts* contacts : {&forward, &backward}) {
-        found.set.count += static_cast<int>(contacts->contacts.size());
+        found.set.count += count_of(contacts->contacts);
         if (!contacts->contacts.empty()) found.set.pairs.push_back(std::move(*contacts));
     }
 }
@@ -76,7 +76,7 @@ double potential_of(const BodyPairContacts& list, const BarrierParameters& param
 
 ContactSet find_contacts(const model::Model& model, const ccd::Candidates& candidates, const std::vector<Pose>& poses,
                          ContactPlans* plans) {
-    const int count = static_cast<int>(candidates.pairs.size());
+    const int count = count_of(candidates.pairs);
     if (plans != nullptr) take_over(candidates, *plans);
     const WorldVertices vertices(model, candidates, poses);
     const auto find = [&](int begin, int end) {
@@ -99,7 +99,7 @@ ContactSet find_contacts(const model::Model& model, const ccd::Candidates& candi
 
 double barrier_potential(const ContactSet& set, const BarrierParameters& parameters) {
     std::vector<double> values(set.pairs.size());
-    base::parallel_for(static_cast<int>(set.pairs.size()), geometry::pairs_at_once(set.pairs.size(), static_cast<std::size_t>(set.count)),
+    base::parallel_for(count_of(set.pairs), geometry::pairs_at_once(set.pairs.size(), static_cast<std::size_t>(set.count)),
                        [&](int k) { values[k] = potential_of(set.pairs[k], parameters); });
     double sum = 0;
     for (const double value : values) sum += value;
@@ -124,7 +124,7 @@ void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, std::size_t co
         Matrix6 of_first, of_second, cross;  // cross: of the lower body's rows
     };
     const auto made = std::make_unique_for_overwrite<Made[]>(bodies.size());
-    base::parallel_for(static_cast<int>(bodies.size()), geometry::pairs_at_once(bodies.size(), contacts), [&](int k) {
+    base::parallel_for(count_of(bodies), geometry::pairs_at_once(bodies.size(), contacts), [&](int k) {
         BodyPairSum sum;
         make(k, sum);
         made[k].first = sum.first;
@@ -148,7 +148,7 @@ void add_pair_sums(const std::vector<std::array<int, 2>>& bodies, std::size_t co
         if (kind == HessianKind::none) continue;
         hessian.diagonal[first] += made[k].of_first;
         hessian.diagonal[second] += made[k].of_second;
-        hessian.off_diagonal[static_cast<std::size_t>(places[k])].block += made[k].cross;
+        hessian.off_diagonal[places[k]].block += made[k].cross;
     }
 }
 

@@ -104,9 +104,8 @@ private:
         CountingPlan& plan = *notes.plan;
         find_key(near);
         const auto still_absent = [&](const CountingPlan::Absent& absent) {
-            const auto& x = (absent.on_first ? near.on_first : near.on_second)[static_cast<std::size_t>(absent.pair)].x;
-            return is_beyond(x[0], x[static_cast<std::size_t>(absent.corners[0])], x[static_cast<std::size_t>(absent.corners[1])],
-                             sides.activation);
+            const auto& x = (absent.on_first ? near.on_first : near.on_second)[absent.pair].x;
+            return is_beyond(x[0], x[absent.corners[0]], x[absent.corners[1]], sides.activation);
         };
         if (!plan.is_usable || key_ != plan.key || !std::all_of(plan.absent.begin(), plan.absent.end(), still_absent)) {
             plan.is_usable = false;
@@ -117,7 +116,7 @@ private:
         }
         const auto of_second = std::count_if(plan.contacts.begin(), plan.contacts.end(),
                                              [](const Contact& contact) { return contact.kind == Kind::of_second; });
-        backward.reserve(static_cast<std::size_t>(of_second));
+        backward.reserve(of_second);
         forward.reserve(plan.contacts.size() - static_cast<std::size_t>(of_second));
         for (const Contact& contact : plan.contacts) emit_contact(contact, near, forward, backward);
         return true;
@@ -159,7 +158,7 @@ private:
         order_.clear();
         for (const ContactPair& pair : pairs) {
             const auto& v = pair.vertex;
-            const int index = static_cast<int>(order_.size());
+            const int index = count_of(order_);
             if (pair.type == geometry::PairType::edge_edge)
                 order_.push_back({two(v[0], v[1]), two(v[2], v[3]), index});
             else
@@ -170,7 +169,7 @@ private:
 
     void emit_as_they_are(const std::vector<ContactPair>& pairs, std::vector<ContactPair>& out) {
         find_order(pairs);
-        for (const Place& place : order_) out.push_back(pairs[static_cast<std::size_t>(place.index)]);
+        for (const Place& place : order_) out.push_back(pairs[place.index]);
     }
 
     // Calls visit(first, last) for the places of each vertex.
@@ -185,9 +184,7 @@ private:
         }
     }
 
-    const ContactPair& pair_at(const std::vector<ContactPair>& pairs, std::size_t place) const {
-        return pairs[static_cast<std::size_t>(order_[place].index)];
-    }
+    const ContactPair& pair_at(const std::vector<ContactPair>& pairs, std::size_t place) const { return pairs[order_[place].index]; }
 
     // Flat edges and vertices of the faces in elements_, each once.
     void find_elements(const ContactSide& faces, const std::vector<ContactPair>& pairs, std::size_t first, std::size_t last) {
@@ -207,7 +204,7 @@ private:
         elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
     }
 
-    static int count_of(const Feature& element) { return element[1] < 0 ? 1 : -1; }
+    static int sign_of(const Feature& element) { return element[1] < 0 ? 1 : -1; }
 
     static ContactPair pair_with(const ContactSide& faces, const Feature& element, const ContactPair& of_vertex) {
         ContactPair pair = of_vertex;
@@ -227,7 +224,7 @@ private:
             for (const Feature& element : elements_) {
                 ContactPair pair = pair_with(faces, element, pair_at(pairs, first));
                 if (!(pair.closest.distance_squared < sides.activation * sides.activation)) continue;
-                pair.weight *= count_of(element);
+                pair.weight *= sign_of(element);
                 out.push_back(pair);
             }
         });
@@ -235,7 +232,7 @@ private:
 
     void add_entry(Kind kind, int vertex, const Feature& feature, int pair, int end, double weight) {
         const bool swap = kind == Kind::of_second && feature[1] < 0;
-        const int order = static_cast<int>(entries_.size());
+        const int order = count_of(entries_);
         if (swap)
             entries_.push_back(
                 {two(static_cast<int>(Kind::of_first), feature[0]), two(vertex, -1), two(-1, order), pair, end, true, weight});
@@ -258,7 +255,7 @@ private:
                 std::size_t known = first;
                 while (known < last && !is_closest_in(element, pair_at(pairs, known), features_[known - first])) ++known;
                 if (known < last) {
-                    add_entry(kind, vertex, features_[known - first], order_[known].index, -1, count_of(element) * weight);
+                    add_entry(kind, vertex, features_[known - first], order_[known].index, -1, sign_of(element) * weight);
                     continue;
                 }
                 const ContactPair pair = pair_with(faces, element, pair_at(pairs, first));
@@ -267,7 +264,7 @@ private:
                     continue;
                 }
                 is_repeatable_ = false;
-                add_entry(kind, vertex, closest_feature(pair), static_cast<int>(pairs.size()), -1, count_of(element) * weight);
+                add_entry(kind, vertex, closest_feature(pair), count_of(pairs), -1, sign_of(element) * weight);
                 pairs.push_back(pair);
             }
         });
@@ -276,7 +273,7 @@ private:
     void add_edges(const std::vector<ContactPair>& pairs) {
         find_order(pairs);
         for (const Place& place : order_) {
-            const ContactPair& pair = pairs[static_cast<std::size_t>(place.index)];
+            const ContactPair& pair = pairs[place.index];
             const int end = closest_end(pair);
             if (end < 0)
                 add_entry(Kind::of_edges, pair.vertex[0], {pair.vertex[1], pair.vertex[2], pair.vertex[3]}, place.index, end, pair.weight);
@@ -314,7 +311,7 @@ private:
         const bool of_first = contact.kind == Kind::of_first && !contact.swap;
         const bool is_of_edges = contact.kind == Kind::of_edges || contact.end >= 0;
         const std::vector<ContactPair>& from = is_of_edges ? near.edges : of_first ? near.on_second : near.on_first;
-        ContactPair& pair = out.emplace_back(from[static_cast<std::size_t>(contact.pair)]);
+        ContactPair& pair = out.emplace_back(from[contact.pair]);
         pair.weight = contact.weight;
         if (contact.kind == Kind::of_edges) return;
         if (contact.end >= 0) return put_on_end(contact.end, pair);  // two vertices begin with that of the first body

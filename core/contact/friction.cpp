@@ -58,7 +58,7 @@ FrictionSet lag_friction(const model::Model& model, const ContactSet& contacts, 
                          const BarrierParameters& parameters, const std::vector<Matrix34>& slip_reference, double slip_time) {
     std::vector<BodyPairFriction> lagged(contacts.pairs.size());
     const int at_once = geometry::pairs_at_once(lagged.size(), static_cast<std::size_t>(contacts.count));
-    base::parallel_for(static_cast<int>(lagged.size()), at_once, [&](int k) {
+    base::parallel_for(count_of(lagged), at_once, [&](int k) {
         const BodyPairContacts& list = contacts.pairs[k];
         BodyPairFriction& pair = lagged[k];
         pair.first = list.first;
@@ -90,7 +90,7 @@ double sliding_share(const FrictionSet& set, const std::vector<Pose>& poses) {
 
 double friction_potential(const FrictionSet& set, const std::vector<Pose>& poses) {
     std::vector<double> values(set.pairs.size());
-    base::parallel_for(static_cast<int>(values.size()), geometry::pairs_at_once(values.size(), contacts_of(set)), [&](int k) {
+    base::parallel_for(count_of(values), geometry::pairs_at_once(values.size(), contacts_of(set)), [&](int k) {
         const BodyPairFriction& pair = set.pairs[k];
         for (const FrictionContact& c : pair.contacts)
             values[k] += c.load * friction_mollifier(slide_of(c, poses[pair.first], poses[pair.second]).distance, set.slip_bound).value;

@@ -127,17 +127,17 @@ WorldVertices::WorldVertices(const model::Model& model, const ccd::Candidates& c
     for (const ccd::BodyPairCandidates& list : candidates.pairs) {
         if (list.empty()) continue;
         for (const int body : {list.a, list.b}) {
-            int& begin = begin_[static_cast<std::size_t>(body)];
-            const Eigen::Index vertices = model_.bodies[static_cast<std::size_t>(body)].mesh.vertices.cols();
+            int& begin = begin_[body];
+            const Eigen::Index vertices = model_.bodies[body].mesh.vertices.cols();
             if (begin >= 0 || vertices > small) continue;
             begin = count;
             count += static_cast<int>(vertices);
             placed.push_back(body);
         }
     }
-    vertices_.resize(static_cast<std::size_t>(count));
-    base::parallel_for(static_cast<int>(placed.size()), bodies_a_piece, [&](int k) {
-        const auto body = static_cast<std::size_t>(placed[static_cast<std::size_t>(k)]);
+    vertices_.resize(count);
+    base::parallel_for(count_of(placed), bodies_a_piece, [&](int k) {
+        const auto body = static_cast<std::size_t>(placed[k]);
         const auto& vertices = model_.bodies[body].mesh.vertices;
         Vector3* at = vertices_.data() + begin_[body];
         for (Eigen::Index v = 0; v < vertices.cols(); ++v) at[v] = world_position(poses_[body], vertices.col(v));

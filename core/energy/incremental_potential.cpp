@@ -78,7 +78,7 @@ double incremental_potential(const StepProblem& problem, const std::vector<Chart
                              const contact::ContactSet& contacts) {
     const ValueAt at{problem, points, poses, contacts};
     std::vector<double> values(poses.size(), 0.0);
-    base::parallel_for(static_cast<int>(poses.size()), values_a_piece, [&](int i) {
+    base::parallel_for(count_of(poses), values_a_piece, [&](int i) {
         for (const BodyTerm* term : body_terms()) term->add_value(at, static_cast<std::size_t>(i), values[i]);
     });
     double sum = 0;
@@ -131,7 +131,7 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
     sums.are_clear = true;
     if (kind == contact::HessianKind::none) return out;
     out.hessian.off_diagonal = std::move(d.hessian.off_diagonal);
-    base::parallel_for(static_cast<int>(out.hessian.off_diagonal.size()), bodies_a_piece, [&](int k) {
+    base::parallel_for(count_of(out.hessian.off_diagonal), bodies_a_piece, [&](int k) {
         kinematics::OffDiagonalBlock& b = out.hessian.off_diagonal[k];
         pull_back(jacobian[b.a], jacobian[b.b], b.block);
     });

@@ -10,9 +10,7 @@ namespace {
 
 LawValue quadratic(double stiffness, double away) { return {0.5 * stiffness * away * away, stiffness * away, stiffness, stiffness}; }
 
-double slip_reference(const StepProblem& problem, const model::MeasureTerm& term) {
-    return problem.mechanism.measures[static_cast<std::size_t>(term.measure)];
-}
+double slip_reference(const StepProblem& problem, const model::MeasureTerm& term) { return problem.mechanism.measures[term.measure]; }
 
 LawValue stop(const StepProblem& problem, const model::MeasureTerm& term, double m) {
     const double dhat = problem.model->dhat, scale = term.sign * term.length, g = scale * (m - term.reference);

@@ -36,12 +36,12 @@ struct TermGradient {
 
 TermGradient derivatives_of(const DerivativesAt& at, const model::MeasureTerm& term, const Frames& frames) {
     const measure::MeasureSet& set = at.problem.model->mechanism.set;
-    const measure::Measure& m = set.measures[static_cast<std::size_t>(term.measure)];
+    const measure::Measure& m = set.measures[term.measure];
     const measure::VectorFunction f = vector_function(m, frames);
     const LawValue law = measure_law(at.problem, term, measure_at(at.problem, term.measure, frames));
     TermGradient out;
-    out.a = set.frames[static_cast<std::size_t>(m.a)].body;
-    out.b = set.frames[static_cast<std::size_t>(m.b)].body;
+    out.a = set.frames[m.a].body;
+    out.b = set.frames[m.b].body;
     out.gradient = pose_gradients(m, f, frames);
     Vector12 along;
     along << tangent_gradient(out.gradient.a), tangent_gradient(out.gradient.b);
@@ -90,7 +90,7 @@ void add_measures_report(const SolvedStep& step, TermReport& report) {
     for (const model::MeasureTerm& term : mechanism.terms) {
         const double m = measure_at(step.problem, term.measure, frames);
         const LawValue law = measure_law(step.problem, term, m);
-        const double force = -law.first / step.problem.weight, power = force * rates[static_cast<std::size_t>(term.measure)];
+        const double force = -law.first / step.problem.weight, power = force * rates[term.measure];
         report.measure_forces.push_back(force);
         if (term.kind == model::LawKind::force) report.supplied_power += power;
         if (term.kind == model::LawKind::damper || term.kind == model::LawKind::friction) report.dissipated_power -= power;

@@ -28,7 +28,7 @@ std::vector<double> measure_rates(const measure::MeasureSet& set, const std::vec
         const measure::Measure& m = set.measures[i];
         const measure::PoseGradients g = pose_gradients(m, vector_function(m, frames), frames);
         for (const auto& [frame, gradient] : {std::pair(m.a, g.a), std::pair(m.b, g.b)}) {
-            const int body = set.frames[static_cast<std::size_t>(frame)].body;
+            const int body = set.frames[frame].body;
             if (body == measure::world) continue;
             const auto k = static_cast<std::size_t>(body);
             const Matrix34& velocity = velocities[k];
@@ -62,9 +62,8 @@ MechanismStep mechanism_step(const model::Model& model, const History& history) 
 
 void set_end_time(const model::Mechanism& mechanism, double time, MechanismStep& step) {
     step.end_time = time;
-    step.row_targets.resize(static_cast<Eigen::Index>(mechanism.rows.size()));
-    for (std::size_t i = 0; i < mechanism.rows.size(); ++i)
-        step.row_targets[static_cast<Eigen::Index>(i)] = target_at(mechanism.rows[i], time);
+    step.row_targets.resize(mechanism.rows.size());
+    for (std::size_t i = 0; i < mechanism.rows.size(); ++i) step.row_targets[i] = target_at(mechanism.rows[i], time);
 }
 
 }  // namespace fettle::core::energy

@@ -34,7 +34,7 @@ StepProblem implicit_euler_problem(const model::Model& model, std::vector<Pose> 
 std::vector<Pose> poses_of(const StepProblem& problem, const std::vector<kinematics::ChartPoint>& points) {
     constexpr int bodies_at_once = 64;  // that a thread takes
     std::vector<Pose> poses(points.size());
-    base::parallel_for(static_cast<int>(points.size()), bodies_at_once, [&](int i) { poses[i] = pose_of(problem, i, points[i]); });
+    base::parallel_for(count_of(points), bodies_at_once, [&](int i) { poses[i] = pose_of(problem, i, points[i]); });
     return poses;
 }
 

@@ -20,15 +20,15 @@ public:
         std::vector<int> moved;
         for (Node node : formula.nodes) {
             if (node.operation == Operation::input) {
-                moved.push_back(input_nodes[static_cast<std::size_t>(node.operands[0])]);
+                moved.push_back(input_nodes[node.operands[0]]);
                 continue;
             }
             for (int i = 0; i < operand_count(node.operation); ++i) {
-                int& operand = node.operands[static_cast<std::size_t>(i)];
-                operand = moved[static_cast<std::size_t>(operand)];
+                int& operand = node.operands[i];
+                operand = moved[operand];
             }
             nodes.push_back(node);
-            moved.push_back(static_cast<int>(nodes.size()) - 1);
+            moved.push_back(count_of(nodes) - 1);
         }
         return moved.back();
     }
@@ -47,9 +47,9 @@ private:
         } else if (replace) {
             node = node_of(name, false);
         } else {
-            nodes.push_back({Operation::input, {static_cast<int>(inputs.size()), 0, 0}, 0});
+            nodes.push_back({Operation::input, {count_of(inputs), 0, 0}, 0});
             inputs.push_back(name);
-            node = static_cast<int>(nodes.size()) - 1;
+            node = count_of(nodes) - 1;
         }
         known_[{name, replace}] = node;
         return node;
@@ -65,8 +65,8 @@ Formula formula_of(Nodes nodes, const std::vector<std::string>& names, const Dim
     Formula out{std::move(nodes), {}, dimension, {}};
     for (Node& node : out.nodes) {
         if (node.operation != Operation::input) continue;
-        out.inputs.push_back(names.at(static_cast<std::size_t>(node.operands[0])));
-        node.operands[0] = static_cast<int>(out.inputs.size()) - 1;
+        out.inputs.push_back(names.at(node.operands[0]));
+        node.operands[0] = count_of(out.inputs) - 1;
     }
     return out;
 }
@@ -89,7 +89,7 @@ ValueAndGradient differentiated(const Formula& formula, std::span<const double> 
     const std::vector<double> at = values<double>(formula.nodes, inputs);
     std::vector<double> weights(at.size(), 0);
     weights.back() = 1;
-    return {at.back(), weighted_gradient(formula.nodes, at, weights, static_cast<int>(inputs.size()))};
+    return {at.back(), weighted_gradient(formula.nodes, at, weights, count_of(inputs))};
 }
 
 std::vector<int> positions_of(const Formula& formula, std::span<const std::string> names) {

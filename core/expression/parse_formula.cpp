@@ -112,13 +112,13 @@ private:
     }
 
     // A value that no input changes is known while it is read.
-    bool is_constant(int node) const { return nodes_[static_cast<std::size_t>(node)].operation == Operation::constant; }
-    double number_at(int node) const { return nodes_[static_cast<std::size_t>(node)].number; }
+    bool is_constant(int node) const { return nodes_[node].operation == Operation::constant; }
+    double number_at(int node) const { return nodes_[node].number; }
     int constant(double value) { return add({Operation::constant, {0, 0, 0}, value}); }
     // Nothing is computed twice: variables that use one another would grow without end.
     int add(const Node& node) {
         const auto key = std::tuple(node.operation, node.operands, std::bit_cast<std::uint64_t>(node.number));
-        const auto [known, is_new] = known_nodes_.emplace(key, static_cast<int>(nodes_.size()));
+        const auto [known, is_new] = known_nodes_.emplace(key, count_of(nodes_));
         if (is_new) nodes_.push_back(node);
         return known->second;
     }
@@ -291,12 +291,12 @@ private:
         std::vector<int> moved;
         for (Node node : meaning.nodes) {
             if (node.operation == Operation::input) {
-                moved.push_back(input(meaning.inputs[static_cast<std::size_t>(node.operands[0])]));
+                moved.push_back(input(meaning.inputs[node.operands[0]]));
                 continue;
             }
             for (int i = 0; i < operand_count(node.operation); ++i) {
-                int& operand = node.operands[static_cast<std::size_t>(i)];
-                operand = moved[static_cast<std::size_t>(operand)];
+                int& operand = node.operands[i];
+                operand = moved[operand];
             }
             moved.push_back(add(node));
         }

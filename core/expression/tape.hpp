@@ -101,11 +101,11 @@ std::vector<T> values(const Nodes& nodes, std::span<const T> inputs) {
     const T none(0.0);
     for (const Node& node : nodes) {
         const int count = operand_count(node.operation);
-        const auto operand = [&](int k) -> const T& { return k < count ? out[static_cast<std::size_t>(node.operands[k])] : none; };
+        const auto operand = [&](int k) -> const T& { return k < count ? out[node.operands[k]] : none; };
         if (node.operation == Operation::constant)
             out.emplace_back(node.number);
         else if (node.operation == Operation::input)
-            out.push_back(inputs[static_cast<std::size_t>(node.operands[0])]);
+            out.push_back(inputs[node.operands[0]]);
         else
             out.push_back(applied<T>(node.operation, operand(0), operand(1), operand(2)));
     }

@@ -356,8 +356,8 @@ void JsonNode::read_each(const std::vector<JsonNode>& nodes, const std::function
     if (nodes.empty()) return;
     Context& all = *nodes.front().context_;
     std::vector<Context> reports(nodes.size() / at_once + 1);
-    base::parallel_pieces(static_cast<int>(nodes.size()), at_once, [&](int begin, int end) {
-        Context& own = reports[static_cast<std::size_t>(begin / at_once)];
+    base::parallel_pieces(count_of(nodes), at_once, [&](int begin, int end) {
+        Context& own = reports[begin / at_once];
         own.path = all.path;
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
             read(i, JsonNode(&own, nodes[i].value_, nodes[i].pointer_));

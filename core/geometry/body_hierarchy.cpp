@@ -30,7 +30,7 @@ void name_corners(const geometry::Mesh& mesh, HierarchyElement& element) {
 // Every vertex and edge goes to the first element that contains it.
 std::vector<HierarchyElement> collect_elements(const geometry::Mesh& mesh) {
     std::vector<HierarchyElement> elements;
-    std::vector<bool> vertex_owned(static_cast<std::size_t>(mesh.vertices.cols()), false);
+    std::vector<bool> vertex_owned(mesh.vertices.cols(), false);
     elements.reserve(mesh.triangles.size());
     const EdgeIndex edge_index(mesh.edges);
     std::vector<bool> edge_owned(mesh.edges.size(), false);
@@ -44,7 +44,7 @@ std::vector<HierarchyElement> collect_elements(const geometry::Mesh& mesh) {
         edge_owned[e] = true;
         element.owned_edges[element.owned_edge_count++] = e;
     };
-    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    for (int t = 0; t < count_of(mesh.triangles); ++t) {
         HierarchyElement element;
         element.triangle = t;
         element.vertex_count = 3;
@@ -57,7 +57,7 @@ std::vector<HierarchyElement> collect_elements(const geometry::Mesh& mesh) {
         }
         elements.push_back(element);
     }
-    for (int e = 0; e < static_cast<int>(mesh.edges.size()); ++e) {
+    for (int e = 0; e < count_of(mesh.edges); ++e) {
         if (edge_owned[e]) continue;
         HierarchyElement element;
         element.vertex_count = 2;
@@ -75,7 +75,7 @@ std::vector<HierarchyElement> collect_elements(const geometry::Mesh& mesh) {
         own_vertex(element, v);
         elements.push_back(element);
     }
-    for (int i = 0; i < static_cast<int>(elements.size()); ++i) {
+    for (int i = 0; i < count_of(elements); ++i) {
         elements[i].face = i;
         name_corners(mesh, elements[i]);
     }
@@ -123,12 +123,12 @@ public:
             items_[at] = {centroid(elements_[at]), i};
         });
         count_nodes();
-        nodes_.resize(static_cast<std::size_t>(nodes_of(0, count())));
+        nodes_.resize(nodes_of(0, count()));
         split({0, 0, 0, count()});
         std::vector<HierarchyElement> sorted(elements_.size());
         base::parallel_for(count(), grain, [&](int i) {
             const auto at = static_cast<std::size_t>(i);
-            sorted[at] = elements_[static_cast<std::size_t>(items_[at].element)];
+            sorted[at] = elements_[items_[at].element];
         });
         elements_ = std::move(sorted);
     }
@@ -143,7 +143,7 @@ private:
     };
     static constexpr int grain = 4096;  ///< elements that one thread takes at least
 
-    int count() const { return static_cast<int>(elements_.size()); }
+    int count() const { return count_of(elements_); }
 
     /// At each depth parts have the number of all elements divided by 2^depth, rounded down, or one more.
     void count_nodes() {
@@ -153,14 +153,13 @@ private:
         for (; depth >= 0; --depth) {
             for (int more = 0; more < 2; ++more) {
                 const int size = (count() >> depth) + more, half = size / 2;
-                node_counts_[static_cast<std::size_t>(depth)][static_cast<std::size_t>(more)] =
-                    size <= leaf_size ? 1 : 1 + nodes_of(depth + 1, half) + nodes_of(depth + 1, size - half);
+                node_counts_[depth][more] = size <= leaf_size ? 1 : 1 + nodes_of(depth + 1, half) + nodes_of(depth + 1, size - half);
             }
         }
     }
     int nodes_of(int depth, int size) const {
         if (size <= leaf_size) return 1;
-        return node_counts_[static_cast<std::size_t>(depth)][static_cast<std::size_t>(size - (count() >> depth))];
+        return node_counts_[depth][size - (count() >> depth)];
     }
 
     Vector3 centroid(const HierarchyElement& element) const {
@@ -179,7 +178,7 @@ private:
     }
 
     Bounds split(const Part& part) {
-        HierarchyNode& node = nodes_[static_cast<std::size_t>(part.node)];
+        HierarchyNode& node = nodes_[part.node];
         node.first = part.first;
         node.count = part.count;
         Bounds box;
@@ -192,7 +191,7 @@ private:
             const std::array<Part, 2> halves{Part{node.left, depth, part.first, half},
                                              Part{node.right, depth, part.first + half, part.count - half}};
             std::array<Bounds, 2> boxes;
-            const auto split_half = [&](int k) { boxes[static_cast<std::size_t>(k)] = split(halves[static_cast<std::size_t>(k)]); };
+            const auto split_half = [&](int k) { boxes[k] = split(halves[k]); };
             if (part.count > grain) {
                 base::parallel_for(2, 1, split_half);
             } else {

@@ -17,7 +17,7 @@ using base::lanes;
 int widest_axis(const std::vector<Box>& boxes, const std::vector<int>& some) {
     Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
     for (const int i : some) {
-        const Box& box = boxes[static_cast<std::size_t>(i)];
+        const Box& box = boxes[i];
         const Eigen::Array3d middle = box.low.array() / 2 + box.high.array() / 2;
         sum += middle;
         squares += middle.square();
@@ -37,7 +37,7 @@ struct BoxSweep::Ends {
     const double* high(std::size_t axis) const { return low(axis + 3); }
 
     [[gnu::always_inline]] inline void find(int begin, int end, Pairs& out) const {
-        const auto count = static_cast<int>(sweep.order_.size());
+        const auto count = count_of(sweep.order_);
         for (int i = begin; i < end; ++i) {
             const std::array<double, 3> x_low{low(0)[i], low(1)[i], low(2)[i]}, x_high{high(0)[i], high(1)[i], high(2)[i]};
             for (int j = i + 1; j < count; j += lanes) {
@@ -59,7 +59,7 @@ struct BoxSweep::Ends {
 
 private:
     void add(int i, int j, Pairs& out) const {
-        const int a = sweep.order_[static_cast<std::size_t>(i)], b = sweep.order_[static_cast<std::size_t>(j)];
+        const int a = sweep.order_[i], b = sweep.order_[j];
         out.emplace_back(std::min(a, b), std::max(a, b));
     }
 };
@@ -71,12 +71,12 @@ BoxSweep::BoxSweep(const std::vector<Box>& boxes, std::vector<int> some) : order
         int box;
     };
     std::vector<Begin> begins(order_.size());
-    for (std::size_t i = 0; i < begins.size(); ++i) begins[i] = {boxes[static_cast<std::size_t>(order_[i])].low[axis], order_[i]};
+    for (std::size_t i = 0; i < begins.size(); ++i) begins[i] = {boxes[order_[i]].low[axis], order_[i]};
     std::sort(begins.begin(), begins.end(), [](const Begin& x, const Begin& y) { return x.low != y.low ? x.low < y.low : x.box < y.box; });
     ends_.resize(6 * length_);
     for (std::size_t i = 0; i < begins.size(); ++i) {
         order_[i] = begins[i].box;
-        const Box& box = boxes[static_cast<std::size_t>(order_[i])];
+        const Box& box = boxes[order_[i]];
         for (int k = 0; k < 3; ++k) {
             ends_[static_cast<std::size_t>(k) * length_ + i] = box.low[(axis + k) % 3];
             ends_[static_cast<std::size_t>(k + 3) * length_ + i] = box.high[(axis + k) % 3];

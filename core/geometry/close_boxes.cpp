@@ -66,29 +66,29 @@ std::vector<CloseBoxes::Group> CloseBoxes::sorted_groups(const std::vector<Box>&
     // A difference, a product and two roundings never turn the order of two numbers round. Adding 0 turns -0 into +0, so that the
     // difference of equal numbers is +0.
     const auto mapped = [&](double x, int k) { return static_cast<float>(std::clamp((x - middle[k]) * scale[k], -2.0, 2.0)) + 0.0F; };
-    const int count = static_cast<int>(boxes.size()), groups = (count + 3) / 4;
+    const int count = count_of(boxes), groups = (count + 3) / 4;
     std::vector<Key> keys(boxes.size());
     base::parallel_for(count, boxes_per_piece, [&](int i) {
-        const Box& box = boxes[static_cast<std::size_t>(i)];
+        const Box& box = boxes[i];
         std::uint32_t place = 0;
         for (int k = 0; k < 3; ++k) {
             const float fraction = 0.25F * (mapped(box.low[k], k) + mapped(box.high[k], k)) + 0.5F;
             place |= spread(static_cast<std::uint32_t>(std::clamp(1024 * fraction, 0.0F, 1023.0F))) << k;
         }
-        keys[static_cast<std::size_t>(i)] = {place, i};
+        keys[i] = {place, i};
     });
     sort_keys(keys);
     order_.resize(boxes.size());
-    std::vector<Group> out(static_cast<std::size_t>(groups));
+    std::vector<Group> out(groups);
     base::parallel_for(groups, boxes_per_piece / 4, [&](int g) {
-        Group& group = out[static_cast<std::size_t>(g)];
+        Group& group = out[g];
         for (int i = 0; i < 4; ++i) {
             const auto at = static_cast<std::size_t>(4 * g + i);
             if (at < keys.size()) order_[at] = keys[at].box;
             for (int k = 0; k < 3; ++k) {
                 const auto axis = static_cast<std::size_t>(k);
-                group.low[axis][i] = at < keys.size() ? mapped(boxes[static_cast<std::size_t>(keys[at].box)].low[k], k) : far_away;
-                group.high[axis][i] = at < keys.size() ? mapped(boxes[static_cast<std::size_t>(keys[at].box)].high[k], k) : -far_away;
+                group.low[axis][i] = at < keys.size() ? mapped(boxes[keys[at].box].low[k], k) : far_away;
+                group.high[axis][i] = at < keys.size() ? mapped(boxes[keys[at].box].high[k], k) : -far_away;
             }
         }
     });
@@ -111,16 +111,15 @@ void CloseBoxes::add_levels() {
     while (levels_.back().size() > 1) {
         const std::vector<Group>& below = levels_.back();
         std::vector<Group> level((below.size() + 3) / 4);
-        base::parallel_for(static_cast<int>(level.size()), boxes_per_piece / 4,
-                           [&](int g) { level[static_cast<std::size_t>(g)] = joined(below, g); });
+        base::parallel_for(count_of(level), boxes_per_piece / 4, [&](int g) { level[g] = joined(below, g); });
         levels_.push_back(std::move(level));
     }
 }
 
 void CloseBoxes::cut_tasks() {
-    const int top = static_cast<int>(levels_.size()) - 1;
+    const int top = count_of(levels_) - 1;
     int level = top;
-    while (level > 0 && static_cast<int>(levels_[static_cast<std::size_t>(level)].size()) < groups_per_task_level) --level;
+    while (level > 0 && count_of(levels_[level]) < groups_per_task_level) --level;
     descend({top, 0, 0}, level, [&](const GroupPair& pair) {
         tasks_.push_back(pair);
         return true;

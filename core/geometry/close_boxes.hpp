@@ -20,7 +20,7 @@ public:
     explicit CloseBoxes(const std::vector<Box>& boxes);
 
     /// How many tasks the search is cut into: by the boxes alone.
-    int tasks() const { return static_cast<int>(tasks_.size()); }
+    int tasks() const { return count_of(tasks_); }
 
     /// Calls visit(i, j) for pairs of boxes of a task: over all tasks once for each two that overlap, and for some that nearly do. Until it
     /// returns false. Tasks are independent: each may run on a thread of its own.
@@ -67,8 +67,8 @@ private:
 template <class Handle>
 bool CloseBoxes::descend(const GroupPair& pair, int lowest, const Handle& handle) const {
     if (pair.level == lowest) return handle(pair);
-    const Group& first = levels_[static_cast<std::size_t>(pair.level)][static_cast<std::size_t>(pair.a)];
-    const Group& second = levels_[static_cast<std::size_t>(pair.level)][static_cast<std::size_t>(pair.b)];
+    const Group& first = levels_[pair.level][pair.a];
+    const Group& second = levels_[pair.level][pair.b];
     unsigned found = first.overlaps(second);
     // A box with itself is no pair, a group with itself is; each pair once.
     if (pair.a == pair.b) found &= pair.level == 0 ? 0x08ceU : 0x8cefU;
@@ -82,9 +82,7 @@ bool CloseBoxes::descend(const GroupPair& pair, int lowest, const Handle& handle
 
 template <class Visit>
 void CloseBoxes::visit_task(int task, const Visit& visit) const {
-    descend(tasks_[static_cast<std::size_t>(task)], -1, [&](const GroupPair& boxes) {
-        return visit(order_[static_cast<std::size_t>(boxes.a)], order_[static_cast<std::size_t>(boxes.b)]);
-    });
+    descend(tasks_[task], -1, [&](const GroupPair& boxes) { return visit(order_[boxes.a], order_[boxes.b]); });
 }
 
 }  // namespace fettle::core::geometry

@@ -58,10 +58,10 @@ Welding exact_welding(const Matrix3X& vertices) {
         std::uint64_t hash = 0;
         for (int k = 0; k < 3; ++k) hash = base::mixed_bits(hash ^ std::bit_cast<std::uint64_t>(x[k] + 0.0));
         std::size_t place = static_cast<std::size_t>(hash) & mask;
-        const auto is_other = [&](int distinct) { return vertices.col(welding.first_occurrence[static_cast<std::size_t>(distinct)]) != x; };
+        const auto is_other = [&](int distinct) { return vertices.col(welding.first_occurrence[distinct]) != x; };
         while (table[place] >= 0 && is_other(table[place])) place = (place + 1) & mask;
         if (table[place] < 0) {
-            table[place] = static_cast<int>(welding.first_occurrence.size());
+            table[place] = count_of(welding.first_occurrence);
             welding.first_occurrence.push_back(i);
         }
         welding.new_index.push_back(table[place]);
@@ -88,14 +88,13 @@ Mesh welded(std::string name, std::vector<std::string> shell_names, const Matrix
     const Welding welding = exact_welding(vertices);
     const auto merged = [&](int vertex) {
         FETTLE_ASSERT(vertex >= 0 && vertex < vertices.cols(), "welding needs vertex indices in range");
-        return welding.new_index[static_cast<std::size_t>(vertex)];
+        return welding.new_index[vertex];
     };
     Mesh result;
     result.name = std::move(name);
     result.shell_names = std::move(shell_names);
-    result.vertices.resize(3, static_cast<Eigen::Index>(welding.first_occurrence.size()));
-    for (std::size_t i = 0; i < welding.first_occurrence.size(); ++i)
-        result.vertices.col(static_cast<Eigen::Index>(i)) = vertices.col(welding.first_occurrence[i]);
+    result.vertices.resize(3, welding.first_occurrence.size());
+    for (std::size_t i = 0; i < welding.first_occurrence.size(); ++i) result.vertices.col(i) = vertices.col(welding.first_occurrence[i]);
     result.triangles.reserve(triangles.size());
     for (const Triangle& triangle : triangles) {
         const Triangle t{merged(triangle[0]), merged(triangle[1]), merged(triangle[2])};
@@ -112,11 +111,11 @@ Mesh welded(std::string name, std::vector<std::string> shell_names, const Matrix
 
 void build_connectivity(Mesh& mesh, const std::vector<Edge>& extra_edges) {
     const int vertex_count = static_cast<int>(mesh.vertices.cols());
-    const int triangle_count = static_cast<int>(mesh.triangles.size());
+    const int triangle_count = count_of(mesh.triangles);
     // Indices that are out of range are left for validate_mesh to report: they must not crash here.
-    std::vector<char> used(static_cast<std::size_t>(vertex_count), 0);
+    std::vector<char> used(vertex_count, 0);
     const auto use = [&](int vertex) {
-        if (vertex >= 0 && vertex < vertex_count) used[static_cast<std::size_t>(vertex)] = 1;
+        if (vertex >= 0 && vertex < vertex_count) used[vertex] = 1;
     };
 
     TriangleEdges found = triangle_edges(mesh.triangles);
@@ -143,16 +142,16 @@ void build_connectivity(Mesh& mesh, const std::vector<Edge>& extra_edges) {
 
     mesh.codimensional_points.clear();
     for (int i = 0; i < vertex_count; ++i) {
-        if (!used[static_cast<std::size_t>(i)]) mesh.codimensional_points.push_back(i);
+        if (!used[i]) mesh.codimensional_points.push_back(i);
     }
 
-    mesh.triangle_shell.assign(static_cast<std::size_t>(triangle_count), 0);
+    mesh.triangle_shell.assign(triangle_count, 0);
     int shell_count = 0;
     for (int t = 0; t < triangle_count; ++t) {
         const int first = shells.representative(t);
         mesh.triangle_shell[t] = first == t ? shell_count++ : mesh.triangle_shell[first];
     }
-    if (static_cast<int>(mesh.shell_names.size()) != shell_count) {
+    if (count_of(mesh.shell_names) != shell_count) {
         mesh.shell_names.clear();
         for (int s = 0; s < shell_count; ++s) mesh.shell_names.push_back(mesh.name + "/" + std::to_string(s));
     }

@@ -63,7 +63,7 @@ private:
         const Vector3 origin = mesh_.vertices.col(edge.low), along = mesh_.vertices.col(edge.high) - origin;
         const auto side = [&](int v) { return Vector3(along.cross(mesh_.vertices.col(v) - origin)); };
         if (!(side(far[0]).dot(side(far[1])) < 0)) return;
-        for (const int t : triangle) hinges_of_[at(t)].push_back(static_cast<int>(hinges_.size()));
+        for (const int t : triangle) hinges_of_[at(t)].push_back(count_of(hinges_));
         hinges_.push_back({first, triangle, far});
     }
 
@@ -119,12 +119,12 @@ FlatFeatures flat_features(const Mesh& mesh, double flatness) {
     const auto is_flat = [&flat](int a, int b) {
         return std::binary_search(flat.begin(), flat.end(), std::pair(std::min(a, b), std::max(a, b)));
     };
-    std::vector<std::uint8_t> flat_vertex(static_cast<std::size_t>(mesh.vertices.cols()), 1);
+    std::vector<std::uint8_t> flat_vertex(mesh.vertices.cols(), 1);
     out.edge.resize(mesh.edges.size());
     for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
         const auto [a, b] = mesh.edges[e];
         out.edge[e] = is_flat(a, b) ? 1 : 0;
-        if (out.edge[e] == 0) flat_vertex[static_cast<std::size_t>(a)] = flat_vertex[static_cast<std::size_t>(b)] = 0;
+        if (out.edge[e] == 0) flat_vertex[a] = flat_vertex[b] = 0;
     }
     out.face.resize(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -132,7 +132,7 @@ FlatFeatures flat_features(const Mesh& mesh, double flatness) {
         for (unsigned k = 0; k < 3; ++k) {
             const int a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
             if (is_flat(a, b)) bits |= 1U << k;
-            if (flat_vertex[static_cast<std::size_t>(a)] != 0) bits |= 8U << k;
+            if (flat_vertex[a] != 0) bits |= 8U << k;
         }
         out.face[t] = static_cast<std::uint8_t>(bits);
     }

@@ -19,9 +19,9 @@ struct FlatFeatures {
     double height = 0;               ///< largest distance of a vertex from its facet's plane [m]
 
     bool any() const { return !edge.empty(); }
-    bool is_flat_edge(int e) const { return any() && edge[static_cast<std::size_t>(e)] != 0; }
+    bool is_flat_edge(int e) const { return any() && edge[e] != 0; }
     /// 0 for the faces of wires and points, which come after the triangles (BodyHierarchy::faces).
-    unsigned of_face(int f) const { return static_cast<std::size_t>(f) < face.size() ? face[static_cast<std::size_t>(f)] : 0U; }
+    unsigned of_face(int f) const { return static_cast<std::size_t>(f) < face.size() ? face[f] : 0U; }
 };
 
 /// @param flatness  [m]. Contract: connectivity built.

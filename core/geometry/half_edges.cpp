@@ -68,7 +68,7 @@ SortedSides sorted_sides(std::size_t count, const Ends& ends) {
     std::vector<int> next(out.first.begin(), out.first.end() - 1);
     for (std::size_t i = 0; i < count; ++i) {
         const Side side = side_at(i);
-        out.sides[static_cast<std::size_t>(next[static_cast<std::size_t>(side.low - lowest)]++)] = side;
+        out.sides[next[side.low - lowest]++] = side;
     }
     for (std::size_t v = 0; v + 1 < out.first.size(); ++v)
         sort_bucket(out.sides.data() + out.first[v], out.sides.data() + out.first[v + 1]);
@@ -108,7 +108,7 @@ TriangleEdges triangle_edges(const std::vector<Triangle>& triangles) {
     std::size_t count = 0;
     for (std::size_t i = 0, last = 0; i < sides.size(); i = last) {
         for (last = i; last < sides.size() && sides[last].low == sides[i].low && sides[last].high == sides[i].high; ++last)
-            if (sides[i].low != sides[i].high) out.of_side[static_cast<std::size_t>(sides[last].side)] = sides[i].side;
+            if (sides[i].low != sides[i].high) out.of_side[sides[last].side] = sides[i].side;
         if (sides[i].low != sides[i].high) ++count;
     }
     out.edges.reserve(count);
@@ -116,10 +116,10 @@ TriangleEdges triangle_edges(const std::vector<Triangle>& triangles) {
         const int first = out.of_side[side];
         if (first < 0) continue;
         if (static_cast<std::size_t>(first) == side) {
-            out.of_side[side] = static_cast<int>(out.edges.size());
+            out.of_side[side] = count_of(out.edges);
             out.edges.push_back(ends_of_side(triangles, side));
         } else {
-            out.of_side[side] = out.of_side[static_cast<std::size_t>(first)];
+            out.of_side[side] = out.of_side[first];
         }
     }
     return out;
@@ -139,7 +139,7 @@ int EdgeIndex::find(int a, int b) const {
     if (!first_.empty()) {
         const std::int64_t place = static_cast<std::int64_t>(low) - lowest_;
         if (place < 0 || place + 1 >= static_cast<std::int64_t>(first_.size())) return -1;
-        begin = entries_.begin() + first_[static_cast<std::size_t>(place)];
+        begin = entries_.begin() + first_[place];
         end = entries_.begin() + first_[static_cast<std::size_t>(place) + 1];
     }
     // Behind the last one that is not larger.

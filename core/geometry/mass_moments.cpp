@@ -114,14 +114,13 @@ std::vector<Opening> openings(const Matrix3X& vertices, const std::vector<Triang
 std::vector<Opening> openings(const Matrix3X& vertices, const std::vector<HalfEdge>& halves) {
     const std::vector<Edge> chain = boundary_chain(halves);
     if (chain.empty()) return {};
-    std::vector<int> parent(static_cast<std::size_t>(vertices.cols()));
+    std::vector<int> parent(vertices.cols());
     std::iota(parent.begin(), parent.end(), 0);
     const auto root = [&](int v) {
-        while (parent[static_cast<std::size_t>(v)] != v)
-            v = parent[static_cast<std::size_t>(v)] = parent[parent[static_cast<std::size_t>(v)]];
+        while (parent[v] != v) v = parent[v] = parent[parent[v]];
         return v;
     };
-    for (const Edge& edge : chain) parent[static_cast<std::size_t>(root(edge[0]))] = root(edge[1]);
+    for (const Edge& edge : chain) parent[root(edge[0])] = root(edge[1]);
     std::map<int, Opening> parts;
     for (const Edge& edge : chain) parts[root(edge[0])].edges.push_back(edge);
     std::vector<Opening> result;

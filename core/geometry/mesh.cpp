@@ -70,7 +70,7 @@ bool have_same_shape(const Mesh& a, const Mesh& b) {
 
 std::vector<std::size_t> first_of_shape(const std::vector<const Mesh*>& meshes) {
     constexpr int meshes_at_once = 8;  // that a thread takes
-    const auto count = static_cast<int>(meshes.size());
+    const auto count = count_of(meshes);
     std::vector<std::size_t> hashes(meshes.size()), first(meshes.size());
     base::parallel_for(count, meshes_at_once, [&](int i) { hashes[i] = shape_hash(*meshes[i]); });
     std::unordered_map<std::size_t, std::vector<std::size_t>> by_hash;  // the first of each shape

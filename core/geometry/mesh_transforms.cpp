@@ -21,18 +21,18 @@ std::vector<Mesh> split_shells(const Mesh& mesh) {
     if (mesh.triangles.empty()) return {mesh};
     std::vector<std::vector<Triangle>> triangles(mesh.shell_names.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        triangles[static_cast<std::size_t>(mesh.triangle_shell[t])].push_back(mesh.triangles[t]);
+        triangles[mesh.triangle_shell[t]].push_back(mesh.triangles[t]);
     }
     std::vector<Mesh> parts;
-    std::vector<int> new_index(static_cast<std::size_t>(mesh.vertices.cols()), -1);
+    std::vector<int> new_index(mesh.vertices.cols(), -1);
     for (std::size_t s = 0; s < triangles.size(); ++s) {
         std::vector<int> kept;
         for (const auto& triangle : triangles[s]) kept.insert(kept.end(), triangle.begin(), triangle.end());
         std::sort(kept.begin(), kept.end());
         kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
-        for (std::size_t i = 0; i < kept.size(); ++i) new_index[static_cast<std::size_t>(kept[i])] = static_cast<int>(i);
+        for (std::size_t i = 0; i < kept.size(); ++i) new_index[kept[i]] = static_cast<int>(i);
         for (auto& triangle : triangles[s]) {
-            for (int& v : triangle) v = new_index[static_cast<std::size_t>(v)];
+            for (int& v : triangle) v = new_index[v];
         }
         parts.push_back(make_mesh(mesh.shell_names[s], mesh.vertices(Eigen::all, kept), std::move(triangles[s])));
     }

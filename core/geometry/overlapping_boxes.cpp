@@ -27,7 +27,7 @@ public:
         std::vector<Centre> centres(boxes.size());
         for (std::size_t i = 0; i < boxes.size(); ++i) centres[i] = {boxes[i].low / 2 + boxes[i].high / 2, static_cast<int>(i)};
         nodes_.reserve(boxes.size());
-        if (!boxes.empty()) build(centres, 0, static_cast<int>(boxes.size()));
+        if (!boxes.empty()) build(centres, 0, count_of(boxes));
     }
 
     /// False once `visit` has returned false.
@@ -52,7 +52,7 @@ private:
 
     // The boxes of nodes come from below, each box's once.
     int build(std::vector<Centre>& centres, int first, int last) {
-        const int index = static_cast<int>(nodes_.size());
+        const int index = count_of(nodes_);
         nodes_.emplace_back();
         nodes_[index].first = first;
         nodes_[index].last = last;
@@ -114,11 +114,11 @@ private:
 // By the first box, counted, then by the second: there are few of the same first. @param boxes  their number
 std::vector<std::pair<int, int>> sorted(const std::vector<std::pair<int, int>>& pairs, std::size_t boxes) {
     std::vector<std::size_t> begin(boxes + 1, 0);  // of the pairs of each first box, once they have been counted and placed
-    for (const auto& [a, b] : pairs) ++begin[static_cast<std::size_t>(a)];
+    for (const auto& [a, b] : pairs) ++begin[a];
     std::size_t before = 0;
     for (std::size_t& count : begin) before += std::exchange(count, before);
     std::vector<std::pair<int, int>> out(pairs.size());
-    for (const auto& pair : pairs) out[begin[static_cast<std::size_t>(pair.first)]++] = pair;
+    for (const auto& pair : pairs) out[begin[pair.first]++] = pair;
     auto first = out.begin();
     for (std::size_t box = 0; box < boxes; ++box) {  // begin[box] is where its pairs end now
         const auto last = out.begin() + static_cast<std::ptrdiff_t>(begin[box]);
@@ -148,11 +148,10 @@ std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<Box>& boxes
                     found.end());
         return found;
     };
-    Pairs pairs =
-        base::ordered_reduce(static_cast<int>(boxes.size()), boxes_at_once, Pairs{}, found_from, [](Pairs&& so_far, Pairs&& piece) {
-            so_far.insert(so_far.end(), piece.begin(), piece.end());
-            return std::move(so_far);
-        });
+    Pairs pairs = base::ordered_reduce(count_of(boxes), boxes_at_once, Pairs{}, found_from, [](Pairs&& so_far, Pairs&& piece) {
+        so_far.insert(so_far.end(), piece.begin(), piece.end());
+        return std::move(so_far);
+    });
     return sorted(pairs, boxes.size());
 }
 

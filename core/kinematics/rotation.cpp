@@ -32,7 +32,7 @@ constexpr Series make_series(int offset, int derivatives) {
         const int k = i + derivatives;
         double factor = k % 2 == 0 ? 1 : -1;
         for (int d = 0; d < derivatives; ++d) factor *= 2 * (k - d);
-        series[static_cast<std::size_t>(i)] = factor / factorial(2 * k + offset);
+        series[i] = factor / factorial(2 * k + offset);
     }
     return series;
 }
@@ -52,7 +52,7 @@ constexpr int few_terms = 6;
 template <int terms>
 double sum_of(const Series& series, double z) {
     double sum = series[terms - 1];
-    for (int i = terms - 2; i >= 0; --i) sum = series[static_cast<std::size_t>(i)] + z * sum;
+    for (int i = terms - 2; i >= 0; --i) sum = series[i] + z * sum;
     return sum;
 }
 
@@ -214,7 +214,7 @@ Vector3 rotation_vector(const Matrix3& rotation) {
     const Vector3 axial(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1));
     int largest = 0;
     for (int i = 1; i < 4; ++i) {
-        if (squares[static_cast<std::size_t>(i)] > squares[static_cast<std::size_t>(largest)]) largest = i;
+        if (squares[i] > squares[largest]) largest = i;
     }
     // Only the direction of (w, v) matters, so its length is left at 4 times the largest component.
     double w = squares[0];
@@ -222,7 +222,7 @@ Vector3 rotation_vector(const Matrix3& rotation) {
     if (largest > 0) {
         const int i = largest - 1, j = (i + 1) % 3, k = (i + 2) % 3;
         w = axial[i];
-        v[i] = squares[static_cast<std::size_t>(largest)];
+        v[i] = squares[largest];
         v[j] = r(i, j) + r(j, i);
         v[k] = r(i, k) + r(k, i);
         if (w < 0) {

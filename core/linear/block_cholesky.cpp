@@ -53,7 +53,7 @@ void subtract_product(Matrix6& a, const Matrix6& b, const Matrix6& c) {
 
 // Order of elimination of the nodes.
 std::vector<int> minimum_degree(const std::vector<std::vector<int>>& neighbours) {
-    const int n = static_cast<int>(neighbours.size());
+    const int n = count_of(neighbours);
     std::vector<Eigen::Triplet<double>> entries;  // of the lower triangle
     for (int i = 0; i < n; ++i) {
         entries.emplace_back(i, i, 1);
@@ -95,7 +95,7 @@ bool BlockCholesky::analyse(const kinematics::BlockHessian& hessian, const FreeD
     node_of_.assign(dofs.index.size(), -1);
     for (std::size_t body = 0; body < dofs.index.size(); ++body) {
         if (is_none_free(dofs.index[body])) continue;
-        node_of_[body] = static_cast<int>(bodies.size());
+        node_of_[body] = count_of(bodies);
         bodies.push_back(static_cast<int>(body));
     }
     std::vector<std::vector<int>> neighbours(bodies.size());
@@ -141,7 +141,7 @@ void BlockCholesky::find_columns(const std::vector<std::vector<int>>& neighbours
         std::sort(rows.begin(), rows.end());
         rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
         for (const int i : rows) {
-            rows_[at(i)].push_back({static_cast<int>(j), static_cast<int>(columns_[j].size())});
+            rows_[at(i)].push_back({static_cast<int>(j), count_of(columns_[j])});
             columns_[j].push_back({i, blocks++});
         }
         if (!rows.empty()) sibling[j] = std::exchange(last_child[at(rows.front())], static_cast<int>(j));
@@ -202,7 +202,7 @@ void BlockCholesky::find_levels() {
 
 void BlockCholesky::fill(const kinematics::BlockHessian& hessian, const FreeDofs& dofs) {
     constexpr int blocks_a_piece = 64;
-    const auto nodes = static_cast<int>(body_of_.size()), couplings = static_cast<int>(hessian.off_diagonal.size());
+    const auto nodes = count_of(body_of_), couplings = count_of(hessian.off_diagonal);
     diagonal_.resize(body_of_.size());
     blocks_.resize(filled_in_.size() + at(couplings));
     for (const int block : filled_in_) blocks_[at(block)].setZero();
@@ -245,7 +245,7 @@ bool BlockCholesky::factorise(const kinematics::BlockHessian& hessian, const Fre
     fill(hessian, dofs);
     for (const Level& level : levels_) {
         std::atomic<bool> is_positive = true;
-        base::parallel_for(static_cast<int>(level.columns.size()), level.factor_grain, [&](int k) {
+        base::parallel_for(count_of(level.columns), level.factor_grain, [&](int k) {
             if (!eliminate(level.columns[at(k)])) is_positive = false;
         });
         if (!is_positive) return false;
@@ -258,7 +258,7 @@ bool BlockCholesky::factorise(const kinematics::BlockHessian& hessian, const Fre
 void BlockCholesky::solve_panel(int width, std::vector<Vector6>& x) const {
     const auto of_node = [&](int k) { return x.data() + at(k) * at(width); };
     for (const Level& level : levels_)
-        base::parallel_for(static_cast<int>(level.columns.size()), level.solve_grain, [&](int i) {
+        base::parallel_for(count_of(level.columns), level.solve_grain, [&](int i) {
             const int k = level.columns[at(i)];
             Vector6* const mine = of_node(k);
             for (const Entry& before : rows_[at(k)]) {
@@ -269,7 +269,7 @@ void BlockCholesky::solve_panel(int width, std::vector<Vector6>& x) const {
             for (int c = 0; c < width; ++c) diagonal_[at(k)].triangularView<Eigen::Lower>().solveInPlace(mine[c]);
         });
     for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
-        base::parallel_for(static_cast<int>(level->columns.size()), level->solve_grain, [&](int i) {
+        base::parallel_for(count_of(level->columns), level->solve_grain, [&](int i) {
             const int k = level->columns[at(i)];
             Vector6* const mine = of_node(k);
             for (const Entry& entry : columns_[at(k)]) {

@@ -99,7 +99,7 @@ RankFactor factor_by_spqr(const Sparse& matrix, double share) {
         for (SuiteSparse_long j = 0; j < static_cast<SuiteSparse_long>(r->ncol); ++j)
             for (SuiteSparse_long k = p[j]; k < p[j + 1]; ++k)
                 entries.emplace_back(static_cast<int>(i[k]), static_cast<int>(j), static_cast<const double*>(r->x)[k]);
-        out.r.resize(static_cast<Eigen::Index>(r->nrow), static_cast<Eigen::Index>(r->ncol));
+        out.r.resize(r->nrow, r->ncol);
         out.r.setFromTriplets(entries.begin(), entries.end());
         for (Eigen::Index j = 0; j < matrix.cols(); ++j) out.columns.push_back(static_cast<int>(order != nullptr ? order[j] : j));
         out.rank = static_cast<int>(rank);
@@ -137,13 +137,13 @@ std::vector<DependentColumn> dependent_columns(Sparse matrix, double share) {
     const Sparse independent = factor.r.topLeftCorner(factor.rank, factor.rank);
     for (Eigen::Index j = factor.rank; j < matrix.cols(); ++j) {
         DependentColumn& dependent = out.emplace_back();
-        dependent.column = factor.columns[static_cast<std::size_t>(j)];
+        dependent.column = factor.columns[j];
         VectorX parts = VectorX(factor.r.col(j)).head(factor.rank);
         independent.triangularView<Eigen::Upper>().solveInPlace(parts);
-        for (Eigen::Index i = 0; i < factor.rank; ++i) parts[i] /= lengths[factor.columns[static_cast<std::size_t>(i)]];
+        for (Eigen::Index i = 0; i < factor.rank; ++i) parts[i] /= lengths[factor.columns[i]];
         const double largest = factor.rank > 0 ? parts.cwiseAbs().maxCoeff() : 0;
         for (Eigen::Index i = 0; i < factor.rank; ++i)
-            if (std::abs(parts[i]) > counts * largest) dependent.on.push_back(factor.columns[static_cast<std::size_t>(i)]);
+            if (std::abs(parts[i]) > counts * largest) dependent.on.push_back(factor.columns[i]);
         std::sort(dependent.on.begin(), dependent.on.end());
     }
     std::sort(out.begin(), out.end(), [](const DependentColumn& a, const DependentColumn& b) { return a.column < b.column; });

@@ -18,11 +18,11 @@ struct FreeDofs {
     /// The next body. @param is_free  of a dof, 0 .. 5: whether it is solved for
     template <class IsFree>
     void add_body(const IsFree& is_free) {
-        const auto body = static_cast<int>(index.size());
+        const auto body = count_of(index);
         std::array<int, 6>& numbers = index.emplace_back();
         for (int k = 0; k < 6; ++k) {
-            numbers[static_cast<std::size_t>(k)] = is_free(k) ? count++ : -1;
-            if (numbers[static_cast<std::size_t>(k)] < 0) prescribed.emplace_back(body, k);
+            numbers[k] = is_free(k) ? count++ : -1;
+            if (numbers[k] < 0) prescribed.emplace_back(body, k);
         }
     }
 };

@@ -77,7 +77,7 @@ void add_blocks(const std::vector<OffDiagonalBlock>& blocks, BlockHessian& hessi
     pairs.reserve(blocks.size());
     for (const OffDiagonalBlock& b : blocks) pairs.push_back(pair_of(b));
     const std::vector<int> places = place_blocks(pairs, hessian);
-    for (std::size_t k = 0; k < blocks.size(); ++k) hessian.off_diagonal[static_cast<std::size_t>(places[k])].block += blocks[k].block;
+    for (std::size_t k = 0; k < blocks.size(); ++k) hessian.off_diagonal[places[k]].block += blocks[k].block;
 }
 
 }  // namespace fettle::core::linear

@@ -24,7 +24,7 @@ struct RowGradient {
 struct RowJacobian {
     std::vector<int> first;  ///< [row] into `entries`; one more at the end. Empty: no rows
     std::vector<RowGradient> entries;
-    int count() const { return first.empty() ? 0 : static_cast<int>(first.size()) - 1; }
+    int count() const { return first.empty() ? 0 : count_of(first) - 1; }
 };
 
 /// H v.

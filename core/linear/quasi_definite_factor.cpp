@@ -44,8 +44,7 @@ std::vector<int> body_order(int bodies, const Pattern& pattern) {
     for (const auto& [a, b] : pattern.blocks) add(a, b);
     for (std::size_t row = 0; row + 1 < pattern.row_first.size(); ++row)
         for (int i = pattern.row_first[row]; i < pattern.row_first[row + 1]; ++i)
-            for (int j = i + 1; j < pattern.row_first[row + 1]; ++j)
-                add(pattern.row_bodies[static_cast<std::size_t>(i)], pattern.row_bodies[static_cast<std::size_t>(j)]);
+            for (int j = i + 1; j < pattern.row_first[row + 1]; ++j) add(pattern.row_bodies[i], pattern.row_bodies[j]);
     Sparse graph(bodies, bodies);
     graph.setFromTriplets(edges.begin(), edges.end());
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> p;
@@ -96,25 +95,24 @@ struct QuasiDefiniteFactor::Implementation {
 
     void order(const Pattern& wanted) {
         std::vector<int> rank(index.size(), -1);
-        const std::vector<int> bodies = body_order(static_cast<int>(index.size()), wanted);
-        for (std::size_t k = 0; k < bodies.size(); ++k) rank[static_cast<std::size_t>(bodies[k])] = static_cast<int>(k);
+        const std::vector<int> bodies = body_order(count_of(index), wanted);
+        for (std::size_t k = 0; k < bodies.size(); ++k) rank[bodies[k]] = static_cast<int>(k);
         // Rows after the last of their bodies of which anything is free; those of none are first.
         std::vector<std::vector<int>> after(index.size());
-        place.assign(static_cast<std::size_t>(count + rows), -1);
+        place.assign(count + rows, -1);
         int next = 0;
         for (int row = 0; row < rows; ++row) {
             int last = -1;
-            for (int k = wanted.row_first[row]; k < wanted.row_first[row + 1]; ++k)
-                last = std::max(last, rank[static_cast<std::size_t>(wanted.row_bodies[k])]);
+            for (int k = wanted.row_first[row]; k < wanted.row_first[row + 1]; ++k) last = std::max(last, rank[wanted.row_bodies[k]]);
             if (last < 0)
-                place[static_cast<std::size_t>(count + row)] = next++;
+                place[count + row] = next++;
             else
-                after[static_cast<std::size_t>(last)].push_back(row);
+                after[last].push_back(row);
         }
         for (std::size_t k = 0; k < bodies.size(); ++k) {
-            for (const int unknown : index[static_cast<std::size_t>(bodies[k])])
-                if (unknown >= 0) place[static_cast<std::size_t>(unknown)] = next++;
-            for (const int row : after[k]) place[static_cast<std::size_t>(count + row)] = next++;
+            for (const int unknown : index[bodies[k]])
+                if (unknown >= 0) place[unknown] = next++;
+            for (const int row : after[k]) place[count + row] = next++;
         }
     }
 
@@ -125,7 +123,7 @@ struct QuasiDefiniteFactor::Implementation {
         pattern = std::move(wanted);
         std::vector<Eigen::Triplet<double>> entries;
         for_each_entry(hessian, jacobian, [&](int i, int j, double) {
-            const int a = place[static_cast<std::size_t>(i)], b = place[static_cast<std::size_t>(j)];
+            const int a = place[i], b = place[j];
             entries.emplace_back(std::min(a, b), std::max(a, b), 1.0);
         });
         matrix.resize(count + rows, count + rows);
@@ -254,10 +252,10 @@ MatrixX QuasiDefiniteFactor::solve(const MatrixX& rhs) const {
     const Implementation& self = *implementation_;
     FETTLE_ASSERT(self.usable, "solve without a factorisation");
     Columns permuted(rhs.rows(), rhs.cols());
-    for (Eigen::Index i = 0; i < rhs.rows(); ++i) permuted.row(self.place[static_cast<std::size_t>(i)]) = rhs.row(i);
+    for (Eigen::Index i = 0; i < rhs.rows(); ++i) permuted.row(self.place[i]) = rhs.row(i);
     const Columns x = self.through_factor(std::move(permuted));
     MatrixX out(rhs.rows(), rhs.cols());
-    for (Eigen::Index i = 0; i < rhs.rows(); ++i) out.row(i) = x.row(self.place[static_cast<std::size_t>(i)]);
+    for (Eigen::Index i = 0; i < rhs.rows(); ++i) out.row(i) = x.row(self.place[i]);
     return out;
 }
 

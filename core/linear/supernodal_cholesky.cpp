@@ -113,10 +113,10 @@ Lower graph_of(const BlockHessian& hessian, const FreeDofs& dofs, const std::vec
     Lower out;
     for (std::vector<int>& column : columns) {
         std::sort(column.begin(), column.end());
-        out.starts.push_back(static_cast<int>(out.rows.size()));
+        out.starts.push_back(count_of(out.rows));
         out.rows.insert(out.rows.end(), column.begin(), column.end());
     }
-    out.starts.push_back(static_cast<int>(out.rows.size()));
+    out.starts.push_back(count_of(out.rows));
     return out;
 }
 
@@ -191,10 +191,10 @@ void SupernodalCholesky::analyse(const BlockHessian& hessian, const FreeDofs& do
     Lower& matrix = self.matrix;
     matrix = {};
     for_each_lower_entry(hessian, dofs, [&](int row, int column, double) {
-        if (column == static_cast<int>(matrix.starts.size())) matrix.starts.push_back(static_cast<int>(matrix.rows.size()));
+        if (column == count_of(matrix.starts)) matrix.starts.push_back(count_of(matrix.rows));
         matrix.rows.push_back(row);
     });
-    matrix.starts.push_back(static_cast<int>(matrix.rows.size()));
+    matrix.starts.push_back(count_of(matrix.rows));
     matrix.values.resize(matrix.rows.size());
     const OneLibraryThread one(cholmod()->threads);
     const std::vector<int> dissected = self.dissected(hessian, dofs, order);
@@ -215,7 +215,7 @@ bool SupernodalCholesky::factorise(const BlockHessian& hessian, const FreeDofs& 
     self.check_memory();
     if (self.common.status != CHOLMOD_OK || self.factor->minor < self.factor->n) return false;
     // OpenBLAS's factor of a panel takes what is no number for positive.
-    return Eigen::Map<const VectorX>(static_cast<const double*>(self.factor->x), static_cast<Eigen::Index>(self.factor->xsize)).allFinite();
+    return Eigen::Map<const VectorX>(static_cast<const double*>(self.factor->x), self.factor->xsize).allFinite();
 }
 
 MatrixX SupernodalCholesky::solve(const MatrixX& rhs) const {

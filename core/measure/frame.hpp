@@ -25,7 +25,7 @@ struct PlacedFrame {
 
 inline PlacedFrame placed(const Frame& frame, const std::vector<kinematics::Pose>& poses) {
     if (frame.body == world) return {Vector3::Zero(), frame.point, frame.axes};
-    const kinematics::Pose& pose = poses[static_cast<std::size_t>(frame.body)];
+    const kinematics::Pose& pose = poses[frame.body];
     const Vector3 arm = pose.rotation * frame.point;
     return {arm, pose.position + arm, pose.rotation * frame.axes};
 }

@@ -10,7 +10,7 @@ namespace {
 
 using Frames = std::vector<PlacedFrame>;
 
-const PlacedFrame& frame(const Frames& frames, int i) { return frames[static_cast<std::size_t>(i)]; }
+const PlacedFrame& frame(const Frames& frames, int i) { return frames[i]; }
 
 Vector3 difference(const Measure& m, const Frames& frames) { return frame(frames, m.b).point - frame(frames, m.a).point; }
 
@@ -125,7 +125,7 @@ Vector3 change_of(const Measure& m, const FrameVector& v, const Frames& frames, 
 }
 
 void add_to(const FrameVector& v, const Vector3& bar, std::vector<FrameGradient>& gradients) {
-    FrameGradient& g = gradients[static_cast<std::size_t>(v.frame)];
+    FrameGradient& g = gradients[v.frame];
     if (v.is_point())
         g.point += bar;
     else
@@ -138,8 +138,7 @@ Vector3 times_hessian(const VectorFunction& f, int i, const std::array<Vector3, 
     for (int j = 0; j < f.count; ++j) {
         const auto k = static_cast<std::size_t>(block_number(std::min(i, j), std::max(i, j)));
         if (!f.curved[k]) continue;
-        sum += i <= j ? Vector3(f.hessian[k] * changes[static_cast<std::size_t>(j)])
-                      : Vector3(f.hessian[k].transpose() * changes[static_cast<std::size_t>(j)]);
+        sum += i <= j ? Vector3(f.hessian[k] * changes[j]) : Vector3(f.hessian[k].transpose() * changes[j]);
     }
     return sum;
 }
@@ -197,7 +196,7 @@ Matrix12 gauss_newton_hessian(const Measure& m, const VectorFunction& f, const F
         for (int j = i; j < f.count; ++j) {
             const auto k = static_cast<std::size_t>(block_number(i, j));
             if (!f.curved[k]) continue;
-            const FrameVector &vi = f.vectors[static_cast<std::size_t>(i)], &vj = f.vectors[static_cast<std::size_t>(j)];
+            const FrameVector &vi = f.vectors[i], &vj = f.vectors[j];
             Matrix6 block = Matrix6::Zero();
             add_pulled_back(f.hessian[k], vector_of(vi, frames), vector_of(vj, frames), vi.is_point(), vj.is_point(), block);
             const int row = is_of_b(vi, m) ? 6 : 0, column = is_of_b(vj, m) ? 6 : 0;
@@ -212,15 +211,14 @@ void add_placement_gradient(const VectorFunction& f, double weight, const std::v
     for (int i = 0; i < f.count; ++i) {
         const auto at = static_cast<std::size_t>(i);
         const FrameVector& v = f.vectors[at];
-        add_to(v, weight * (rotations[static_cast<std::size_t>(v.frame)].transpose() * f.gradient[at]), gradients);
+        add_to(v, weight * (rotations[v.frame].transpose() * f.gradient[at]), gradients);
     }
 }
 
 // d(f_z . dz) = (f'' dz + f_z x phi) . (psi x z) + (f'' dz) . dq.
 Vector12 pose_gradient_of_change(const Measure& m, const VectorFunction& f, const Frames& frames, const Vector12& motion) {
     std::array<Vector3, 3> changes;
-    for (int i = 0; i < f.count; ++i)
-        changes[static_cast<std::size_t>(i)] = change_of(m, f.vectors[static_cast<std::size_t>(i)], frames, motion);
+    for (int i = 0; i < f.count; ++i) changes[i] = change_of(m, f.vectors[i], frames, motion);
     Vector12 out = Vector12::Zero();
     for (int i = 0; i < f.count; ++i) {
         const auto k = static_cast<std::size_t>(i);
@@ -237,14 +235,13 @@ Vector12 pose_gradient_of_change(const Measure& m, const VectorFunction& f, cons
 void add_placement_gradient_of_change(const Measure& m, const VectorFunction& f, double weight, const PlacedAndTurned& at,
                                       const Vector12& motion, std::vector<FrameGradient>& gradients) {
     std::array<Vector3, 3> changes;
-    for (int i = 0; i < f.count; ++i)
-        changes[static_cast<std::size_t>(i)] = change_of(m, f.vectors[static_cast<std::size_t>(i)], at.frames, motion);
+    for (int i = 0; i < f.count; ++i) changes[i] = change_of(m, f.vectors[i], at.frames, motion);
     for (int i = 0; i < f.count; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const FrameVector& v = f.vectors[k];
         const Vector3 phi = motion.segment<3>(is_of_b(v, m) ? 9 : 3);
         const Vector3 bar = times_hessian(f, i, changes) + f.gradient[k].cross(phi);
-        add_to(v, weight * (at.rotations[static_cast<std::size_t>(v.frame)].transpose() * bar), gradients);
+        add_to(v, weight * (at.rotations[v.frame].transpose() * bar), gradients);
     }
 }
 

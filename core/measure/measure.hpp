@@ -71,7 +71,7 @@ VectorFunction vector_function(const Measure& measure, const std::vector<PlacedF
 
 /// What a vector is, from its body's reference point.
 inline Vector3 vector_of(const FrameVector& v, const std::vector<PlacedFrame>& frames) {
-    const PlacedFrame& f = frames[static_cast<std::size_t>(v.frame)];
+    const PlacedFrame& f = frames[v.frame];
     return v.is_point() ? f.arm : Vector3(f.axes.col(v.axis));
 }
 

@@ -143,7 +143,7 @@ Result<GroupedTriangles> grouped_triangles(const RawMesh& raw, bool weld, const 
         if (pieces.empty()) {
             std::ostringstream text;
             text << "face " << p << " (counted from 0), a polygon of " << count << " vertices near ("
-                 << raw.vertices[static_cast<std::size_t>(corners[0])].transpose()
+                 << raw.vertices[corners[0]].transpose()
                  << "), has no area or an outline that crosses itself; export the mesh as triangles";
             return Error{ErrorCode::mesh_invalid, path, text.str()};
         }
@@ -158,7 +158,7 @@ void name_shells(Mesh& mesh, const std::vector<int>& triangle_group, const std::
     std::vector<std::string> object(mesh.shell_names.size());
     for (std::size_t t = mesh.triangles.size(); t-- > 0;) {
         const int group = triangle_group[t];
-        object[static_cast<std::size_t>(mesh.triangle_shell[t])] = group < 0 ? "" : groups[static_cast<std::size_t>(group)];
+        object[mesh.triangle_shell[t]] = group < 0 ? "" : groups[group];
     }
     for (std::string& name : object) name = base::shown_on_one_line(name);  // control characters and what is no UTF-8, escaped
     std::map<std::string, int> total, used;
@@ -183,7 +183,7 @@ RawMesh item_of(const RawMesh& raw, std::size_t i) {
     for (std::size_t p = item.first_polygon; p < polygons_end; ++p) {
         for (; corner < static_cast<std::size_t>(raw.polygon_ends[p]); ++corner)
             out.corners.push_back(raw.corners[corner] - static_cast<int>(item.first_vertex));
-        out.polygon_ends.push_back(static_cast<int>(out.corners.size()));
+        out.polygon_ends.push_back(count_of(out.corners));
         // The objects of an item follow one another: those of all items are copied once.
         const int group = raw.polygon_group[p], first_group = raw.polygon_group[item.first_polygon];
         if (static_cast<std::size_t>(group - first_group) >= out.groups.size())
@@ -204,8 +204,8 @@ Result<Mesh> mesh_of(RawMesh& raw, const std::string& name, const std::string& p
     auto faces = grouped_triangles(raw, options.weld, path);
     if (!faces) return faces.errors();
 
-    Matrix3X vertices(3, static_cast<Eigen::Index>(raw.vertices.size()));
-    for (std::size_t i = 0; i < raw.vertices.size(); ++i) vertices.col(static_cast<Eigen::Index>(i)) = raw.vertices[i];
+    Matrix3X vertices(3, raw.vertices.size());
+    for (std::size_t i = 0; i < raw.vertices.size(); ++i) vertices.col(i) = raw.vertices[i];
     Mesh mesh;
     if (options.weld) {
         mesh = geometry::welded_mesh(name, vertices, faces->triangles, raw.edges);

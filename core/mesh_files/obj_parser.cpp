@@ -75,7 +75,7 @@ private:
             return;
         }
         for (std::size_t i = 1; i < words.size(); ++i) mesh_.corners.push_back(vertex_index(words[i]));
-        mesh_.polygon_ends.push_back(static_cast<int>(mesh_.corners.size()));
+        mesh_.polygon_ends.push_back(count_of(mesh_.corners));
         mesh_.polygon_group.push_back(group_);
     }
 
@@ -86,7 +86,7 @@ private:
     /// "7", "7/2", "7//3", "-1/..": the number before the first slash, from 1, or from the last vertex so far if negative.
     int vertex_index(std::string_view word) {
         const auto number = files::parsed_integer(word.substr(0, word.find('/')));
-        const int count = static_cast<int>(mesh_.vertices.size());
+        const int count = count_of(mesh_.vertices);
         if (!number || *number == 0 || (*number < 0 && *number + count < 0)) {
             fail(ErrorCode::out_of_range,
                  "`" + std::string(word) + "` is not a vertex: counted from 1, or -1 to -" + std::to_string(count) + " for the last ones");
@@ -108,13 +108,13 @@ private:
         // `o` before `g` (or the reverse) names one object twice: the later name holds for the faces that follow it.
         group_ = -1;
         if (name.empty() || name == "default") return;
-        const auto [known, fresh] = group_of_.try_emplace(name, static_cast<int>(mesh_.groups.size()));
+        const auto [known, fresh] = group_of_.try_emplace(name, count_of(mesh_.groups));
         group_ = known->second;
         if (fresh) mesh_.groups.push_back(name);
     }
 
     void check_forward_references() {
-        const int count = static_cast<int>(mesh_.vertices.size());
+        const int count = count_of(mesh_.vertices);
         if (largest_index_ <= count) return;
         errors_.push_back({ErrorCode::out_of_range, where_ + ":" + std::to_string(line_of_largest_),
                            "refers to vertex " + std::to_string(largest_index_) + ", but the file has " + std::to_string(count)});

@@ -52,8 +52,8 @@ private:
         if (words_.size() < 3) return fail(ErrorCode::parse, "vertex " + std::to_string(index) + " needs three coordinates");
         Vector3 x;
         for (int i = 0; i < 3; ++i) {
-            const auto value = files::parsed_number(words_[static_cast<std::size_t>(i)]);
-            if (!value) return fail(ErrorCode::parse, "`" + std::string(words_[static_cast<std::size_t>(i)]) + "` is not a number");
+            const auto value = files::parsed_number(words_[i]);
+            if (!value) return fail(ErrorCode::parse, "`" + std::string(words_[i]) + "` is not a number");
             x(i) = *value;
         }
         mesh_.vertices.push_back(x);
@@ -78,7 +78,7 @@ private:
         if (corners.size() == 2) mesh_.edges.push_back({corners[0], corners[1]});
         if (corners.size() < 3) return;
         mesh_.corners.insert(mesh_.corners.end(), corners.begin(), corners.end());
-        mesh_.polygon_ends.push_back(static_cast<int>(mesh_.corners.size()));
+        mesh_.polygon_ends.push_back(count_of(mesh_.corners));
         mesh_.polygon_group.push_back(-1);
     }
 

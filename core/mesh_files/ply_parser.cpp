@@ -262,7 +262,7 @@ private:
 
     void require(const Element& element, std::string_view name, bool list) {
         const int found = element.find(name);
-        if (found >= 0 && element.properties[static_cast<std::size_t>(found)].count.has_value() == list) return;
+        if (found >= 0 && element.properties[found].count.has_value() == list) return;
         fail(ErrorCode::parse, "the element `" + element.name + "` needs " + (list ? "a list" : "a single number") + " `" +
                                    std::string(name) + "` as a property");
     }
@@ -352,7 +352,7 @@ private:
         if (corners.size() == 2) mesh_.edges.push_back({index_of(corners[0], "face"), index_of(corners[1], "face")});
         if (corners.size() < 3) return;  // a point, which is there anyway
         for (const double corner : corners) mesh_.corners.push_back(index_of(corner, "face"));
-        mesh_.polygon_ends.push_back(static_cast<int>(mesh_.corners.size()));
+        mesh_.polygon_ends.push_back(count_of(mesh_.corners));
         mesh_.polygon_group.push_back(-1);
     }
 
@@ -372,7 +372,7 @@ private:
     }
 
     void check_indices() {
-        const int count = static_cast<int>(mesh_.vertices.size());
+        const int count = count_of(mesh_.vertices);
         for (const int corner : mesh_.corners)
             if (corner >= count) return fail(ErrorCode::out_of_range, no_vertex(std::to_string(corner), "face"));
         for (const geometry::Edge& edge : mesh_.edges)

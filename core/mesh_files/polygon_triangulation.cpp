@@ -131,12 +131,12 @@ std::vector<Triangle> triangulated(const std::vector<Vector3>& vertices, const i
     const Vector3 normal = newell_normal(vertices, corners, count);
     int axis = 0;
     normal.cwiseAbs().maxCoeff(&axis);
-    std::vector<Corner> outline(static_cast<std::size_t>(count));
+    std::vector<Corner> outline(count);
     for (int i = 0; i < count; ++i) {
         Vector2 x = geometry::projected(vertices[corners[i]], axis);
         if (normal(axis) < 0) x.x() = -x.x();
-        outline[static_cast<std::size_t>(i)].x = x;
-        outline[static_cast<std::size_t>(i)].vertex = corners[i];
+        outline[i].x = x;
+        outline[i].vertex = corners[i];
     }
     if (is_strictly_convex(outline)) return fan(corners, count);
     return EarClipper(std::move(outline), tests).triangles();

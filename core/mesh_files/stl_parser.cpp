@@ -26,7 +26,7 @@ std::string in_lower_case(std::string_view word) {
 }
 
 void add_triangle(RawMesh& mesh, int group) {
-    const int count = static_cast<int>(mesh.vertices.size());
+    const int count = count_of(mesh.vertices);
     mesh.corners.insert(mesh.corners.end(), {count - 3, count - 2, count - 1});
     mesh.polygon_ends.push_back(count);
     mesh.polygon_group.push_back(group);
@@ -76,7 +76,7 @@ private:
         group_ = -1;
         const std::string_view name = words_.rest_of_line();
         if (name.empty()) return;
-        group_ = static_cast<int>(mesh_.groups.size());
+        group_ = count_of(mesh_.groups);
         mesh_.groups.emplace_back(name);
     }
 

@@ -224,8 +224,8 @@ private:
         }
         if (!good) xml.fail(ErrorCode::parse, "a `transform` is twelve numbers");
         for (int i = 0; i < 3; ++i) {  // the file multiplies rows: x' = x m00 + y m10 + z m20 + m30
-            for (int j = 0; j < 3; ++j) out.placement.linear(j, i) = m[static_cast<std::size_t>(3 * i + j)];
-            out.placement.shift[i] = m[static_cast<std::size_t>(9 + i)];
+            for (int j = 0; j < 3; ++j) out.placement.linear(j, i) = m[3 * i + j];
+            out.placement.shift[i] = m[9 + i];
         }
         out.placement.identity = out.placement.linear == Matrix3::Identity() && out.placement.shift == Vector3::Zero();
         return out;
@@ -250,11 +250,11 @@ private:
     }
 
     void append(const Object& object, const Placement& placement) {
-        const int first = static_cast<int>(mesh_.vertices.size()), count = static_cast<int>(object.vertices.size());
+        const int first = count_of(mesh_.vertices), count = count_of(object.vertices);
         for (const Vector3& x : object.vertices)
             mesh_.vertices.push_back(placement.identity ? x : Vector3(placement.linear * x + placement.shift));
         const bool mirrored = placement.linear.determinant() < 0;  // then it stays a solid with its triangles turned
-        const int group = static_cast<int>(mesh_.groups.size());
+        const int group = count_of(mesh_.groups);
         mesh_.groups.push_back(object.name);
         for (std::size_t i = 0; i < object.triangles.size(); ++i) {
             geometry::Triangle t = object.triangles[i];
@@ -266,7 +266,7 @@ private:
             }
             if (mirrored) std::swap(t[1], t[2]);
             for (const int v : t) mesh_.corners.push_back(first + v);
-            mesh_.polygon_ends.push_back(static_cast<int>(mesh_.corners.size()));
+            mesh_.polygon_ends.push_back(count_of(mesh_.corners));
             mesh_.polygon_group.push_back(group);
         }
     }

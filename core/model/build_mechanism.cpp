@@ -115,19 +115,16 @@ private:
         return std::nullopt;
     }
 
-    kinematics::Pose pose_of(int body) const {
-        return body == measure::world ? kinematics::Pose{} : model_.bodies[static_cast<std::size_t>(body)].pose_start;
-    }
+    kinematics::Pose pose_of(int body) const { return body == measure::world ? kinematics::Pose{} : model_.bodies[body].pose_start; }
 
     double value_as_written(int measure) const {
         std::vector<kinematics::Pose> poses;
         for (const Body& body : model_.bodies) poses.push_back(body.pose_start);
-        return value_of(out_.set.measures[static_cast<std::size_t>(measure)], placed(out_.set.frames, poses));
+        return value_of(out_.set.measures[measure], placed(out_.set.frames, poses));
     }
 
     measure::Frame frame_of(int body, const scene::Attachment& end) const {
-        const Vector3 reference =
-            body == measure::world ? Vector3(Vector3::Zero()) : model_.bodies[static_cast<std::size_t>(body)].reference_point;
+        const Vector3 reference = body == measure::world ? Vector3(Vector3::Zero()) : model_.bodies[body].reference_point;
         return {body, end.point - reference, axes_about(end.axis.normalized())};
     }
 
@@ -157,24 +154,24 @@ private:
         out_.set.frames.push_back(frame_a);
         out_.set.frames.push_back(frame_b);
         out_.ends.push_back(origin_);
-        const int first = static_cast<int>(out_.set.frames.size()) - 2;
+        const int first = count_of(out_.set.frames) - 2;
         return Ends{first, first + 1, *a, *b};
     }
 
     int add_measure(const Measure& measure) {
         out_.set.measures.push_back(measure);
-        return static_cast<int>(out_.set.measures.size()) - 1;
+        return count_of(out_.set.measures) - 1;
     }
 
     // m = constant.
     void add_row(int measure, double length, double constant = 0) {
-        out_.rows.push_back({static_cast<int>(out_.joints.size()) - 1, {{measure, 1}}, constant, {}, length});
+        out_.rows.push_back({count_of(out_.joints) - 1, {{measure, 1}}, constant, {}, length});
     }
 
     double lever(int a, int b) const {
         double most = model_.dhat;
         for (const int body : {a, b})
-            if (body != measure::world) most = std::max(most, model_.bodies[static_cast<std::size_t>(body)].radius);
+            if (body != measure::world) most = std::max(most, model_.bodies[body].radius);
         return most;
     }
 
@@ -182,14 +179,14 @@ private:
     double term_lever(const measure::Measure& m) const {
         double most = model_.dhat;
         for (const int frame : {m.a, m.b}) {
-            const int body = out_.set.frames[static_cast<std::size_t>(frame)].body;
-            if (body != measure::world) most = std::max(most, radii_[static_cast<std::size_t>(body)]);
+            const int body = out_.set.frames[frame].body;
+            if (body != measure::world) most = std::max(most, radii_[body]);
         }
         return most;
     }
 
     void add_joint(const scene::Joint& from) {
-        if (!joint_of_name_.try_emplace(from.name, static_cast<int>(out_.joints.size())).second)
+        if (!joint_of_name_.try_emplace(from.name, count_of(out_.joints)).second)
             return fail(ErrorCode::inconsistent, place_of_part(from), "another joint is called `" + from.name + "` already");
         const std::optional<Ends> ends = add_ends(from.a, from.b, place_of_part(from));
         if (!ends) return;
@@ -242,7 +239,7 @@ private:
     }
 
     void add_forces(const scene::CoordinateForces& from, int measure, const std::string& name) {
-        const Measure& m = out_.set.measures[static_cast<std::size_t>(measure)];
+        const Measure& m = out_.set.measures[measure];
         const double length = m.kind == MeasureKind::angle ? term_lever(m) : 1;
         const double start = value_as_written(measure);
         if (from.stiffness > 0) {
@@ -287,7 +284,7 @@ private:
         joint.kind = from.kind;
         joint.origin = origin_;
         out_.joints.push_back(joint);
-        out_.rows.push_back({static_cast<int>(out_.joints.size()) - 1, parts, constant, {}, length});
+        out_.rows.push_back({count_of(out_.joints) - 1, parts, constant, {}, length});
     }
 
     void add_spring(const scene::Spring& from) {
@@ -338,8 +335,7 @@ private:
         motor.is_motor = true;
         motor.origin = origin_;
         out_.joints.push_back(motor);
-        out_.rows.push_back(
-            {static_cast<int>(out_.joints.size()) - 1, {{coordinate, 1}}, value_as_written(coordinate), from.curve, length});
+        out_.rows.push_back({count_of(out_.joints) - 1, {{coordinate, 1}}, value_as_written(coordinate), from.curve, length});
     }
 
     // f . x: the offset from the world's origin along the force.

@@ -61,7 +61,7 @@ Body build_body(const scene::Body& from, geometry::Mesh mesh, const Vector3& ref
 
 void add_areas(Body& body) {
     const geometry::Mesh& mesh = body.mesh;
-    body.vertex_area.assign(static_cast<std::size_t>(mesh.vertices.cols()), 0);
+    body.vertex_area.assign(mesh.vertices.cols(), 0);
     body.edge_area.assign(mesh.edges.size(), 0);
     const geometry::EdgeIndex edge_index(mesh.edges);
     for (const geometry::Triangle& t : mesh.triangles) {
@@ -69,7 +69,7 @@ void add_areas(Body& body) {
         const double third = u.cross(v).norm() / 6;
         for (int k = 0; k < 3; ++k) {
             body.vertex_area[t[k]] += third;
-            if (const int e = edge_index.find(t[k], t[(k + 1) % 3]); e >= 0) body.edge_area[static_cast<std::size_t>(e)] += third;
+            if (const int e = edge_index.find(t[k], t[(k + 1) % 3]); e >= 0) body.edge_area[e] += third;
         }
     }
 }
@@ -98,7 +98,7 @@ Friction build_friction(const scene::Scene& scene, std::vector<Body>& bodies) {
         const scene::Body& body = scene.bodies[i];
         const auto listed = from.materials.find(body.material);
         const double own = body.mu ? *body.mu : listed != from.materials.end() ? listed->second : from.mu;
-        bodies[i].material = rows.try_emplace({body.material, own}, static_cast<int>(rows.size())).first->second;
+        bodies[i].material = rows.try_emplace({body.material, own}, count_of(rows)).first->second;
     }
     Friction friction;
     friction.eps_v = from.eps_v;
@@ -107,7 +107,7 @@ Friction build_friction(const scene::Scene& scene, std::vector<Body>& bodies) {
     friction.mu = MatrixX::Zero(count, count);
     if (from.rounds == 0) return friction;
     const auto coefficient = [&](const std::pair<std::string, double>& a, const std::pair<std::string, double>& b) {
-        if (const int listed = from.pair_of(a.first, b.first); listed >= 0) return from.pairs[static_cast<std::size_t>(listed)].mu;
+        if (const int listed = from.pair_of(a.first, b.first); listed >= 0) return from.pairs[listed].mu;
         return a.second == b.second ? a.second : std::sqrt(a.second) * std::sqrt(b.second);
     };
     for (const auto& [a, row] : rows) {
@@ -181,14 +181,14 @@ void complete_geometry(Body& body) {
 namespace {
 
 void complete_copies(std::vector<Body>& bodies, const std::vector<std::size_t>& first_of_shape) {
-    base::parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
+    base::parallel_for(count_of(bodies), 1, [&](int i) {
         const auto at = static_cast<std::size_t>(i);
         if (first_of_shape[at] == at) complete_geometry(bodies[at]);
     });
-    base::parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
-        const std::size_t first = first_of_shape[static_cast<std::size_t>(i)];
+    base::parallel_for(count_of(bodies), 1, [&](int i) {
+        const std::size_t first = first_of_shape[i];
         if (first == static_cast<std::size_t>(i)) return;
-        Body& body = bodies[static_cast<std::size_t>(i)];
+        Body& body = bodies[i];
         const Body& twin = bodies[first];
         body.radius = twin.radius;
         body.edge_length_squared = twin.edge_length_squared;
@@ -245,7 +245,7 @@ base::Result<Model> build(const scene::Scene& scene, const BuildOptions& options
     model.velocity_tolerance = scene.velocity_tolerance.value_or(1e-2 * size);
     if (!scene.velocity_tolerance) model.solve_accuracy = default_accuracy(scene.integrator);
     model.bodies.resize(scene.bodies.size());
-    base::parallel_for(static_cast<int>(scene.bodies.size()), 1, [&](int i) {
+    base::parallel_for(count_of(scene.bodies), 1, [&](int i) {
         const bool given = !options.reference_points.empty();
         const Vector3 point = given ? options.reference_points[i] : default_reference_point(scene.bodies[i], check.measures[i]);
         model.bodies[i] = build_body(scene.bodies[i], mesh_of(i), point);

@@ -28,8 +28,7 @@ std::vector<kinematics::Pose> start_poses(const Model& model) {
 // Names of the joints of these rows, each once.
 std::string names_of(const Mechanism& mechanism, const std::vector<int>& rows) {
     std::set<std::string> names;
-    for (const int row : rows)
-        names.insert(mechanism.joints[static_cast<std::size_t>(mechanism.rows[static_cast<std::size_t>(row)].owner)].name);
+    for (const int row : rows) names.insert(mechanism.joints[mechanism.rows[row].owner].name);
     std::string out;
     for (const std::string& name : names) out += (out.empty() ? "`" : ", `") + name + "`";
     return out;
@@ -103,8 +102,7 @@ void agree_velocities(const AssemblyProblem& problem, const Assembly& found, Mod
     const std::vector<kinematics::Pose> poses = start_poses(model);
     std::vector<Vector6> velocities;
     VectorX rates(problem.targets.size());
-    for (std::size_t i = 0; i < problem.rows.size(); ++i)
-        rates[static_cast<Eigen::Index>(i)] = rate_at_start(problem.rows[i].curve, model.timestep);
+    for (std::size_t i = 0; i < problem.rows.size(); ++i) rates[i] = rate_at_start(problem.rows[i].curve, model.timestep);
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const Body& body = model.bodies[i];
         Vector6 v;
@@ -138,8 +136,8 @@ void agree_velocities(const AssemblyProblem& problem, const Assembly& found, Mod
 
 constraint::AssemblyProblem start_problem(const Model& model) {
     AssemblyProblem out{model.mechanism.set, model.mechanism.rows, {}, {}, free_dofs(model), model.diagonal};
-    out.targets.resize(static_cast<Eigen::Index>(out.rows.size()));
-    for (std::size_t i = 0; i < out.rows.size(); ++i) out.targets[static_cast<Eigen::Index>(i)] = target_at(out.rows[i], 0);
+    out.targets.resize(out.rows.size());
+    for (std::size_t i = 0; i < out.rows.size(); ++i) out.targets[i] = target_at(out.rows[i], 0);
     for (const Body& body : model.bodies) out.moments.push_back(body.moments);
     return out;
 }

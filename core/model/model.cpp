@@ -15,8 +15,8 @@ linear::FreeDofs free_dofs(const Model& model) {
 
 bool may_collide(const Model& model, int a, int b) {
     if (a == b) return false;
-    const Body& first = model.bodies[static_cast<std::size_t>(a)];
-    const Body& second = model.bodies[static_cast<std::size_t>(b)];
+    const Body& first = model.bodies[a];
+    const Body& second = model.bodies[b];
     if (first.group >= 0 && first.group == second.group) return false;
     const auto& joined = model.mechanism.not_colliding;
     if (!joined.empty() && std::binary_search(joined.begin(), joined.end(), std::pair<int, int>(std::minmax(a, b)))) return false;

@@ -86,7 +86,7 @@ struct Model {
 };
 
 inline double friction_coefficient(const Model& model, int a, int b) {
-    return model.friction.mu(model.bodies[static_cast<std::size_t>(a)].material, model.bodies[static_cast<std::size_t>(b)].material);
+    return model.friction.mu(model.bodies[a].material, model.bodies[b].material);
 }
 
 /// Where a kinematic body's script has c's frame at `time`: its start pose before, the last pose after (scene::scripted_pose).

@@ -305,7 +305,7 @@ std::vector<std::pair<int, int>> close_bodies(const std::vector<PlacedBody>& bod
 void report_pair(const Model& model, std::pair<int, int> pair, const std::vector<PlacedBody>& bodies, const Messages& messages,
                  StartReport& report) {
     const auto [i, j] = pair;
-    const PlacedBody &a = bodies[static_cast<std::size_t>(i)], &b = bodies[static_cast<std::size_t>(j)];
+    const PlacedBody &a = bodies[i], &b = bodies[j];
     const bool grouped = a.body->group >= 0 && a.body->group == b.body->group, collide = may_collide(model, i, j);
     const bool dynamic = a.body->type == scene::BodyType::dynamic_body || b.body->type == scene::BodyType::dynamic_body;
     if (!collide && (grouped || dynamic)) return;  // one group, or joined: they may overlap
@@ -323,23 +323,22 @@ void report_pair(const Model& model, std::pair<int, int> pair, const std::vector
 
 std::optional<base::Error> check_start_pair(const Model& model, int a, int b) {
     std::array<MeshFacts, 2> facts;
-    return check_pair(place(model.bodies[static_cast<std::size_t>(a)], facts[0]),
-                      place(model.bodies[static_cast<std::size_t>(b)], facts[1]), model.dmin, Messages(model));
+    return check_pair(place(model.bodies[a], facts[0]), place(model.bodies[b], facts[1]), model.dmin, Messages(model));
 }
 
 StartReport report_start(const Model& model) {
     std::map<const geometry::BodyHierarchy*, MeshFacts> facts;
     for (const Body& body : model.bodies) facts[body.hierarchy.get()];
-    const int count = static_cast<int>(model.bodies.size());
+    const int count = count_of(model.bodies);
     std::vector<PlacedBody> bodies(model.bodies.size());
     base::parallel_for(count, 1, [&](int i) {
-        const Body& body = model.bodies[static_cast<std::size_t>(i)];
-        bodies[static_cast<std::size_t>(i)] = place(body, facts.at(body.hierarchy.get()));
+        const Body& body = model.bodies[i];
+        bodies[i] = place(body, facts.at(body.hierarchy.get()));
     });
     const Messages messages(model);
     const std::vector<std::pair<int, int>> pairs = close_bodies(bodies, model.dmin);
     std::vector<StartReport> of_pairs(pairs.size());
-    base::parallel_for(static_cast<int>(pairs.size()), 1, [&](int k) { report_pair(model, pairs[k], bodies, messages, of_pairs[k]); });
+    base::parallel_for(count_of(pairs), 1, [&](int k) { report_pair(model, pairs[k], bodies, messages, of_pairs[k]); });
     StartReport report;
     for (StartReport& of_pair : of_pairs) {
         std::move(of_pair.errors.begin(), of_pair.errors.end(), std::back_inserter(report.errors));

@@ -193,7 +193,7 @@ void FixtureBodies::read_mesh_files(const std::vector<files::JsonNode>& nodes) {
         wanted.emplace_back(&entry->first, &entry->second);
         places.push_back(file.where());
     }
-    base::parallel_for(static_cast<int>(wanted.size()), 1, [&](int i) { *wanted[i].second = read_mesh_file(*wanted[i].first, places[i]); });
+    base::parallel_for(count_of(wanted), 1, [&](int i) { *wanted[i].second = read_mesh_file(*wanted[i].first, places[i]); });
 }
 
 const geometry::Mesh* FixtureBodies::mesh_file(const files::JsonNode& node, const std::string& name) const {
@@ -214,15 +214,15 @@ std::shared_ptr<const geometry::Mesh> FixtureBodies::inline_mesh(const files::Js
         node.fail(ErrorCode::missing_key, "a body needs a `mesh` or `vertices`");
         return nullptr;
     }
-    mesh.vertices.resize(3, static_cast<Eigen::Index>(rows.size()));
+    mesh.vertices.resize(3, rows.size());
     bool good = true;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const auto vertex = fixture_vector(rows[i]);
         good = good && vertex.has_value();
-        mesh.vertices.col(static_cast<Eigen::Index>(i)) = vertex.value_or(Vector3::Zero());
+        mesh.vertices.col(i) = vertex.value_or(Vector3::Zero());
     }
     const std::size_t faults = node.error_count();
-    const int count = static_cast<int>(rows.size());
+    const int count = count_of(rows);
     mesh.triangles = files::index_rows<3>(node["faces"].unless_null(), count);
     const auto edges = files::index_rows<2>(node["edges"].unless_null(), count);
     if (!good || node.error_count() > faults) return nullptr;
@@ -305,7 +305,7 @@ std::vector<FixtureBody> FixtureBodies::read_body(const files::JsonNode& node, d
 }
 
 void FixtureBodies::fill(std::vector<scene::Body>& bodies, const std::vector<MeshSource>& sources) {
-    base::parallel_for(static_cast<int>(bodies.size()), 1, [&](int i) {
+    base::parallel_for(count_of(bodies), 1, [&](int i) {
         if (sources[i].mesh != nullptr) bodies[i].mesh = made(sources[i]);
     });
 }

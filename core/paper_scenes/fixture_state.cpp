@@ -49,7 +49,7 @@ Vector3 saved_angular_velocity(const files::JsonNode& node, const Matrix3& rotat
     const auto rows = node["Qdot"].unless_null().elements();
     if (rows.size() != 3) return rotation * fixture_vector(node["angular_velocity"].unless_null()).value_or(Vector3::Zero());
     Matrix3 derivative;
-    for (int i = 0; i < 3; ++i) derivative.row(i) = fixture_vector(rows[static_cast<std::size_t>(i)]).value_or(Vector3::Zero());
+    for (int i = 0; i < 3; ++i) derivative.row(i) = fixture_vector(rows[i]).value_or(Vector3::Zero());
     const Matrix3 spin = derivative * rotation.transpose();
     return 0.5 * Vector3(spin(2, 1) - spin(1, 2), spin(0, 2) - spin(2, 0), spin(1, 0) - spin(0, 1));
 }

@@ -29,7 +29,7 @@ public:
                 const auto found = cells_.find({i, j});
                 if (found == cells_.end()) continue;
                 for (const int node : found->second) {
-                    const double distance = (value(nodes_[static_cast<std::size_t>(node)]) - v).norm();
+                    const double distance = (value(nodes_[node]) - v).norm();
                     if (distance > least) continue;
                     least = distance;
                     best = node;
@@ -38,8 +38,8 @@ public:
         }
         if (best >= 0) return best;
         nodes_.push_back(p);
-        cells_[{x, y}].push_back(static_cast<int>(nodes_.size()) - 1);
-        return static_cast<int>(nodes_.size()) - 1;
+        cells_[{x, y}].push_back(count_of(nodes_) - 1);
+        return count_of(nodes_) - 1;
     }
 
 private:
@@ -137,7 +137,7 @@ Arrangement arranged(std::vector<ArrangedCurve> curves, double tolerance, bool w
         std::stable_sort(cuts[k].begin(), cuts[k].end(), [](const NodeCut& x, const NodeCut& y) { return x.cut.u < y.cut.u; });
         std::vector<NodeCut> kept;
         for (NodeCut cut : cuts[k]) {
-            cut.cut.point = out.nodes[static_cast<std::size_t>(cut.node)];
+            cut.cut.point = out.nodes[cut.node];
             const bool again = !kept.empty() && kept.back().node == cut.node && (cut.cut.u - kept.back().cut.u) * length <= 32 * tolerance;
             if (!again)
                 kept.push_back(cut);

@@ -30,14 +30,14 @@ DrawnSurface drawn_surface(const Surface& surface) {
 std::vector<Matrix3X> jacobian_of(const Drawing& drawing, const Solid& solid) {
     const int dimensions = drawing.dimension_count();
     const auto n = static_cast<Eigen::Index>(solid.vertices.size());
-    std::vector<Matrix3X> out(static_cast<std::size_t>(dimensions), Matrix3X::Zero(3, n));
+    std::vector<Matrix3X> out(dimensions, Matrix3X::Zero(3, n));
     if (dimensions == 0) return out;
     const auto& nodes = drawing.tape().nodes();
     // Inputs are at the values that they were recorded with: those that the nodes of the vertices have.
     const std::vector<double> at = expression::values<double>(nodes, drawing.dimensions());
     const MatrixX gradients = expression::gradients(nodes, at, dimensions);
     for (Eigen::Index v = 0; v < n; ++v) {
-        const Point3& p = solid.vertices[static_cast<std::size_t>(v)];
+        const Point3& p = solid.vertices[v];
         int row = 0;
         for (const Number* x : {&p.x, &p.y, &p.z}) {
             if (!x->is_constant())
@@ -53,13 +53,13 @@ std::vector<int> fingerprint(const geometry::Mesh& mesh) {
     std::uint64_t hash = 14695981039346656037u;
     for (const auto& triangle : mesh.triangles)
         for (const int v : triangle) hash = (hash ^ static_cast<std::uint64_t>(v)) * 1099511628211u;
-    return {static_cast<int>(mesh.vertices.cols()), static_cast<int>(mesh.triangles.size()), static_cast<int>(hash & 0x7fffffff),
+    return {static_cast<int>(mesh.vertices.cols()), count_of(mesh.triangles), static_cast<int>(hash & 0x7fffffff),
             static_cast<int>(hash >> 33)};
 }
 
 std::string features_of(const Solid& solid, int a, int b) {
     const auto name = [&](int t) {
-        const std::string& feature = solid.surfaces[static_cast<std::size_t>(solid.facets[static_cast<std::size_t>(t)].surface)].feature;
+        const std::string& feature = solid.surfaces[solid.facets[t].surface].feature;
         return feature.empty() ? std::string("a face without a name") : "`" + feature + "`";
     };
     return name(a) == name(b) ? name(a) + " crosses itself" : name(a) + " and " + name(b) + " cross";
@@ -70,15 +70,15 @@ std::string features_of(const Solid& solid, int a, int b) {
 Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::string& name, const DrawnOptions& options) {
     if (solid.triangles.empty()) return Error{ErrorCode::mesh_invalid, name, "`" + name + "` is empty: nothing of it is left"};
     DrawnPart part;
-    Matrix3X vertices(3, static_cast<Eigen::Index>(solid.vertices.size()));
-    for (std::size_t v = 0; v < solid.vertices.size(); ++v) vertices.col(static_cast<Eigen::Index>(v)) = value(solid.vertices[v]);
+    Matrix3X vertices(3, solid.vertices.size());
+    for (std::size_t v = 0; v < solid.vertices.size(); ++v) vertices.col(v) = value(solid.vertices[v]);
     part.mesh = geometry::make_mesh(name, std::move(vertices), solid.triangles);
     if (options.check) {
         const auto crossing = [&] { return solids::self_intersections(part.mesh, 5); };
         Errors faults = solids::validate_mesh(part.mesh, {true, false});
         if (faults.empty())
             for (const auto& [a, b] : crossing()) {
-                const Vector3 p = part.mesh.vertices.col(part.mesh.triangles[static_cast<std::size_t>(a)][0]);
+                const Vector3 p = part.mesh.vertices.col(part.mesh.triangles[a][0]);
                 faults.push_back({ErrorCode::mesh_invalid, name,
                                   features_of(solid, a, b) + " near (" + format_length(p.x(), "mm", 4) + ", " +
                                       format_length(p.y(), "mm", 4) + ", " + format_length(p.z(), "mm", 4) + ")"});

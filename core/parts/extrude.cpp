@@ -111,7 +111,7 @@ std::optional<Errors> add_end(Drawing& drawing, const Level& level, const Rim& r
         for (const auto& edge : ring) vertices.push_back(edge.front());
     const Facet facet = plane_facet(level.z, upwards, feature, builder);
     for (const Triangle& t : *triangles) {
-        const auto v = [&](std::size_t k) { return vertices[static_cast<std::size_t>(t[k])]; };
+        const auto v = [&](std::size_t k) { return vertices[t[k]]; };
         builder.add_triangle_facing(upwards, v(0), v(1), v(2), facet);
     }
     return std::nullopt;
@@ -122,9 +122,8 @@ std::vector<Loop> polygon_loops(const FacetedProfile& polygons) {
     for (const FacetedLoop& polygon : polygons.loops) {
         Loop loop;
         for (std::size_t k = 0; k < polygon.points.size(); ++k)
-            loop.segments.push_back({Line{polygon.points[k], polygon.points[(k + 1) % polygon.points.size()]},
-                                     polygons.curves[static_cast<std::size_t>(polygon.curve[k])].feature,
-                                     {}});
+            loop.segments.push_back(
+                {Line{polygon.points[k], polygon.points[(k + 1) % polygon.points.size()]}, polygons.curves[polygon.curve[k]].feature, {}});
         loops.push_back(std::move(loop));
     }
     return loops;
@@ -140,8 +139,8 @@ Rim cut_rim(const Arrangement& arrangement, const std::vector<Loop>& loops, std:
     std::vector<std::vector<int>> chains(arrangement.curves.size());
     for (const Piece& piece : arrangement.pieces) {
         auto& chain = chains[piece.source];
-        if (chain.empty()) chain.push_back(vertex[static_cast<std::size_t>(piece.from)]);
-        chain.push_back(vertex[static_cast<std::size_t>(piece.to)]);
+        if (chain.empty()) chain.push_back(vertex[piece.from]);
+        chain.push_back(vertex[piece.to]);
     }
     Rim rim;
     std::size_t source = first_source;
@@ -167,10 +166,10 @@ std::optional<Errors> add_step_face(Drawing& drawing, const Arrangement& arrange
     for (const auto& chain : *chains) {
         FacetedLoop loop;
         for (const std::size_t k : chain) {
-            loop.points.push_back(arrangement.nodes[static_cast<std::size_t>(pieces[k].from)]);
-            loop.curve.push_back(static_cast<int>(region.curves.size()));
+            loop.points.push_back(arrangement.nodes[pieces[k].from]);
+            loop.curve.push_back(count_of(region.curves));
             region.curves.push_back({{}, arrangement.curves[pieces[k].source].segment.feature, 0, 0, true});
-            vertices.push_back(vertex[static_cast<std::size_t>(pieces[k].from)]);
+            vertices.push_back(vertex[pieces[k].from]);
         }
         region.loops.push_back(std::move(loop));
     }
@@ -178,7 +177,7 @@ std::optional<Errors> add_step_face(Drawing& drawing, const Arrangement& arrange
     if (!triangles) return triangles.errors();
     const Facet facet = plane_facet(z, upwards, feature, builder);
     for (const Triangle& t : *triangles) {
-        const auto v = [&](std::size_t k) { return vertices[static_cast<std::size_t>(t[k])]; };
+        const auto v = [&](std::size_t k) { return vertices[t[k]]; };
         builder.add_triangle_facing(upwards, v(0), v(1), v(2), facet);
     }
     return std::nullopt;

@@ -25,17 +25,17 @@ void add_point(FacetedLoop& loop, const Point2& p, int curve) {
 
 // Triangles and the loops that they belong to, as plain numbers.
 std::vector<int> packed(const PlaneRegion& region, const std::vector<Triangle>& triangles) {
-    std::vector<int> out{static_cast<int>(region.loops.size())};
-    for (const auto& loop : region.loops) out.push_back(static_cast<int>(loop.size()));
+    std::vector<int> out{count_of(region.loops)};
+    for (const auto& loop : region.loops) out.push_back(count_of(loop));
     for (const Triangle& t : triangles) out.insert(out.end(), t.begin(), t.end());
     return out;
 }
 
 std::vector<Triangle> unpacked(const PlaneRegion& region, const std::vector<int>& numbers) {
     const std::size_t head = region.loops.size() + 1;
-    if (numbers.size() < head || (numbers.size() - head) % 3 != 0 || numbers[0] != static_cast<int>(region.loops.size())) return {};
+    if (numbers.size() < head || (numbers.size() - head) % 3 != 0 || numbers[0] != count_of(region.loops)) return {};
     for (std::size_t k = 0; k < region.loops.size(); ++k)
-        if (numbers[k + 1] != static_cast<int>(region.loops[k].size())) return {};
+        if (numbers[k + 1] != count_of(region.loops[k])) return {};
     std::vector<Triangle> out;
     for (std::size_t k = head; k < numbers.size(); k += 3) out.push_back({numbers[k], numbers[k + 1], numbers[k + 2]});
     return out;
@@ -46,10 +46,10 @@ Error fault_of(const FacetedProfile& profile, const std::optional<std::array<Edg
         return {ErrorCode::inconsistent, profile.curves.front().feature, what + ": its loops overlap or run the wrong way round"};
     const auto at_point = [&](int point) {
         for (const FacetedLoop& loop : profile.loops) {
-            const int count = static_cast<int>(loop.points.size());
+            const int count = count_of(loop.points);
             if (point < count) {
                 const auto k = static_cast<std::size_t>(point);
-                return std::pair{profile.curves[static_cast<std::size_t>(loop.curve[k])].feature, value(loop.points[k])};
+                return std::pair{profile.curves[loop.curve[k]].feature, value(loop.points[k])};
             }
             point -= count;
         }
@@ -75,7 +75,7 @@ Result<FacetedProfile> faceted(Drawing& drawing, const Profile& profile) {
     FacetedProfile out;
     std::vector<int> kinds;
     for (const Loop& loop : profile.loops) {
-        kinds.push_back(-static_cast<int>(loop.segments.size()));
+        kinds.push_back(-count_of(loop.segments));
         for (const Segment& segment : loop.segments) kinds.push_back(static_cast<int>(segment.curve.index()));
     }
     drawing.note("outline of " + quoted_feature(profile.loops.front().segments.front().feature), kinds);
@@ -86,7 +86,7 @@ Result<FacetedProfile> faceted(Drawing& drawing, const Profile& profile) {
             if (!(facets.chord > 0) && facets.segments < 3)
                 return Error{ErrorCode::out_of_range, segment.feature,
                              "a circle is drawn with " + std::to_string(facets.segments) + " segments: it takes at least 3"};
-            const int index = static_cast<int>(out.curves.size());
+            const int index = count_of(out.curves);
             Chain chain;
             if (!std::holds_alternative<Line>(segment.curve)) {
                 const auto numbers = drawing.decision(
@@ -118,7 +118,7 @@ PlaneRegion region_of(const FacetedProfile& profile) {
     for (const FacetedLoop& loop : profile.loops) {
         std::vector<int> indices;
         for (const Point2& p : loop.points) {
-            indices.push_back(static_cast<int>(region.points.size()));
+            indices.push_back(count_of(region.points));
             region.points.push_back(value(p));
         }
         region.loops.push_back(std::move(indices));

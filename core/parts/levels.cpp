@@ -26,7 +26,7 @@ FacetedProfile polygons_like(const FacetedProfile& model, const Profile& profile
         FacetedLoop polygon;
         const std::vector<int>& edges = model.loops[l].curve;
         for (const Segment& segment : profile.loops[l].segments) {
-            const int index = static_cast<int>(out.curves.size());
+            const int index = count_of(out.curves);
             const int count = static_cast<int>(std::count(edges.begin(), edges.end(), index));
             const Lean lean = segment.facets ? segment.facets->lean : facets.lean;
             const auto* arc = std::get_if<Arc>(&segment.curve);

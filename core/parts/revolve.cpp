@@ -118,7 +118,7 @@ Result<Solid> turned_solid(Drawing& drawing, const Profile& profile, const Numbe
             if (loop.points[k].x.value >= -on_axis) continue;
             double deepest = 0;
             for (const Point2& p : loop.points) deepest = std::max(deepest, -p.x.value);
-            const std::string& feature = polygons->curves[static_cast<std::size_t>(loop.curve[k])].feature;
+            const std::string& feature = polygons->curves[loop.curve[k]].feature;
             return Error{ErrorCode::out_of_range, feature, quoted_feature(feature) + " crosses the axis by " + millimetres(deepest)};
         }
     }
@@ -207,7 +207,7 @@ Result<Solid> turned_solid(Drawing& drawing, const Profile& profile, const Numbe
             const Facet facet{builder.add_surface(plane), Side::on};
             for (const auto& t : *triangles) {
                 const auto v = [&](std::size_t k) {
-                    const auto& ring = *points[static_cast<std::size_t>(t[k])];
+                    const auto& ring = *points[t[k]];
                     return last ? ring.back() : ring.front();
                 };
                 builder.add_triangle_facing(!last, v(0), v(1), v(2), facet);

@@ -102,7 +102,7 @@ std::vector<Solid> linear_copies(const Solid& solid, int count, const Point3& st
 Solid together(const std::vector<Solid>& solids) {
     Solid out;
     for (const Solid& solid : solids) {
-        const int first = static_cast<int>(out.vertices.size()), first_surface = static_cast<int>(out.surfaces.size());
+        const int first = count_of(out.vertices), first_surface = count_of(out.surfaces);
         out.vertices.insert(out.vertices.end(), solid.vertices.begin(), solid.vertices.end());
         for (const auto& t : solid.triangles) out.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
         for (const Facet& facet : solid.facets) out.facets.push_back({facet.surface + first_surface, facet.side});

@@ -26,13 +26,13 @@ std::string name_of(const Solid& solid) {
 }
 
 Mesh plain_mesh(const Solid& solid) {
-    Matrix3X vertices(3, static_cast<Eigen::Index>(solid.vertices.size()));
-    for (std::size_t v = 0; v < solid.vertices.size(); ++v) vertices.col(static_cast<Eigen::Index>(v)) = value(solid.vertices[v]);
+    Matrix3X vertices(3, solid.vertices.size());
+    for (std::size_t v = 0; v < solid.vertices.size(); ++v) vertices.col(v) = value(solid.vertices[v]);
     return geometry::make_mesh({}, std::move(vertices), solid.triangles);
 }
 
 Corners corners_of(const Mesh& mesh, int triangle) {
-    const auto& t = mesh.triangles[static_cast<std::size_t>(triangle)];
+    const auto& t = mesh.triangles[triangle];
     return {Vector3(mesh.vertices.col(t[0])), Vector3(mesh.vertices.col(t[1])), Vector3(mesh.vertices.col(t[2]))};
 }
 
@@ -49,7 +49,7 @@ int meeting_sides(const Corners& a, const Corners& b) {
 // All that decides how two meshes cut each other, but for where: which sides go through which triangles, and which shells that do not meet
 // the other mesh are inside of it.
 std::vector<int> situation_of(const Mesh& a, const Mesh& b) {
-    const int count_a = static_cast<int>(a.triangles.size());
+    const int count_a = count_of(a.triangles);
     std::vector<geometry::Box> boxes;
     for (const Mesh* mesh : {&a, &b}) {
         for (std::size_t t = 0; t < mesh->triangles.size(); ++t) {
@@ -60,12 +60,12 @@ std::vector<int> situation_of(const Mesh& a, const Mesh& b) {
     const auto pairs = geometry::overlapping_pairs(boxes, [&](int i, int j) {
         return i < count_a && j >= count_a && meeting_sides(corners_of(a, i), corners_of(b, j - count_a)) != 0;
     });
-    std::vector<int> out{static_cast<int>(pairs.size())};
+    std::vector<int> out{count_of(pairs)};
     std::vector<char> met_a(a.shell_names.size(), 0), met_b(b.shell_names.size(), 0);
     for (const auto& [i, j] : pairs) {
         out.insert(out.end(), {i, j - count_a, meeting_sides(corners_of(a, i), corners_of(b, j - count_a))});
-        met_a[static_cast<std::size_t>(a.triangle_shell[static_cast<std::size_t>(i)])] = 1;
-        met_b[static_cast<std::size_t>(b.triangle_shell[static_cast<std::size_t>(j - count_a)])] = 1;
+        met_a[a.triangle_shell[i]] = 1;
+        met_b[b.triangle_shell[j - count_a]] = 1;
     }
     const auto add_shells = [&](const Mesh& mesh, const std::vector<char>& met, const Mesh& other) {
         std::vector<char> done(met);
@@ -97,7 +97,7 @@ SolidCut shells_of(const Mesh& a, const Mesh& b, Combination combination) {
             CutTriangle out{{}, of_a, static_cast<int>(t)};
             for (std::size_t k = 0; k < 3; ++k) {
                 const int v = mesh.triangles[t][k];
-                const auto [place, is_new] = index.emplace(v, static_cast<int>(cut.vertices.size()));
+                const auto [place, is_new] = index.emplace(v, count_of(cut.vertices));
                 if (is_new) cut.vertices.push_back({of_a ? Kind::vertex_of_a : Kind::vertex_of_b, v, v, 0});
                 out.corners[k] = place->second;
             }
@@ -111,7 +111,7 @@ SolidCut shells_of(const Mesh& a, const Mesh& b, Combination combination) {
 }
 
 void pack(const SolidCut& cut, std::vector<int>& out) {
-    out.push_back(static_cast<int>(cut.vertices.size()));
+    out.push_back(count_of(cut.vertices));
     for (const VertexOrigin& v : cut.vertices) out.insert(out.end(), {static_cast<int>(v.kind), v.from, v.to, v.triangle, v.side});
     for (const CutTriangle& t : cut.triangles)
         out.insert(out.end(), {t.corners[0], t.corners[1], t.corners[2], t.of_a ? 1 : 0, t.triangle});
@@ -157,14 +157,14 @@ std::vector<Point3> vertices_of(const SolidCut& cut, const Solid& a, const Solid
     for (const VertexOrigin& origin : cut.vertices) {
         const bool of_a = origin.kind == Kind::vertex_of_a || origin.kind == Kind::edge_of_a;
         const Solid &solid = of_a ? a : b, &other = of_a ? b : a;
-        const Point3& from = solid.vertices[static_cast<std::size_t>(origin.from)];
+        const Point3& from = solid.vertices[origin.from];
         if (origin.kind == Kind::vertex_of_a || origin.kind == Kind::vertex_of_b) {
             out.push_back(from);
             continue;
         }
-        const auto& t = other.triangles[static_cast<std::size_t>(origin.triangle)];
-        const auto corner = [&](std::size_t k) -> const Point3& { return other.vertices[static_cast<std::size_t>(t[k])]; };
-        const Point3& to = solid.vertices[static_cast<std::size_t>(origin.to)];
+        const auto& t = other.triangles[origin.triangle];
+        const auto corner = [&](std::size_t k) -> const Point3& { return other.vertices[t[k]]; };
+        const Point3& to = solid.vertices[origin.to];
         const Point3 normal = cross(corner(1) - corner(0), corner(2) - corner(0));
         if (origin.side < 0) {
             out.push_back(crossing(from, to, corner(0), normal));
@@ -190,7 +190,7 @@ bool faces_the_same_way(const SolidCut& cut, const Mesh& a, const Mesh& b, Combi
     const auto vertices = vertices_of(cut, frozen(a), frozen(b));
     for (const CutTriangle& t : cut.triangles) {
         Corners c;
-        for (std::size_t k = 0; k < 3; ++k) c[k] = value(vertices[static_cast<std::size_t>(t.corners[k])]);
+        for (std::size_t k = 0; k < 3; ++k) c[k] = value(vertices[t.corners[k]]);
         const double sign = combination == Combination::subtract && !t.of_a ? -1 : 1;
         if (!(sign * normal_of(c).dot(normal_of(corners_of(t.of_a ? a : b, t.triangle))) > 0)) return false;
     }
@@ -205,7 +205,7 @@ double drawn_out(const SolidCut& cut, const std::vector<Point3>& vertices) {
         for (std::size_t k = 0; k < 3; ++k) sides[{cut.triangles[t].corners[k], cut.triangles[t].corners[(k + 1) % 3]}] = t;
     const auto normal = [&](const CutTriangle& t) {
         Corners c;
-        for (std::size_t k = 0; k < 3; ++k) c[k] = value(vertices[static_cast<std::size_t>(t.corners[k])]);
+        for (std::size_t k = 0; k < 3; ++k) c[k] = value(vertices[t.corners[k]]);
         return Vector3(normal_of(c).normalized());
     };
     double factor = 1;
@@ -303,10 +303,10 @@ Result<Solid> combined(Drawing& drawing, const Solid& a, const Solid& b, Combina
         }
         out.surfaces.push_back(std::move(surface));
     }
-    const int first_of_b = static_cast<int>(a.surfaces.size());
+    const int first_of_b = count_of(a.surfaces);
     for (const CutTriangle& t : cut->triangles) {
         out.triangles.push_back(t.corners);
-        Facet facet = (t.of_a ? a : b).facets[static_cast<std::size_t>(t.triangle)];
+        Facet facet = (t.of_a ? a : b).facets[t.triangle];
         if (!t.of_a) {
             facet.surface += first_of_b;
             if (subtract && facet.side == Side::outside)

@@ -13,12 +13,12 @@ class SolidBuilder {
 public:
     int add_vertex(const Point3& p) {
         solid_.vertices.push_back(p);
-        return static_cast<int>(solid_.vertices.size()) - 1;
+        return count_of(solid_.vertices) - 1;
     }
 
     int add_surface(Surface surface) {
         solid_.surfaces.push_back(std::move(surface));
-        return static_cast<int>(solid_.surfaces.size()) - 1;
+        return count_of(solid_.surfaces) - 1;
     }
 
     /// Counter-clockwise from outside. Triangles with two equal corners are left out.
@@ -55,7 +55,7 @@ public:
     /// A bound of curves against their polygons: the whole part's is the largest.
     void add_deviation(double out, double in, bool proven = true) { solid_.deviation.add({out, in, proven, proven}); }
 
-    const Point3& vertex(int k) const { return solid_.vertices[static_cast<std::size_t>(k)]; }
+    const Point3& vertex(int k) const { return solid_.vertices[k]; }
     Solid take() { return std::move(solid_); }
 
 private:

@@ -98,7 +98,7 @@ struct Visitor : processing::Corefinement::Default_visitor<ExactMesh> {
     }
 
     int side_of(int triangle, Halfedge edge, const ExactMesh& mesh, bool edge_of_a) const {
-        const auto& t = (edge_of_a ? *record->mesh_b : *record->mesh_a).triangles[static_cast<std::size_t>(triangle)];
+        const auto& t = (edge_of_a ? *record->mesh_b : *record->mesh_a).triangles[triangle];
         const int source = static_cast<int>(mesh.source(edge)), target = static_cast<int>(mesh.target(edge));
         for (std::size_t k = 0; k < 3; ++k)
             if (std::minmax(t[k], t[(k + 1) % 3]) == std::minmax(source, target)) return static_cast<int>(k);
@@ -108,7 +108,7 @@ struct Visitor : processing::Corefinement::Default_visitor<ExactMesh> {
     double steepness(const VertexOrigin& origin, int triangle, bool edge_of_a) const {
         const geometry::Mesh &of_edge = edge_of_a ? *record->mesh_a : *record->mesh_b,
                              &of_face = edge_of_a ? *record->mesh_b : *record->mesh_a;
-        const auto& t = of_face.triangles[static_cast<std::size_t>(triangle)];
+        const auto& t = of_face.triangles[triangle];
         const Vector3 p = point_of(of_face, t[0]);
         const Vector3 normal = (point_of(of_face, t[1]) - p).cross(point_of(of_face, t[2]) - p).normalized();
         return std::abs(normal.dot((point_of(of_edge, origin.to) - point_of(of_edge, origin.from)).normalized()));
@@ -127,7 +127,7 @@ Error no_solid() {
 bool can_cut_solids() { return true; }
 
 Result<SolidCut> cut_solids(const geometry::Mesh& mesh_a, const geometry::Mesh& mesh_b, Combination combination) {
-    const int triangles_a = static_cast<int>(mesh_a.triangles.size());
+    const int triangles_a = count_of(mesh_a.triangles);
     ExactMesh a = exact_mesh(mesh_a, 0), b = exact_mesh(mesh_b, triangles_a), result;
     Record record;
     record.mesh_a = &mesh_a;
@@ -166,7 +166,7 @@ Result<SolidCut> cut_solids(const geometry::Mesh& mesh_a, const geometry::Mesh& 
         CutTriangle triangle;
         std::size_t k = 0;
         for (const Vertex v : result.vertices_around_face(result.halfedge(face))) {
-            const auto [place, is_new] = index.emplace(v, static_cast<int>(cut.vertices.size()));
+            const auto [place, is_new] = index.emplace(v, count_of(cut.vertices));
             if (is_new) {
                 const auto origin = record.by_point.find(result.point(v));
                 FETTLE_ASSERT(origin != record.by_point.end(), "every vertex of a combination of solids is from somewhere");

@@ -39,15 +39,15 @@ public:
         }
         const Vector2 middle = (low + high) / 2;
         const double far = 64 * std::max((high - low).maxCoeff(), 1e-300);
-        count_ = static_cast<int>(points_.size());
+        count_ = count_of(points_);
         points_.push_back(middle + Vector2(-far, -far));
         points_.push_back(middle + Vector2(far, -far));
         points_.push_back(middle + Vector2(0, far));
         triangle_of_.assign(points_.size(), -1);
         add({count_, count_ + 1, count_ + 2}, {-1, -1, -1});
-        next_.assign(static_cast<std::size_t>(count_), -1);
+        next_.assign(count_, -1);
         for (const auto& loop : region.loops)
-            for (std::size_t k = 0; k < loop.size(); ++k) next_[static_cast<std::size_t>(loop[k])] = loop[(k + 1) % loop.size()];
+            for (std::size_t k = 0; k < loop.size(); ++k) next_[loop[k]] = loop[(k + 1) % loop.size()];
     }
 
     void run() {
@@ -113,7 +113,7 @@ private:
 
     int add(const std::array<int, 3>& corners, const std::array<int, 3>& neighbours) {
         triangles_.push_back({corners, neighbours, {false, false, false}});
-        const int t = static_cast<int>(triangles_.size()) - 1;
+        const int t = count_of(triangles_) - 1;
         for (const int c : corners) triangle_of_[index(c)] = t;
         return t;
     }
@@ -377,11 +377,11 @@ Triangulation triangulated(const PlaneRegion& region) {
 }
 
 bool fits(const PlaneRegion& region, const std::vector<Triangle>& triangles) {
-    const int count = static_cast<int>(region.points.size());
+    const int count = count_of(region.points);
     return std::all_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
         for (const int v : t)
             if (v < 0 || v >= count) return false;
-        const auto at = [&](int k) -> const Vector2& { return region.points[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])]; };
+        const auto at = [&](int k) -> const Vector2& { return region.points[t[k]]; };
         return orient2d(at(0), at(1), at(2)) > 0;
     });
 }

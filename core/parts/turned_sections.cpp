@@ -57,7 +57,7 @@ Result<Solid> turned_section(Drawing& drawing, const FacetedProfile& section, Se
             const double reach = across ? std::max(p.norm(), q.norm()) : std::max(std::abs(p.x()), std::abs(q.x()));
             const double slide = across ? (q - p).norm() : std::abs(q.x() - p.x());
             bent = std::max(bent, (2 * slide * step + reach * step * step) / 8);
-            const Facet facet{surfaces[static_cast<std::size_t>(loop.curve[k])], Side::both};
+            const Facet facet{surfaces[loop.curve[k]], Side::both};
             for (std::size_t s = 0; s + 1 < stations.size(); ++s) {
                 const int a = stations[s][first + k], b = stations[s][first + next], c = stations[s + 1][first + next],
                           d = stations[s + 1][first + k];
@@ -88,7 +88,7 @@ Result<Solid> turned_section(Drawing& drawing, const FacetedProfile& section, Se
         const Facet facet{builder.add_surface(end), Side::on};
         const auto& vertices = last ? stations.back() : stations.front();
         for (const auto& t : *triangles) {
-            const auto v = [&](std::size_t k) { return vertices[static_cast<std::size_t>(t[k])]; };
+            const auto v = [&](std::size_t k) { return vertices[t[k]]; };
             builder.add_triangle_facing(last == upwards, v(0), v(1), v(2), facet);
         }
     }

@@ -17,7 +17,7 @@ constexpr double largest_number = 1e30;
 std::vector<Matrix34> read_rates(const files::JsonNode& node, std::size_t bodies, bool may_be_empty) {
     const auto numbers = node.numbers().value_or(std::vector<double>{});
     std::vector<Matrix34> out(numbers.size() / 12);
-    for (std::size_t i = 0; i < 12 * out.size(); ++i) out[i / 12].reshaped()[static_cast<Eigen::Index>(i % 12)] = numbers[i];
+    for (std::size_t i = 0; i < 12 * out.size(); ++i) out[i / 12].reshaped()[i % 12] = numbers[i];
     if (numbers.size() != 12 * bodies && !(may_be_empty && numbers.empty()))
         node.fail(ErrorCode::inconsistent, "12 numbers per body are expected, " + std::to_string(numbers.size()) + " found");
     for (const double x : numbers) {
@@ -69,7 +69,7 @@ void write_checkpoint(files::JsonWriter& out, const stepper::Checkpoint& checkpo
                               {"accelerations", &history.accelerations}}) {
         out.key(entry.first);
         const auto& list = *entry.second;
-        out.list(12 * list.size(), ",", [&](std::size_t i) { out.number(list[i / 12].reshaped()[static_cast<Eigen::Index>(i % 12)]); });
+        out.list(12 * list.size(), ",", [&](std::size_t i) { out.number(list[i / 12].reshaped()[i % 12]); });
     }
     out.key("scene");
     out.list(scene.size(), ",", [&](std::size_t i) {
@@ -90,13 +90,13 @@ StoredCheckpoint read_checkpoint(const files::JsonNode& node, const stepper::Tra
     const std::size_t bodies = trajectory.body_names.size();
     StoredCheckpoint out;
     stepper::Checkpoint& checkpoint = out.checkpoint;
-    checkpoint.step = node.require("step").integer(0, static_cast<int>(trajectory.steps.size())).value_or(0);
+    checkpoint.step = node.require("step").integer(0, count_of(trajectory.steps)).value_or(0);
     checkpoint.state.time = checkpoint.step * trajectory.timestep;
     checkpoint.state.kappa = node.require("kappa").number({0, largest_number, true}).value_or(1);
-    checkpoint.state.history = {
-        trajectory.poses[static_cast<std::size_t>(checkpoint.step)], read_rates(node.require("velocities"), bodies, false),
-        read_rates(node.require("poses_before"), bodies, true), read_rates(node.require("velocities_before"), bodies, true),
-        read_rates(node.require("accelerations"), bodies, true)};
+    checkpoint.state.history = {trajectory.poses[checkpoint.step], read_rates(node.require("velocities"), bodies, false),
+                                read_rates(node.require("poses_before"), bodies, true),
+                                read_rates(node.require("velocities_before"), bodies, true),
+                                read_rates(node.require("accelerations"), bodies, true)};
     out.scene = read_scene(node.require("scene"));
     const auto stored = node.require("hash").string();
     if (stored && *stored != hash_of(checkpoint, out.scene))

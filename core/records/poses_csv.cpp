@@ -131,7 +131,7 @@ private:
     void find_rotation() {
         std::vector<int> given;
         for (int form = 0; form < 3; ++form) {
-            const auto& names = rotation_columns[static_cast<std::size_t>(form)];
+            const auto& names = rotation_columns[form];
             if (std::any_of(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == names.front(); }))
                 given.push_back(form);
         }
@@ -142,7 +142,7 @@ private:
             return;
         }
         form_ = static_cast<RotationForm>(given[0]);
-        for (const auto& name : rotation_columns[static_cast<std::size_t>(given[0])]) rotation_.push_back(find(name));
+        for (const auto& name : rotation_columns[given[0]]) rotation_.push_back(find(name));
         for (const std::size_t i : rotation_) {
             const std::string& unit = columns_[i].unit;
             const bool angle = form_ == RotationForm::rotation_vector;
@@ -197,7 +197,7 @@ private:
         kinematics::Pose pose;
         bool good = true;
         for (int k = 0; k < 3; ++k) {
-            const auto x = number(position_[static_cast<std::size_t>(k)]);
+            const auto x = number(position_[k]);
             good = good && x;
             pose.position[k] = files::in_metres(x.value_or(0), unit_.value_or(1));
         }
@@ -225,7 +225,7 @@ private:
             table_.time_where.push_back(where());
             table_.entries.emplace_back(model_.bodies.size());
         }
-        auto& entry = table_.entries.back()[static_cast<std::size_t>(body)];
+        auto& entry = table_.entries.back()[body];
         if (entry)
             fail(ErrorCode::inconsistent,
                  "body \"" + row_[body_] + "\" is there twice at time " + row_[time_] + ", first in " + entry->where);

@@ -50,7 +50,7 @@ void read_json_body(const JsonNode& node, std::size_t body, RotationForm form, d
         const auto rotation = rotation_from_numbers(form, {numbers->begin() + 3, numbers->end()}, rows[t].where(), table, errors);
         if (!rotation) continue;
         PoseEntry entry{{*rotation, Vector3::Zero()}, rows[t].where()};
-        for (int k = 0; k < 3; ++k) entry.pose.position[k] = files::in_metres((*numbers)[static_cast<std::size_t>(k)], unit);
+        for (int k = 0; k < 3; ++k) entry.pose.position[k] = files::in_metres((*numbers)[k], unit);
         table.entries[t][body] = entry;
     }
 }

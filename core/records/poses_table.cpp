@@ -41,7 +41,7 @@ std::optional<Matrix3> from_quaternion(const std::vector<double>& q, const std::
 
 std::optional<Matrix3> from_matrix(const std::vector<double>& m, const std::string& where, PosesTable& table, base::Errors& errors) {
     Matrix3 r;
-    for (int i = 0; i < 9; ++i) r(i / 3, i % 3) = m[static_cast<std::size_t>(i)];
+    for (int i = 0; i < 9; ++i) r(i / 3, i % 3) = m[i];
     const double off = defect(r);
     if (!(off <= rotation_tolerance)) {
         errors.push_back({ErrorCode::out_of_range, where,
@@ -80,7 +80,7 @@ int number_count(RotationForm form) {
 
 std::optional<Matrix3> rotation_from_numbers(RotationForm form, const std::vector<double>& numbers, const std::string& where,
                                              PosesTable& table, base::Errors& errors) {
-    FETTLE_ASSERT(static_cast<int>(numbers.size()) == number_count(form), "as many numbers as the form has");
+    FETTLE_ASSERT(count_of(numbers) == number_count(form), "as many numbers as the form has");
     switch (form) {
         case RotationForm::quaternion:
             return from_quaternion(numbers, where, table, errors);

@@ -84,8 +84,8 @@ std::string contacts_csv(const stepper::Simulation& simulation, const std::vecto
         for (const stepper::ContactForce& f : o.contacts)
             Row(text)
                 .add(o.time)
-                .add(names[static_cast<std::size_t>(f.a)])
-                .add(names[static_cast<std::size_t>(f.b)])
+                .add(names[f.a])
+                .add(names[f.b])
                 .add(f.force)
                 .add(f.torque)
                 .add(f.normal)
@@ -98,8 +98,7 @@ std::string contacts_csv(const stepper::Simulation& simulation, const std::vecto
 std::string drives_csv(const stepper::Simulation& simulation, const std::vector<std::string>& names) {
     std::string text = "time,body,fx,fy,fz,tx,ty,tz\n";
     for (const stepper::StepOutputs& o : simulation.outputs)
-        for (const stepper::DriveForce& d : o.drives)
-            Row(text).add(o.time).add(names[static_cast<std::size_t>(d.body)]).add(d.force).add(d.torque);
+        for (const stepper::DriveForce& d : o.drives) Row(text).add(o.time).add(names[d.body]).add(d.force).add(d.torque);
     return text;
 }
 
@@ -109,7 +108,7 @@ std::string joints_csv(const stepper::Simulation& simulation, const model::Mecha
         for (const stepper::JointForce& f : o.joints)
             Row(text)
                 .add(o.time)
-                .add(mechanism.joints[static_cast<std::size_t>(f.joint)].name)
+                .add(mechanism.joints[f.joint].name)
                 .add(f.force)
                 .add(f.torque)
                 .add(f.effort)

@@ -65,7 +65,7 @@ void read_vertices(const JsonNode& node, geometry::Mesh& mesh) {
     auto coordinates = node.numbers().value_or(std::vector<double>{});
     if (coordinates.empty() || coordinates.size() % 3 != 0) node.fail(ErrorCode::inconsistent, "three coordinates per vertex are expected");
     if (coordinates.empty() || coordinates.size() % 3 != 0 || !in_range(coordinates, node)) return;
-    mesh.vertices = Eigen::Map<const Matrix3X>(coordinates.data(), 3, static_cast<Eigen::Index>(coordinates.size() / 3));
+    mesh.vertices = Eigen::Map<const Matrix3X>(coordinates.data(), 3, coordinates.size() / 3);
 }
 
 model::Body read_body(const JsonNode& node) {
@@ -102,7 +102,7 @@ Pose read_pose(const JsonNode& node) {
     const auto numbers = read_row(node, 12, "a rotation row by row, and a position");
     Pose pose;
     if (numbers.empty()) return pose;
-    for (std::size_t i = 0; i < 9; ++i) pose.rotation(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) = numbers[i];
+    for (std::size_t i = 0; i < 9; ++i) pose.rotation(i / 3, i % 3) = numbers[i];
     pose.position = Vector3(numbers[9], numbers[10], numbers[11]);
     const double defect = (pose.rotation.transpose() * pose.rotation - Matrix3::Identity()).cwiseAbs().maxCoeff();
     if (!(defect <= rotation_defect) || !(pose.rotation.determinant() > 0))
@@ -158,7 +158,7 @@ void read_trajectory_header(const JsonNode& root, StoredTrajectory& out) {
     if (std::set<std::string>(out.trajectory.body_names.begin(), out.trajectory.body_names.end()).size() < out.model.bodies.size())
         bodies.fail(ErrorCode::inconsistent, "two bodies have the same name");
     // Bodies that joints join, which do not collide.
-    const std::vector<int> pairs = indices(root["joined"], 2, static_cast<Eigen::Index>(out.model.bodies.size()));
+    const std::vector<int> pairs = indices(root["joined"], 2, out.model.bodies.size());
     for (std::size_t i = 0; i < pairs.size(); i += 2) out.model.mechanism.not_colliding.emplace_back(std::minmax(pairs[i], pairs[i + 1]));
     std::sort(out.model.mechanism.not_colliding.begin(), out.model.mechanism.not_colliding.end());
     out.trajectory.poses.push_back(read_pose_list(root.require("poses"), out.model.bodies.size()));

@@ -46,7 +46,7 @@ public:
         }
         if (!hash_) return base::Errors{{ErrorCode::parse, out_.path, "the file is empty"}};
         model::complete_geometry(out_.model.bodies);
-        out_.model.end_time = stepper::time_at(out_.trajectory, static_cast<int>(out_.trajectory.steps.size()));
+        out_.model.end_time = stepper::time_at(out_.trajectory, count_of(out_.trajectory.steps));
         return std::move(out_);
     }
 
@@ -131,8 +131,7 @@ private:
         if (!has_entries(entries, points.size(), node, "six numbers per body")) return points;
         for (std::size_t i = 0; i < entries.size(); ++i) {
             const auto numbers = read_row(entries[i], 6, "px py pz rx ry rz");
-            for (std::size_t k = 0; k < numbers.size(); ++k)
-                (k < 3 ? points[i].position : points[i].rotation_vector)[static_cast<Eigen::Index>(k % 3)] = numbers[k];
+            for (std::size_t k = 0; k < numbers.size(); ++k) (k < 3 ? points[i].position : points[i].rotation_vector)[k % 3] = numbers[k];
         }
         return points;
     }

@@ -28,7 +28,7 @@ void add_slope(const std::vector<double>& t, std::size_t k, double weight, std::
 // De Boor's recursion on the weights of the four control points that count.
 void add_spline(const Curve& curve, double time, std::vector<double>& weights) {
     constexpr int degree = 3;
-    const auto count = static_cast<int>(curve.values.size()), spans = count - degree;
+    const auto count = count_of(curve.values), spans = count - degree;
     const double begin = curve.times.front(), end = curve.times.back();
     const double x = std::clamp((time - begin) / (end - begin), 0.0, 1.0) * spans;
     const int span = std::min(static_cast<int>(x), spans - 1);
@@ -41,7 +41,7 @@ void add_spline(const Curve& curve, double time, std::vector<double>& weights) {
             const double share = (x - low) / (high - low);
             for (int k = 0; k <= degree; ++k) point[j][k] = (1 - share) * point[j - 1][k] + share * point[j][k];
         }
-    for (int k = 0; k <= degree; ++k) weights[static_cast<std::size_t>(span + k)] += point[degree][k];
+    for (int k = 0; k <= degree; ++k) weights[span + k] += point[degree][k];
 }
 
 void add_stretch(const Curve& curve, double time, std::vector<double>& weights) {

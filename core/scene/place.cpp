@@ -107,7 +107,7 @@ struct Overloaded : Cases... {
 template <class... Cases>
 Overloaded(Cases...) -> Overloaded<Cases...>;
 
-std::size_t count_of(const Numbers& numbers) {
+std::size_t entries_of(const Numbers& numbers) {
     return std::visit(Overloaded{[](std::monostate) { return std::size_t{0}; }, [](double*) { return std::size_t{1}; },
                                  [](std::optional<double>*) { return std::size_t{1}; },
                                  [](auto* list) { return static_cast<std::size_t>(list->size()); }},
@@ -115,7 +115,7 @@ std::size_t count_of(const Numbers& numbers) {
 }
 
 double& entry_of(const Numbers& numbers, std::size_t k) {
-    FETTLE_ASSERT(k < count_of(numbers), "the scene has the place");
+    FETTLE_ASSERT(k < entries_of(numbers), "the scene has the place");
     return *std::visit(
         Overloaded{[](std::monostate) -> double* { return nullptr; }, [](double* number) { return number; },
                    [](std::optional<double>* number) { return *number ? &**number : &number->emplace(0); },
@@ -287,7 +287,7 @@ const std::vector<Row>& table() {
     return rows;
 }
 
-const Row& row_of(const Place& place) { return table()[static_cast<std::size_t>(place.row)]; }
+const Row& row_of(const Place& place) { return table()[place.row]; }
 
 Item item_of(Scene& scene, const Place& place) { return {scene, row_of(place).list, static_cast<std::size_t>(place.item)}; }
 
@@ -359,7 +359,7 @@ private:
         std::vector<std::string> names;
         for (const Item& item : items) names.push_back(item.name());
         const auto found = std::find(names.begin(), names.end(), wanted);
-        if (found != names.end()) return in_item(items[static_cast<std::size_t>(found - names.begin())], std::string(path));
+        if (found != names.end()) return in_item(items[found - names.begin()], std::string(path));
         return fail("there is no " + std::string(of.what) + " `" + wanted + "`; " +
                     files::did_you_mean(wanted, {names.begin(), names.end()}, '`'));
     }
@@ -382,11 +382,11 @@ private:
     }
 
     base::Result<Place> in_row(int k, const Item& item, std::string_view entry) const {
-        const Row& row = table()[static_cast<std::size_t>(k)];
+        const Row& row = table()[k];
         if (const char* reason = row.misfit ? row.misfit(item) : nullptr) return fail(item.shown() + " " + reason);
         const Numbers numbers = row.numbers(item);
         std::vector<std::string> names;
-        for (std::size_t i = 0; i < count_of(numbers); ++i) names.push_back(entry_name(numbers, i));
+        for (std::size_t i = 0; i < entries_of(numbers); ++i) names.push_back(entry_name(numbers, i));
         const bool is_one = row.key.find('*') == std::string_view::npos;
         const auto found = is_one ? names.begin() : std::find(names.begin(), names.end(), entry);
         if (found != names.end()) return Place{k, static_cast<int>(item.number), static_cast<int>(found - names.begin())};
@@ -439,7 +439,7 @@ std::vector<Place> places_of(const Scene& scene) {
         Item item{const_cast<Scene&>(scene), row.list};
         for (; item.number < item.count(); ++item.number) {
             if (row.misfit && row.misfit(item)) continue;
-            const int entries = static_cast<int>(count_of(row.numbers(item)));
+            const int entries = static_cast<int>(entries_of(row.numbers(item)));
             for (int i = 0; i < entries; ++i) out.push_back({static_cast<int>(k), static_cast<int>(item.number), i});
         }
     }
@@ -503,7 +503,7 @@ void clear_numbers(Scene& scene) {
         Item item{scene, row.list};
         for (; item.number < item.count(); ++item.number) {
             const Numbers numbers = row.numbers(item);
-            for (std::size_t k = 0; k < count_of(numbers); ++k) entry_of(numbers, k) = 0;
+            for (std::size_t k = 0; k < entries_of(numbers); ++k) entry_of(numbers, k) = 0;
         }
     }
 }

@@ -35,7 +35,7 @@ double diagonal_of(const Scene& scene, const Counts& counts) {
     const auto extent_of = [&](int begin, int end) {
         Extent extent;
         for (int b = begin; b < end; ++b) {
-            const Body& body = scene.bodies[static_cast<std::size_t>(b)];
+            const Body& body = scene.bodies[b];
             if (!counts(body)) continue;
             for (Eigen::Index i = 0; i < body.mesh.vertices.cols(); ++i) {
                 const Vector3 x = kinematics::world_position(body.pose, body.mesh.vertices.col(i));
@@ -44,11 +44,11 @@ double diagonal_of(const Scene& scene, const Counts& counts) {
         }
         return extent;
     };
-    const Extent all = base::ordered_reduce(static_cast<int>(scene.bodies.size()), bodies_at_once, Extent{}, extent_of,
-                                            [](Extent&& so_far, Extent&& piece) {
-                                                so_far.take(piece.low, piece.high);
-                                                return so_far;
-                                            });
+    const Extent all =
+        base::ordered_reduce(count_of(scene.bodies), bodies_at_once, Extent{}, extent_of, [](Extent&& so_far, Extent&& piece) {
+            so_far.take(piece.low, piece.high);
+            return so_far;
+        });
     return all.low.x() <= all.high.x() ? (all.high - all.low).norm() : 0;
 }
 

@@ -117,8 +117,7 @@ private:
             if (b.name != body) continue;
             const Matrix3 rotation = b.pose.rotation;
             for (Eigen::Index i = 0; i < 3; ++i)
-                for (Eigen::Index k = 0; k < 3; ++k)
-                    frame.rotation[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] = rotation(i, k);
+                for (Eigen::Index k = 0; k < 3; ++k) frame.rotation[i][k] = rotation(i, k);
             for (const JsonNode& node : body_nodes_) {
                 if (node.where() != b.where) continue;
                 frame.position = formulas_.vector(node["position"], b.pose.position);
@@ -127,7 +126,7 @@ private:
                 if (!is_constant(numbers)) frame.rotation = is_vector ? rotation_of_vector(numbers) : rotation_of_angles(numbers);
                 return frame;
             }
-            for (Eigen::Index k = 0; k < 3; ++k) frame.position[static_cast<std::size_t>(k)] = b.pose.position[k];
+            for (Eigen::Index k = 0; k < 3; ++k) frame.position[k] = b.pose.position[k];
         }
         return frame;
     }
@@ -136,7 +135,7 @@ private:
     void bind(const JsonNode& node, const std::string& key, const Number3& numbers, Vector3& value) {
         if (is_constant(numbers)) return;
         for (std::size_t k = 0; k < 3; ++k) {
-            value[static_cast<Eigen::Index>(k)] = numbers[k].value;
+            value[k] = numbers[k].value;
             formulas_.bind(node.pointer() + "/" + key + "/" + std::to_string(k), numbers[k]);
         }
     }

@@ -281,12 +281,12 @@ void SceneBodies::read_inline(const files::JsonNode& node, scene::Body& body) {
     mesh.name = body.name;
     const auto rows = node["vertices"].elements();
     if (node["vertices"].is_array() && rows.empty()) node["vertices"].fail(ErrorCode::out_of_range, "a body needs a vertex");
-    mesh.vertices.resize(3, static_cast<Eigen::Index>(rows.size()));
+    mesh.vertices.resize(3, rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        mesh.vertices.col(static_cast<Eigen::Index>(i)) = rows[i].length3(unit_).value_or(Vector3::Zero());
+        mesh.vertices.col(i) = rows[i].length3(unit_).value_or(Vector3::Zero());
     }
-    const auto edges = files::index_rows<2>(node["edges"], static_cast<int>(rows.size()));
-    mesh.triangles = files::index_rows<3>(node["triangles"], static_cast<int>(rows.size()));
+    const auto edges = files::index_rows<2>(node["edges"], count_of(rows));
+    mesh.triangles = files::index_rows<3>(node["triangles"], count_of(rows));
     for (std::size_t e = 0; e < edges.size() && document_.errors().size() == faults; ++e) {
         if (mesh.vertices.col(edges[e][0]) != mesh.vertices.col(edges[e][1])) continue;
         node["edges"].elements()[e].fail(ErrorCode::out_of_range, "an edge joins two different places");
@@ -334,7 +334,7 @@ void SceneBodies::read_inertial(const files::JsonNode& node, scene::Body& body) 
     if (rows.size() != 3 && own["inertia"].is_array())
         own["inertia"].fail(ErrorCode::wrong_type, "an inertia has three rows of three numbers [kg m^2]");
     for (std::size_t k = 0; k < rows.size() && k < 3; ++k)
-        inertial.inertia.row(static_cast<Eigen::Index>(k)) = rows[k].vector3().value_or(Vector3::Zero()).transpose();
+        inertial.inertia.row(k) = rows[k].vector3().value_or(Vector3::Zero()).transpose();
     if (document_.errors().size() > faults) return;
     if (const std::string fault = scene::fault_of(inertial); !fault.empty()) own.fail(ErrorCode::out_of_range, fault);
     body.inertial = inertial;

@@ -124,7 +124,7 @@ Number3 SceneFormulas::vector(const JsonNode& node, const Vector3& value) const 
     Number3 out;
     for (std::size_t k = 0; k < 3; ++k) {
         const auto found = found_.find(node.pointer() + "/" + std::to_string(k));
-        out[k] = found == found_.end() ? Number(value[static_cast<Eigen::Index>(k)]) : found->second.number;
+        out[k] = found == found_.end() ? Number(value[k]) : found->second.number;
     }
     return out;
 }

@@ -30,12 +30,11 @@ std::vector<std::vector<geometry::Triangle>> connected_parts(const std::vector<g
     std::vector<int> parent(vertices);
     std::iota(parent.begin(), parent.end(), 0);
     const auto root = [&](int v) {
-        while (parent[static_cast<std::size_t>(v)] != v)
-            v = parent[static_cast<std::size_t>(v)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(v)])];
+        while (parent[v] != v) v = parent[v] = parent[parent[v]];
         return v;
     };
     for (const geometry::Triangle& t : triangles)
-        for (std::size_t k = 1; k < 3; ++k) parent[static_cast<std::size_t>(root(t[k]))] = root(t[0]);
+        for (std::size_t k = 1; k < 3; ++k) parent[root(t[k])] = root(t[0]);
     std::map<int, std::vector<geometry::Triangle>> parts;
     for (const geometry::Triangle& t : triangles) parts[root(t[0])].push_back(t);
     std::vector<std::vector<geometry::Triangle>> out;
@@ -108,15 +107,15 @@ bool is_within(const Vector3& point, const Closure& closure) {
 }
 
 geometry::Mesh lids_of(const Closure& closure) {
-    std::vector<int> index(static_cast<std::size_t>(closure.vertices.cols()), -1);
+    std::vector<int> index(closure.vertices.cols(), -1);
     std::vector<int> used;
     std::vector<geometry::Triangle> triangles(closure.triangles.begin() + static_cast<std::ptrdiff_t>(closure.first_lid),
                                               closure.triangles.end());
     for (geometry::Triangle& t : triangles)
         for (int& v : t) {
-            int& known = index[static_cast<std::size_t>(v)];
+            int& known = index[v];
             if (known < 0) {
-                known = static_cast<int>(used.size());
+                known = count_of(used);
                 used.push_back(v);
             }
             v = known;

@@ -137,7 +137,7 @@ private:
             if (as_solid_ ? closed_ : bounds_a_solid(mesh_)) look_at_nesting();
             return;
         }
-        const bool all = static_cast<int>(pairs.size()) < most_pairs;
+        const bool all = count_of(pairs) < most_pairs;
         std::string text = (all ? "" : "at least ") + std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair" : " pairs") +
                            " of triangles intersect, first " + std::to_string(pairs.front().first) + " and " +
                            std::to_string(pairs.front().second) + " near " + place(corner(static_cast<std::size_t>(pairs.front().first))) +
@@ -151,7 +151,7 @@ private:
 
     void look_at_nesting() {
         for (const Shell& shell : shells_of(mesh_)) {
-            const std::string name = "shell \"" + mesh_.shell_names[static_cast<std::size_t>(shell.index)] + "\"";
+            const std::string name = "shell \"" + mesh_.shell_names[shell.index] + "\"";
             if (shell.volume_sign == 0 && as_solid_) warn(name + " encloses no volume; no effect on the mass");
             if (shell.volume_sign == 0 || shell.is_oriented()) continue;
             const bool counts_as_hole = shell.depth % 2 == 0;

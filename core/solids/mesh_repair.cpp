@@ -38,7 +38,7 @@ std::vector<bool> possible_copies(const geometry::Mesh& mesh, const std::vector<
         std::array<int, 2> count{};
         for (std::size_t i = first; i < last; ++i) ++count[halves[i].forward ? 1 : 0];
         for (std::size_t i = first; i < last; ++i)
-            if (count[halves[i].forward ? 1 : 0] > 1) out[static_cast<std::size_t>(halves[i].triangle)] = true;
+            if (count[halves[i].forward ? 1 : 0] > 1) out[halves[i].triangle] = true;
     });
     return out;
 }
@@ -89,11 +89,11 @@ std::vector<bool> turns_within_shells(const geometry::Mesh& mesh, const std::vec
     geometry::visit_edges(halves, [&](std::size_t first, std::size_t last) {
         const geometry::HalfEdge &a = halves[first], &b = halves[last - 1];
         if (last - first != 2 || a.low == a.high) {
-            orientable[static_cast<std::size_t>(mesh.triangle_shell[static_cast<std::size_t>(a.triangle)])] = false;
+            orientable[mesh.triangle_shell[a.triangle]] = false;
             return;
         }
-        links[static_cast<std::size_t>(a.triangle)].push_back({b.triangle, a.forward == b.forward});
-        links[static_cast<std::size_t>(b.triangle)].push_back({a.triangle, a.forward == b.forward});
+        links[a.triangle].push_back({b.triangle, a.forward == b.forward});
+        links[b.triangle].push_back({a.triangle, a.forward == b.forward});
     });
     std::vector<int> turn(mesh.triangles.size(), -1);
     std::vector<bool> out(mesh.triangles.size(), false);
@@ -106,7 +106,7 @@ std::vector<bool> turns_within_shells(const geometry::Mesh& mesh, const std::vec
         for (std::size_t i = 0; i < reached.size() && orientable[shell]; ++i) {
             for (const Link& link : links[reached[i]]) {
                 const int wanted = turn[reached[i]] ^ static_cast<int>(link.same_way);
-                int& other = turn[static_cast<std::size_t>(link.other)];
+                int& other = turn[link.other];
                 if (other >= 0 && other != wanted) orientable[shell] = false;  // as on a Moebius strip
                 if (other >= 0) continue;
                 other = wanted;
@@ -146,12 +146,12 @@ std::vector<bool> turns_of_shells(const geometry::Mesh& mesh) {
         return out;
     }
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const Shell& shell = shells[static_cast<std::size_t>(mesh.triangle_shell[t])];
+        const Shell& shell = shells[mesh.triangle_shell[t]];
         if (shell.depth % 2 == 0) {
             out[t] = shell.volume_sign < 0;
         } else {
             // A cavity is turned with the solid that it is in. A solid within a sound solid may be meant: it is told, not turned.
-            out[t] = shell.volume_sign > 0 && shells[static_cast<std::size_t>(shell.around)].volume_sign < 0;
+            out[t] = shell.volume_sign > 0 && shells[shell.around].volume_sign < 0;
         }
     }
     return out;

@@ -159,8 +159,8 @@ bool check_closed(const geometry::Mesh& mesh, Faults& faults) {
 /// True if there are none.
 bool check_self_intersections(const geometry::Mesh& mesh, int max_per_kind, Errors& errors) {
     const auto pairs = self_intersections(mesh, std::max(counted_intersections, max_per_kind + 1));
-    for (int i = 0; i < std::min(max_per_kind, static_cast<int>(pairs.size())); ++i) {
-        const auto [t, u] = pairs[static_cast<std::size_t>(i)];
+    for (int i = 0; i < std::min(max_per_kind, count_of(pairs)); ++i) {
+        const auto [t, u] = pairs[i];
         const geometry::Box a = box_of(corners_of(mesh.vertices, mesh.triangles[t])),
                             b = box_of(corners_of(mesh.vertices, mesh.triangles[u]));
         const Vector3 near = (a.low.cwiseMax(b.low) + a.high.cwiseMin(b.high)) / 2;
@@ -168,9 +168,9 @@ bool check_self_intersections(const geometry::Mesh& mesh, int max_per_kind, Erro
                           "intersects triangle " + std::to_string(u) + " of the same mesh near " + coordinates(near) +
                               "; unite overlapping parts, or weld vertices that should be one"});
     }
-    const int more = static_cast<int>(pairs.size()) - max_per_kind;
+    const int more = count_of(pairs) - max_per_kind;
     if (more > 0) {
-        const std::string count = (static_cast<int>(pairs.size()) >= counted_intersections ? "at least " : "") + std::to_string(more);
+        const std::string count = (count_of(pairs) >= counted_intersections ? "at least " : "") + std::to_string(more);
         errors.push_back({ErrorCode::mesh_invalid, mesh.name, "and " + count + " more pairs of intersecting triangles"});
     }
     return pairs.empty();
@@ -180,9 +180,9 @@ bool check_self_intersections(const geometry::Mesh& mesh, int max_per_kind, Erro
 /// (negative volume) within an odd number.
 void check_orientation(const geometry::Mesh& mesh, Faults& faults) {
     for (const Shell& shell : shells_of(mesh)) {
-        const std::string around = shell.around < 0 ? "" : mesh.shell_names[static_cast<std::size_t>(shell.around)];
+        const std::string around = shell.around < 0 ? "" : mesh.shell_names[shell.around];
         const int sign = shell.volume_sign, depth = shell.depth;
-        const std::string where = "shell \"" + mesh.shell_names[static_cast<std::size_t>(shell.index)] + "\"";
+        const std::string where = "shell \"" + mesh.shell_names[shell.index] + "\"";
         if (sign == 0) {
             faults.add(ErrorCode::mesh_invalid, where, "encloses no volume");
         } else if (sign < 0 && depth % 2 == 0) {

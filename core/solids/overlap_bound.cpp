@@ -24,7 +24,7 @@ struct Cluster {
 
 std::vector<bool> involved(const geometry::Mesh& mesh, const std::vector<std::pair<int, int>>& pairs) {
     std::vector<bool> out(mesh.triangles.size(), false);
-    for (const auto& [t, u] : pairs) out[static_cast<std::size_t>(t)] = out[static_cast<std::size_t>(u)] = true;
+    for (const auto& [t, u] : pairs) out[t] = out[u] = true;
     return out;
 }
 
@@ -38,8 +38,7 @@ Patches patches_of(const geometry::Mesh& mesh, const std::vector<bool>& crossed)
     std::vector<int> parent(mesh.triangles.size());
     std::iota(parent.begin(), parent.end(), 0);
     const auto root = [&](int t) {
-        while (parent[static_cast<std::size_t>(t)] != t)
-            t = parent[static_cast<std::size_t>(t)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(t)])];
+        while (parent[t] != t) t = parent[t] = parent[parent[t]];
         return t;
     };
     const std::vector<geometry::HalfEdge> halves = geometry::sorted_half_edges(mesh);
@@ -47,8 +46,7 @@ Patches patches_of(const geometry::Mesh& mesh, const std::vector<bool>& crossed)
         // Over an edge of more than two triangles the sides need not be the same.
         if (last - first != 2) return;
         const int a = halves[first].triangle, b = halves[last - 1].triangle;
-        if (!crossed[static_cast<std::size_t>(a)] && !crossed[static_cast<std::size_t>(b)])
-            parent[static_cast<std::size_t>(root(a))] = root(b);
+        if (!crossed[a] && !crossed[b]) parent[root(a)] = root(b);
     });
     std::vector<double> areas(mesh.triangles.size(), 0);
     Patches patches{std::vector<std::size_t>(mesh.triangles.size(), 0),
@@ -107,11 +105,10 @@ std::vector<Cluster> clusters_of(const geometry::Mesh& mesh, const std::vector<b
 
 std::optional<double> all_but_largest_shell(const geometry::Mesh& mesh, const std::vector<std::pair<int, int>>& pairs) {
     for (const auto& [t, u] : pairs) {
-        if (mesh.triangle_shell[static_cast<std::size_t>(t)] == mesh.triangle_shell[static_cast<std::size_t>(u)]) return std::nullopt;
+        if (mesh.triangle_shell[t] == mesh.triangle_shell[u]) return std::nullopt;
     }
     std::vector<std::vector<geometry::Triangle>> shells(mesh.shell_names.size());
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        shells[static_cast<std::size_t>(mesh.triangle_shell[t])].push_back(mesh.triangles[t]);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) shells[mesh.triangle_shell[t]].push_back(mesh.triangles[t]);
     double sum = 0, largest = 0;
     for (const auto& shell : shells) {
         geometry::Mesh alone;

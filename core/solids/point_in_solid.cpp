@@ -53,13 +53,13 @@ std::vector<int> samples_of(const geometry::Mesh& mesh) {
     std::vector<int> out = mesh.codimensional_points;
     std::vector<bool> seen(mesh.shell_names.size(), false), on_triangle(static_cast<std::size_t>(mesh.vertices.cols()), false);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (const int v : mesh.triangles[t]) on_triangle[static_cast<std::size_t>(v)] = true;
+        for (const int v : mesh.triangles[t]) on_triangle[v] = true;
         const auto shell = static_cast<std::size_t>(mesh.triangle_shell[t]);
         if (!seen[shell]) out.push_back(mesh.triangles[t][0]);
         seen[shell] = true;
     }
     for (const geometry::Edge& edge : mesh.edges)
-        if (!on_triangle[static_cast<std::size_t>(edge[0])]) out.push_back(edge[0]);
+        if (!on_triangle[edge[0]]) out.push_back(edge[0]);
     return out;
 }
 

@@ -91,7 +91,7 @@ bool has_parting_edge(const std::array<Vector2, 3>& t, const std::array<Vector2,
     const int turn = certain_orient2d(t[0], t[1], t[2]);
     if (turn == 0) return false;
     for (int k = 0; k < 3; ++k) {
-        const Vector2 &a = t[static_cast<std::size_t>(k)], &b = t[static_cast<std::size_t>(k == 2 ? 0 : k + 1)];
+        const Vector2 &a = t[k], &b = t[k == 2 ? 0 : k + 1];
         if (std::all_of(u.begin(), u.end(), [&](const Vector2& x) { return certain_orient2d(a, b, x) == -turn; })) return true;
     }
     return false;
@@ -125,7 +125,7 @@ public:
         TrianglePairs pairs = of_neighbours();
         std::sort(pairs.begin(), pairs.end());
         pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-        if (too_many_ || static_cast<int>(pairs.size()) >= limit_) return std::nullopt;
+        if (too_many_ || count_of(pairs) >= limit_) return std::nullopt;
         const TrianglePairs others = of_others();
         if (too_many_ || static_cast<int>(pairs.size() + others.size()) >= limit_) return std::nullopt;
         pairs.insert(pairs.end(), others.begin(), others.end());
@@ -160,10 +160,10 @@ private:
     void add_round(const VertexCorners& corners, int vertex, TrianglePairs& found) {
         for (const int* c = corners.begin(vertex); c != corners.end(vertex); ++c) {
             const int t = *c / 3;
-            if (without_area_[static_cast<std::size_t>(t)] != 0) continue;
+            if (without_area_[t] != 0) continue;
             for (const int* d = c + 1; d != corners.end(vertex); ++d) {
                 const int u = *d / 3;
-                if (u == t || without_area_[static_cast<std::size_t>(u)] != 0 || !cross(t, u)) continue;
+                if (u == t || without_area_[u] != 0 || !cross(t, u)) continue;
                 found.emplace_back(std::min(t, u), std::max(t, u));
                 // A pair is found at three vertices at most.
                 if (static_cast<std::int64_t>(found.size()) > 3 * static_cast<std::int64_t>(limit_)) too_many_ = true;
@@ -178,8 +178,8 @@ private:
         std::vector<int> triangles;
         boxes.reserve(mesh_.triangles.size());
         triangles.reserve(mesh_.triangles.size());
-        for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
-            if (without_area_[static_cast<std::size_t>(t)] != 0) continue;
+        for (int t = 0; t < count_of(mesh_.triangles); ++t) {
+            if (without_area_[t] != 0) continue;
             boxes.push_back(triangle_box(triangle_corners(mesh_.vertices, mesh_.triangles[t])));
             triangles.push_back(t);
         }
@@ -192,7 +192,7 @@ private:
                     const int t = triangles[i], u = triangles[j];
                     if (!share_a_vertex(mesh_.triangles[t], mesh_.triangles[u]) && meet(t, u))
                         found.emplace_back(std::min(t, u), std::max(t, u));
-                    if (static_cast<int>(found.size()) >= limit_) too_many_ = true;
+                    if (count_of(found) >= limit_) too_many_ = true;
                     return !too_many_;
                 });
                 return found;
@@ -215,8 +215,8 @@ private:
 TrianglePairs first_pairs(const geometry::Mesh& mesh, const std::vector<char>& without_area, int max_count) {
     std::vector<geometry::Box> boxes;
     std::vector<int> triangles;
-    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-        if (without_area[static_cast<std::size_t>(t)] != 0) continue;
+    for (int t = 0; t < count_of(mesh.triangles); ++t) {
+        if (without_area[t] != 0) continue;
         boxes.push_back(triangle_box(triangle_corners(mesh.vertices, mesh.triangles[t])));
         triangles.push_back(t);
     }
@@ -224,7 +224,7 @@ TrianglePairs first_pairs(const geometry::Mesh& mesh, const std::vector<char>& w
     geometry::visit_overlapping_pairs(boxes, [&](int i, int j) {
         const int t = triangles[i], u = triangles[j];
         if (intersect_improperly(mesh.vertices, mesh.triangles[t], mesh.triangles[u])) pairs.emplace_back(t, u);
-        return static_cast<int>(pairs.size()) < max_count;
+        return count_of(pairs) < max_count;
     });
     std::sort(pairs.begin(), pairs.end());
     return pairs;
@@ -234,7 +234,7 @@ TrianglePairs first_pairs(const geometry::Mesh& mesh, const std::vector<char>& w
 
 std::vector<char> triangles_without_area(const geometry::Mesh& mesh) {
     std::vector<char> without(mesh.triangles.size(), 0);
-    base::parallel_for(static_cast<int>(mesh.triangles.size()), triangles_per_piece, [&](int t) {
+    base::parallel_for(count_of(mesh.triangles), triangles_per_piece, [&](int t) {
         const auto at = static_cast<std::size_t>(t);
         without[at] = has_no_area(triangle_corners(mesh.vertices, mesh.triangles[at])) ? 1 : 0;
     });

@@ -26,7 +26,7 @@ std::vector<int> distinct_vertices(const std::vector<geometry::Triangle>& triang
     std::vector<int> out;
     for (const geometry::Triangle& t : triangles) {
         for (const int v : t) {
-            if (std::exchange(last_shell[static_cast<std::size_t>(v)], shell) != shell) out.push_back(v);
+            if (std::exchange(last_shell[v], shell) != shell) out.push_back(v);
         }
     }
     if (16 * out.size() < last_shell.size()) {
@@ -45,9 +45,8 @@ std::vector<int> distinct_vertices(const std::vector<geometry::Triangle>& triang
 std::vector<Shell> shells_of(const geometry::Mesh& mesh) {
     FETTLE_ASSERT(mesh.triangle_shell.size() == mesh.triangles.size(), "shells need a mesh with connectivity (build_connectivity)");
     std::vector<Shell> shells(mesh.shell_names.size());
-    std::vector<int> last_shell(static_cast<std::size_t>(mesh.vertices.cols()), -1);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        shells.at(static_cast<std::size_t>(mesh.triangle_shell[t])).triangles.push_back(mesh.triangles[t]);
+    std::vector<int> last_shell(mesh.vertices.cols(), -1);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) shells.at(mesh.triangle_shell[t]).triangles.push_back(mesh.triangles[t]);
     for (std::size_t s = 0; s < shells.size(); ++s) {
         Shell& shell = shells[s];
         shell.index = static_cast<int>(s);
@@ -64,14 +63,12 @@ std::vector<Shell> shells_of(const geometry::Mesh& mesh) {
         for (const Shell& other : shells) {
             if (other.index == shell.index || !lies_within(shell, other, mesh.vertices)) continue;
             ++shell.depth;
-            around[static_cast<std::size_t>(shell.index)].push_back(other.index);
+            around[shell.index].push_back(other.index);
         }
     }
-    const auto is_deeper = [&](int x, int y) {
-        return shells[static_cast<std::size_t>(x)].depth < shells[static_cast<std::size_t>(y)].depth;
-    };
+    const auto is_deeper = [&](int x, int y) { return shells[x].depth < shells[y].depth; };
     for (Shell& shell : shells) {
-        const std::vector<int>& list = around[static_cast<std::size_t>(shell.index)];
+        const std::vector<int>& list = around[shell.index];
         if (!list.empty()) shell.around = *std::max_element(list.begin(), list.end(), is_deeper);
     }
     return shells;

@@ -72,7 +72,7 @@ VertexCorners::VertexCorners(const geometry::Mesh& mesh) : first_(static_cast<st
     corners_.resize(3 * mesh.triangles.size());
     int corner = 0;
     for (const geometry::Triangle& t : mesh.triangles)
-        for (const int v : t) corners_[static_cast<std::size_t>(next[static_cast<std::size_t>(v)]++)] = corner++;
+        for (const int v : t) corners_[next[v]++] = corner++;
 }
 
 bool FanCheck::is_simple(int vertex) {
@@ -83,9 +83,9 @@ bool FanCheck::is_simple(int vertex) {
     Vector3 normal = Vector3::Zero(), upwards = Vector3::Zero();
     double reach = 0;
     for (const int* c = corners_.begin(vertex); c != corners_.end(vertex); ++c) {
-        const geometry::Triangle& t = mesh.triangles[static_cast<std::size_t>(*c / 3)];
+        const geometry::Triangle& t = mesh.triangles[*c / 3];
         const int k = *c % 3;
-        sectors.push_back({t[static_cast<std::size_t>((k + 1) % 3)], t[static_cast<std::size_t>((k + 2) % 3)]});
+        sectors.push_back({t[(k + 1) % 3], t[(k + 2) % 3]});
         const Vector3 from = mesh.vertices.col(sectors.back().from) - centre, to = mesh.vertices.col(sectors.back().to) - centre;
         normal += from.cross(to);
         reach = std::max(reach, from.cwiseAbs().maxCoeff());

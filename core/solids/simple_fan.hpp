@@ -15,7 +15,7 @@ public:
     /// Contract: vertex indices in range.
     explicit VertexCorners(const geometry::Mesh& mesh);
 
-    const int* begin(int vertex) const { return corners_.data() + first_[static_cast<std::size_t>(vertex)]; }
+    const int* begin(int vertex) const { return corners_.data() + first_[vertex]; }
     const int* end(int vertex) const { return corners_.data() + first_[static_cast<std::size_t>(vertex) + 1]; }
 
 private:

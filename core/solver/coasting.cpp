@@ -25,7 +25,7 @@ std::vector<ChartPoint> coasted(const energy::StepProblem& problem, const std::v
             if (sine > 0) y.tail<3>() = std::asin(sine) / sine * axis;
         }
         for (int k = 0; k < 6; ++k)
-            if (dofs.index[i][static_cast<std::size_t>(k)] < 0) y[k] = targets[i][k];
+            if (dofs.index[i][k] < 0) y[k] = targets[i][k];
         points[i] = {y.head<3>(), y.tail<3>()};
     }
     return points;

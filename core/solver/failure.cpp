@@ -83,18 +83,18 @@ void describe_unmet_row(const FailedStep& step, std::ostringstream& out) {
     Eigen::Index worst = -1;
     double most = 0;
     for (Eigen::Index i = 0; i < unmet.size(); ++i) {
-        const double gap = std::abs(unmet[i]) * mechanism.rows[static_cast<std::size_t>(i)].length;
+        const double gap = std::abs(unmet[i]) * mechanism.rows[i].length;
         if (gap <= most) continue;
         most = gap;
         worst = i;
     }
     if (worst < 0) return;
-    const model::Joint& joint = mechanism.joints[static_cast<std::size_t>(mechanism.rows[static_cast<std::size_t>(worst)].owner)];
+    const model::Joint& joint = mechanism.joints[mechanism.rows[worst].owner];
     if (!joint.is_motor) {
         out << "joint '" << joint.name << "' is not met (" << base::length_text(most, unit) << " short): ";
         return;
     }
-    const bool turns = mechanism.set.measures[static_cast<std::size_t>(joint.coordinate)].kind == measure::MeasureKind::angle;
+    const bool turns = mechanism.set.measures[joint.coordinate].kind == measure::MeasureKind::angle;
     const double short_by = std::abs(unmet[worst]);
     out << "motor '" << joint.name << "' cannot follow its curve ("
         << (turns ? base::format_quantity(short_by, "deg", 3) : base::length_text(short_by, unit)) << " short, with ";

@@ -442,7 +442,7 @@ private:
 
     std::vector<PathSegment> segments_to(const std::vector<ChartPoint>& end) const {
         std::vector<PathSegment> segments(at_.points.size());
-        base::parallel_for(static_cast<int>(end.size()), bodies_a_loop,
+        base::parallel_for(count_of(end), bodies_a_loop,
                            [&](int i) { segments[i] = path_between(problem_.poses_t0[i].rotation, at_.points[i], end[i]); });
         return segments;
     }
@@ -452,7 +452,7 @@ private:
         Iterate out;
         out.points.resize(at_.points.size());
         out.poses.resize(at_.points.size());
-        base::parallel_for(static_cast<int>(out.points.size()), bodies_a_loop, [&](int i) {
+        base::parallel_for(count_of(out.points), bodies_a_loop, [&](int i) {
             out.points[i] = moved(i, at_.points, direction, fraction, targets_, workspace_.dofs());
             out.poses[i] = pose_of(problem_, i, out.points[i]);
         });
@@ -462,7 +462,7 @@ private:
     // The whole way.
     std::vector<PathSegment> segments_along(const Direction& direction) const {
         std::vector<PathSegment> segments(at_.points.size());
-        base::parallel_for(static_cast<int>(segments.size()), bodies_a_loop, [&](int i) {
+        base::parallel_for(count_of(segments), bodies_a_loop, [&](int i) {
             const ChartPoint end = moved(i, at_.points, direction, 1, targets_, workspace_.dofs());
             segments[i] = path_between(problem_.poses_t0[i].rotation, at_.points[i], end);
         });

@@ -99,7 +99,7 @@ bool all_finite(const Matrix& m) {
 }
 
 bool is_finite(const ChartDerivatives& d, const linear::FreeDofs& dofs) {
-    const auto bodies = static_cast<int>(d.gradient.size()), blocks = static_cast<int>(d.hessian.off_diagonal.size());
+    const auto bodies = count_of(d.gradient), blocks = count_of(d.hessian.off_diagonal);
     std::atomic<bool> finite = true;
     base::parallel_for(bodies + blocks, blocks_a_pass, [&](int i) {
         if (i >= bodies) {
@@ -250,7 +250,7 @@ double measure(const StepProblem& problem, const ChartDerivatives& d, const line
         ResidualShare residual;
     };
     std::vector<Shares> shares(points.size());
-    base::parallel_for(static_cast<int>(points.size()), bodies_a_pass, [&](int k) {
+    base::parallel_for(count_of(points), bodies_a_pass, [&](int k) {
         const auto i = static_cast<std::size_t>(k);
         const Vector6& step = direction.step[i];
         const bool solved_for = std::any_of(dofs.index[i].begin(), dofs.index[i].end(), [](int index) { return index >= 0; });
@@ -359,7 +359,7 @@ Remainder remainder_at(const StepProblem& problem, const Iterate& at, const std:
     const ChartDerivatives d = derivatives(problem, at, HessianKind::none, workspace);
     const std::vector<double> none(bodies.size(), 0.0);
     Remainder out{none, none, residual_of(d, model, workspace.dofs())};
-    base::parallel_for(static_cast<int>(bodies.size()), bodies_at_once, [&](int k) {
+    base::parallel_for(count_of(bodies), bodies_at_once, [&](int k) {
         const int body = bodies[k];
         if (!energy::has_free_dof(model.bodies[body])) return;
         out.motion[k] = motion_of(model.bodies[body], inertial_step(problem, at, d, workspace.dofs(), body));

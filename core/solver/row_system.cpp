@@ -19,7 +19,7 @@ VectorX remaining_at(const energy::StepProblem& problem, const std::vector<measu
     return problem.mechanism.row_targets - row_values(mechanism.set, mechanism.rows, frames, problem.mechanism.angles);
 }
 
-double length_of(const std::vector<constraint::Row>& rows, Eigen::Index i) { return rows[static_cast<std::size_t>(i)].length; }
+double length_of(const std::vector<constraint::Row>& rows, Eigen::Index i) { return rows[i].length; }
 
 double largest_of(const VectorX& remaining, const std::vector<constraint::Row>& rows) {
     double most = 0;

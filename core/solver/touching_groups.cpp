@@ -12,18 +12,18 @@ std::vector<int> touching_groups(const model::Model& model, const contact::Conta
     std::vector<int> parent(model.bodies.size());
     std::iota(parent.begin(), parent.end(), 0);
     const auto root = [&parent](int i) {
-        while (parent[static_cast<std::size_t>(i)] != i) {
-            int& above = parent[static_cast<std::size_t>(i)];
-            above = parent[static_cast<std::size_t>(above)];
+        while (parent[i] != i) {
+            int& above = parent[i];
+            above = parent[above];
             i = above;
         }
         return i;
     };
     const auto join = [&](int a, int b) {
-        if (!energy::has_free_dof(model.bodies[static_cast<std::size_t>(a)])) return;
-        if (!energy::has_free_dof(model.bodies[static_cast<std::size_t>(b)])) return;
+        if (!energy::has_free_dof(model.bodies[a])) return;
+        if (!energy::has_free_dof(model.bodies[b])) return;
         const auto [low, high] = std::minmax({root(a), root(b)});
-        parent[static_cast<std::size_t>(high)] = low;
+        parent[high] = low;
     };
     for (const contact::BodyPairContacts& pair : contacts.pairs) join(pair.first, pair.second);
     for (const contact::BodyPairFriction& pair : friction.pairs) join(pair.first, pair.second);

@@ -56,19 +56,19 @@ std::vector<JointForce> joint_forces(const energy::StepProblem& problem, const s
     const std::vector<measure::PlacedFrame> frames = placed(mechanism.set.frames, poses);
     const constraint::RowJacobian rows = row_jacobian(mechanism.set, mechanism.rows, frames);
     for (int i = 0; i < rows.count(); ++i) {
-        const int owner = mechanism.rows[static_cast<std::size_t>(i)].owner;
-        const Joint& joint = mechanism.joints[static_cast<std::size_t>(owner)];
-        JointForce& acting = out[static_cast<std::size_t>(owner)];
+        const int owner = mechanism.rows[i].owner;
+        const Joint& joint = mechanism.joints[owner];
+        JointForce& acting = out[owner];
         const double force = -multipliers[i] / problem.weight;
         if (joint.is_motor) acting.effort += force;
-        if (scene::couples_joints(joint.kind)) acting.effort += force * mechanism.rows[static_cast<std::size_t>(i)].parts[1].factor;
+        if (scene::couples_joints(joint.kind)) acting.effort += force * mechanism.rows[i].parts[1].factor;
         const int body = joint.b != measure::world ? joint.b : joint.a;
         for (int k = rows.first[i]; k < rows.first[i + 1]; ++k) {
-            const constraint::RowGradient& e = rows.entries[static_cast<std::size_t>(k)];
+            const constraint::RowGradient& e = rows.entries[k];
             if (e.body != body || joint.frame_b < 0) continue;
             const Vector3 f = force * e.gradient.head<3>();
             acting.force += f;
-            const measure::PlacedFrame& at = frames[static_cast<std::size_t>(joint.b != measure::world ? joint.frame_b : joint.frame_a)];
+            const measure::PlacedFrame& at = frames[joint.b != measure::world ? joint.frame_b : joint.frame_a];
             acting.torque += force * e.gradient.tail<3>() - at.arm.cross(f);
         }
     }
@@ -82,7 +82,7 @@ double path_gap_bound(const model::Model& model, const std::vector<kinematics::P
         for (std::size_t k = 0; k + 1 < path.nodes.size(); ++k) {
             double gap = 0;
             for (const int f : {joint.frame_a, joint.frame_b}) {
-                const measure::Frame& frame = model.mechanism.set.frames[static_cast<std::size_t>(f)];
+                const measure::Frame& frame = model.mechanism.set.frames[f];
                 if (frame.body == measure::world) continue;
                 const auto body = static_cast<std::size_t>(frame.body);
                 gap += deviation(poses_t0[body], path.nodes[k][body], path.nodes[k + 1][body], frame.point);

@@ -49,9 +49,9 @@ bool is_steady(const scene::Curve& curve) {
 std::vector<int> bodies_of_row(const model::Model& model, const constraint::Row& row) {
     std::vector<int> out;
     for (const constraint::RowPart& part : row.parts) {
-        const measure::Measure& m = model.mechanism.set.measures[static_cast<std::size_t>(part.measure)];
+        const measure::Measure& m = model.mechanism.set.measures[part.measure];
         for (const int frame : {m.a, m.b}) {
-            const int body = model.mechanism.set.frames[static_cast<std::size_t>(frame)].body;
+            const int body = model.mechanism.set.frames[frame].body;
             if (body != measure::world) out.push_back(body);
         }
     }
@@ -66,16 +66,16 @@ public:
         for (const constraint::Row& row : model.mechanism.rows) {
             int first = -1;
             for (const int body : bodies_of_row(model, row)) {
-                if (is_scripted(model.bodies[static_cast<std::size_t>(body)])) continue;
-                if (first >= 0) parent_[static_cast<std::size_t>(root(body))] = root(first);
+                if (is_scripted(model.bodies[body])) continue;
+                if (first >= 0) parent_[root(body)] = root(first);
                 first = body;
             }
         }
-        for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i)
+        for (int i = 0; i < count_of(model.bodies); ++i)
             for (int k = 0; k < 6; ++k) {
-                const model::Body& body = model.bodies[static_cast<std::size_t>(i)];
+                const model::Body& body = model.bodies[i];
                 if (is_free(body, k)) ++counts_[root(i)].free;
-                if (!is_free(body, k) && !is_still(*body.prescribed[static_cast<std::size_t>(k)])) counts_[root(i)].is_driven = true;
+                if (!is_free(body, k) && !is_still(*body.prescribed[k])) counts_[root(i)].is_driven = true;
             }
         for (const constraint::Row& row : model.mechanism.rows) count(row);
         for (const constraint::Row& row : model.mechanism.dependent) count_drive(row);
@@ -89,8 +89,8 @@ public:
         for (const auto& [root_body, count] : counts_) {
             if (count.rows > 0) boxes[root_body] = {Vector3::Constant(base::infinity), Vector3::Constant(-base::infinity)};
         }
-        for (int i = 0; i < static_cast<int>(model_.bodies.size()); ++i) {
-            const model::Body& body = model_.bodies[static_cast<std::size_t>(i)];
+        for (int i = 0; i < count_of(model_.bodies); ++i) {
+            const model::Body& body = model_.bodies[i];
             const auto box = boxes.find(root(i));
             if (box == boxes.end() || is_scripted(body)) continue;
             const Matrix3X x = (body.pose_start.rotation * body.mesh.vertices).colwise() + body.pose_start.position;
@@ -103,8 +103,8 @@ public:
     }
 
     void judge() {
-        for (int i = 0; i < static_cast<int>(model_.bodies.size()); ++i) {
-            const model::Body& body = model_.bodies[static_cast<std::size_t>(i)];
+        for (int i = 0; i < count_of(model_.bodies); ++i) {
+            const model::Body& body = model_.bodies[i];
             if (is_scripted(body)) continue;
             const Count& c = counts_[root(i)];
             if (c.free == c.rows && c.is_driven) continue;
@@ -123,7 +123,7 @@ private:
     }
 
     int root(int i) const {
-        while (parent_[static_cast<std::size_t>(i)] != i) i = parent_[static_cast<std::size_t>(i)];
+        while (parent_[i] != i) i = parent_[i];
         return i;
     }
 
@@ -131,12 +131,12 @@ private:
     void count_drive(const constraint::Row& row) {
         if (is_steady(row.curve)) return;
         for (const int body : bodies_of_row(model_, row))
-            if (!is_scripted(model_.bodies[static_cast<std::size_t>(body)])) counts_[root(body)].is_driven = true;
+            if (!is_scripted(model_.bodies[body])) counts_[root(body)].is_driven = true;
     }
 
     void count(const constraint::Row& row) {
         for (const int body : bodies_of_row(model_, row)) {
-            const model::Body& b = model_.bodies[static_cast<std::size_t>(body)];
+            const model::Body& b = model_.bodies[body];
             if (is_scripted(b)) continue;
             Count& c = counts_[root(body)];
             ++c.rows;
@@ -145,10 +145,10 @@ private:
         }
         // What is attached to a body that a script moves is driven by it.
         for (const int body : bodies_of_row(model_, row)) {
-            const model::Body& b = model_.bodies[static_cast<std::size_t>(body)];
+            const model::Body& b = model_.bodies[body];
             if (!is_scripted(b) || b.type == scene::BodyType::static_body) continue;
             for (const int other : bodies_of_row(model_, row))
-                if (!is_scripted(model_.bodies[static_cast<std::size_t>(other)])) counts_[root(other)].is_driven = true;
+                if (!is_scripted(model_.bodies[other])) counts_[root(other)].is_driven = true;
         }
     }
 
@@ -173,7 +173,7 @@ public:
             const std::vector<int> bodies = bodies_of_row(model, row);
             if (std::none_of(bodies.begin(), bodies.end(), [&](int body) { return out_of_it.count(body) > 0; })) rows_.push_back(row);
         }
-        problem_.targets.resize(static_cast<Eigen::Index>(rows_.size()));
+        problem_.targets.resize(rows_.size());
         angles_ = model.mechanism.angles_start;
     }
 
@@ -250,7 +250,7 @@ private:
                 const auto m = static_cast<std::size_t>(part.measure);
                 target -= part.factor * (counted[m] - plain[m]);
             }
-            problem_.targets[static_cast<Eigen::Index>(i)] = target;
+            problem_.targets[i] = target;
         }
         const constraint::Assembly found = assemble(problem_, from);
         gaps_ = found.gaps;
@@ -281,11 +281,10 @@ private:
         const VectorX values = row_values(mechanism.set, mechanism.dependent, placed(mechanism.set.frames, poses), angles_);
         for (std::size_t i = 0; i < mechanism.dependent.size(); ++i) {
             const constraint::Row& row = mechanism.dependent[i];
-            const double gap = std::abs(values[static_cast<Eigen::Index>(i)] - target_at(row, time)) * row.length;
+            const double gap = std::abs(values[i] - target_at(row, time)) * row.length;
             if (gap <= followed_gap * model_.diagonal) continue;
             std::ostringstream message;
-            message << "at " << time << " s `" << mechanism.joints[static_cast<std::size_t>(row.owner)].name << "` is "
-                    << base::length_text(gap, model_.length_unit)
+            message << "at " << time << " s `" << mechanism.joints[row.owner].name << "` is " << base::length_text(gap, model_.length_unit)
                     << " from being met: at the start it followed from the others, here it does not";
             return message.str();
         }
@@ -297,8 +296,7 @@ private:
         const double worst = gaps_.size() > 0 ? gaps_.maxCoeff() : 0;
         const double closed = constraint::closed_gap(model_.diagonal, poses);
         for (std::size_t i = 0; i < rows_.size(); ++i)
-            if (gaps_[static_cast<Eigen::Index>(i)] > closed)
-                names.insert("`" + model_.mechanism.joints[static_cast<std::size_t>(rows_[i].owner)].name + "`");
+            if (gaps_[i] > closed) names.insert("`" + model_.mechanism.joints[rows_[i].owner].name + "`");
         std::ostringstream message;
         message << "at " << time << " s the joints cannot be met: " << base::joined(names) << ", by "
                 << base::length_text(worst, model_.length_unit) << "; is a motor's curve out of reach, or the loop at a dead centre?";

@@ -148,7 +148,7 @@ Vector6 coordinates_at(const std::vector<Waypoint>& way, const Pose& start, doub
 
 std::vector<PrescribedNode> prescribed_path(const model::Model& model, const std::vector<Pose>& poses, double time) {
     constexpr int bodies_at_once = 64;  // that a thread takes
-    const auto count = static_cast<int>(poses.size());
+    const auto count = count_of(poses);
     std::vector<std::vector<Waypoint>> ways(poses.size());
     base::parallel_for(count, bodies_at_once,
                        [&](int i) { ways[i] = BodyPath(model.bodies[i], poses[i], time, time + model.timestep).waypoints(); });

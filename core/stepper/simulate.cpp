@@ -44,7 +44,7 @@ Simulation taken_up(const model::Model& model, const SimulationOptions& options)
     if (!options.resume) return out;
     const Simulation& earlier = *options.resume;
     const int done = earlier.checkpoint.step;
-    FETTLE_ASSERT(static_cast<int>(earlier.trajectory.steps.size()) >= done, "the checkpoint lies beyond the trajectory");
+    FETTLE_ASSERT(count_of(earlier.trajectory.steps) >= done, "the checkpoint lies beyond the trajectory");
     out.checkpoint = earlier.checkpoint;
     const auto take = [done](auto& to, const auto& from) {
         to.assign(from.begin(), from.begin() + std::min<std::ptrdiff_t>(done, static_cast<std::ptrdiff_t>(from.size())));

@@ -28,7 +28,7 @@ PathGap segment_gap(const model::Model& model, const std::vector<Pose>& poses_t0
         if (joint.frame_a < 0 || joint.is_motor) continue;
         double gap = 0;
         for (const int f : {joint.frame_a, joint.frame_b}) {
-            const measure::Frame& frame = model.mechanism.set.frames[static_cast<std::size_t>(f)];
+            const measure::Frame& frame = model.mechanism.set.frames[f];
             if (frame.body == measure::world) continue;
             const auto body = static_cast<std::size_t>(frame.body);
             gap += ccd::chord_deviation(path_between(poses_t0[body].rotation, from[body], to[body]), frame.point);
@@ -46,8 +46,8 @@ public:
     Splitter(const model::Model& model, double allowed)
         : model_(model), allowed_(allowed), problem_{model.mechanism.set, rows_, {}, {}, free_dofs(model), model.diagonal} {
         for (const constraint::Row& row : model.mechanism.rows)
-            if (!model.mechanism.joints[static_cast<std::size_t>(row.owner)].is_motor) rows_.push_back(row);
-        problem_.targets.resize(static_cast<Eigen::Index>(rows_.size()));
+            if (!model.mechanism.joints[row.owner].is_motor) rows_.push_back(row);
+        problem_.targets.resize(rows_.size());
         for (const model::Body& body : model.bodies) problem_.moments.push_back(body.moments);
         angles_ = model.mechanism.angles_start;
     }
@@ -97,7 +97,7 @@ private:
         }
         if (gap.gap > allowed_ && refusal.empty()) {
             std::ostringstream message;
-            message << "joint '" << model_.mechanism.joints[static_cast<std::size_t>(gap.joint)].name << "' parts by up to "
+            message << "joint '" << model_.mechanism.joints[gap.joint].name << "' parts by up to "
                     << base::length_text(gap.gap, model_.length_unit) << " between nodes of step " << step_number_ + 1
                     << (halvings > 0 ? ", where the bodies cannot be moved onto their joints" : ", however often it is split")
                     << "; a shorter time step helps";
@@ -117,9 +117,8 @@ private:
                                   plain = constraint::angles_at(model_.mechanism.set, straight, {});
         for (std::size_t i = 0; i < rows_.size(); ++i) {
             double target = target_at(rows_[i], 0);
-            for (const constraint::RowPart& part : rows_[i].parts)
-                target -= part.factor * (counted[static_cast<std::size_t>(part.measure)] - plain[static_cast<std::size_t>(part.measure)]);
-            problem_.targets[static_cast<Eigen::Index>(i)] = target;
+            for (const constraint::RowPart& part : rows_[i].parts) target -= part.factor * (counted[part.measure] - plain[part.measure]);
+            problem_.targets[i] = target;
         }
         const constraint::Assembly found = assemble(problem_, straight);
         if (!found.is_met) return std::nullopt;

@@ -190,12 +190,11 @@ bool judge_joints(const energy::StepProblem& problem, const solver::NewtonResult
         row_values(mechanism.set, mechanism.dependent, placed(mechanism.set.frames, solved.poses), problem.mechanism.angles);
     for (std::size_t i = 0; i < mechanism.dependent.size(); ++i) {
         const constraint::Row& row = mechanism.dependent[i];
-        const double gap = std::abs(values[static_cast<Eigen::Index>(i)] - target_at(row, problem.mechanism.end_time)) * row.length;
+        const double gap = std::abs(values[i] - target_at(row, problem.mechanism.end_time)) * row.length;
         result.report.joint_gap = std::max(result.report.joint_gap, gap);
         if (gap <= largest_gap * model.diagonal) continue;
         std::ostringstream message;
-        message << "joint '" << mechanism.joints[static_cast<std::size_t>(row.owner)].name << "' is "
-                << base::length_text(gap, model.length_unit)
+        message << "joint '" << mechanism.joints[row.owner].name << "' is " << base::length_text(gap, model.length_unit)
                 << " from being met: at the start it followed from the others, here it does not";
         result.status = SimulationStatus::not_converged;
         result.message = message.str();

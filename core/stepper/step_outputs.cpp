@@ -89,13 +89,12 @@ double drive_power(const std::vector<DriveForce>& drives, const energy::History&
 
 // Of motors that are rows: their effort along the rate of their joint's coordinate.
 double motor_power(const model::Mechanism& mechanism, const std::vector<JointForce>& joints, const energy::History& end) {
-    const auto is_motor = [&](const JointForce& f) { return mechanism.joints[static_cast<std::size_t>(f.joint)].is_motor; };
+    const auto is_motor = [&](const JointForce& f) { return mechanism.joints[f.joint].is_motor; };
     if (std::none_of(joints.begin(), joints.end(), is_motor)) return 0;
     const std::vector<double> rates = energy::measure_rates(mechanism.set, end.poses, end.velocities);
     double power = 0;
     for (const JointForce& f : joints)
-        if (is_motor(f))
-            power += f.effort * rates[static_cast<std::size_t>(mechanism.joints[static_cast<std::size_t>(f.joint)].coordinate)];
+        if (is_motor(f)) power += f.effort * rates[mechanism.joints[f.joint].coordinate];
     return power;
 }
 
@@ -141,12 +140,11 @@ void add_momentum_defects(const energy::StepProblem& problem, const solver::Newt
     // Springs, dampers, friction and stops of joints, each by itself: what holds against a load leaves nothing in the sum of forces.
     const model::Mechanism& mechanism = model.mechanism;
     for (std::size_t k = 0; k < out.measure_forces.size(); ++k) {
-        const measure::Measure& m = mechanism.set.measures[static_cast<std::size_t>(mechanism.terms[k].measure)];
+        const measure::Measure& m = mechanism.set.measures[mechanism.terms[k].measure];
         for (const int frame : {m.a, m.b}) {
-            const int body = mechanism.set.frames[static_cast<std::size_t>(frame)].body;
+            const int body = mechanism.set.frames[frame].body;
             if (body == measure::world) continue;
-            const double reach =
-                solved.poses[static_cast<std::size_t>(body)].position.norm() + model.bodies[static_cast<std::size_t>(body)].radius;
+            const double reach = solved.poses[body].position.norm() + model.bodies[body].radius;
             out.angular_impulse += h * std::abs(out.measure_forces[k]) * (m.kind == measure::MeasureKind::angle ? 1 : reach);
         }
     }

@@ -37,7 +37,7 @@ inline kinematics::PathSegment path_segment(const Trajectory& trajectory, int t,
     return kinematics::path_between(trajectory.poses[t][body].rotation, nodes[k][body], nodes[k + 1][body]);
 }
 
-inline int segment_count(const Trajectory& trajectory, int t) { return static_cast<int>(trajectory.steps[t].nodes.size()) - 1; }
+inline int segment_count(const Trajectory& trajectory, int t) { return count_of(trajectory.steps[t].nodes) - 1; }
 
 /// Share of step `t` that has passed at s in [0, 1] of its segment `k`.
 inline double step_fraction(const Trajectory& trajectory, int t, int k, double s) {

@@ -227,7 +227,7 @@ std::string summary(const ClearanceReport& report, const Subject& subject) {
     for (const ReportedPair& pair : report.pairs) ++counts[pair.finding];
     std::string text = formatted("%zu pair%s %s", report.pairs.size(), report.pairs.size() == 1 ? "" : "s", to_string(subject.source));
     if (subject.motion()) {
-        const auto steps = static_cast<int>(subject.trajectory.steps.size());
+        const auto steps = count_of(subject.trajectory.steps);
         text += formatted(" (%s, %.6g s)", core::base::counted(static_cast<size_t>(steps), "step").c_str(),
                           core::stepper::time_at(subject.trajectory, steps) - core::stepper::time_at(subject.trajectory, 0));
     }

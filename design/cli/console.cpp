@@ -43,11 +43,10 @@ std::string dumped_list(const Json& list, int depth) {
     constexpr int elements_at_once = 32;
     const std::string line = "\n" + std::string(static_cast<std::size_t>((depth + 1) * indent), ' ');
     std::string out = core::base::ordered_reduce(
-        static_cast<int>(list.size()), elements_at_once, std::string("["),
+        count_of(list), elements_at_once, std::string("["),
         [&](int begin, int end) {
             std::string part;
-            for (int i = begin; i < end; ++i)
-                part += (i > 0 ? "," : "") + line + dumped_within(list[static_cast<std::size_t>(i)], depth + 1);
+            for (int i = begin; i < end; ++i) part += (i > 0 ? "," : "") + line + dumped_within(list[i], depth + 1);
             return part;
         },
         [](std::string&& so_far, std::string&& part) { return std::move(so_far) + part; });

@@ -48,7 +48,7 @@ Result<std::pair<int, int>> picture_size(const std::string& text) {
 
 /// Poses at a time of the path; before it the first, after it the last.
 std::vector<Pose> poses_at(const Trajectory& trajectory, double time) {
-    const int steps = static_cast<int>(trajectory.steps.size()), bodies = static_cast<int>(trajectory.poses.front().size());
+    const int steps = count_of(trajectory.steps), bodies = static_cast<int>(trajectory.poses.front().size());
     if (steps == 0 || time <= core::stepper::time_at(trajectory, 0)) return trajectory.poses.front();
     for (int t = 0; t < steps; ++t) {
         if (time > core::stepper::time_at(trajectory, t + 1)) continue;
@@ -67,7 +67,7 @@ std::vector<Pose> poses_at(const Trajectory& trajectory, double time) {
 
 std::vector<core::clearance::PairRequest> judged_pairs(const core::model::Model& model) {
     std::vector<core::clearance::PairRequest> requests;
-    const int count = static_cast<int>(model.bodies.size());
+    const int count = count_of(model.bodies);
     for (int a = 0; a < count; ++a)
         for (int b = a + 1; b < count; ++b)
             if (clearance::judged_by_default(model, a, b)) requests.push_back({a, b});
@@ -123,7 +123,7 @@ struct Instant {
 
 // Of --time.
 Errors time_faults(const DrawArguments& options, const Trajectory& path) {
-    const double first = core::stepper::time_at(path, 0), last = core::stepper::time_at(path, static_cast<int>(path.steps.size()));
+    const double first = core::stepper::time_at(path, 0), last = core::stepper::time_at(path, count_of(path.steps));
     if (!options.time || (*options.time >= first && *options.time <= last)) return {};
     const std::string known = path.steps.empty() ? "there is no motion, only where the parts stand: draw the folder of a run"
                                                  : formatted("the motion is from %.6g s to %.6g s", first, last);
@@ -153,7 +153,7 @@ Instant instant_of(const DrawArguments& options, const clearance::Subject& subje
 }
 
 exports::PictureMarker marker_of(const PairClearance& pair, const core::model::Model& model) {
-    const auto name = [&](int body) { return model.bodies[static_cast<std::size_t>(body)].name; };
+    const auto name = [&](int body) { return model.bodies[body].name; };
     const std::string unit = answers::unit_name(model.length_unit), pair_name = name(pair.a) + ":" + name(pair.b) + " ";
     if (!pair.is_clash()) return {pair.witness.point_a, pair.witness.point_b, pair_name + core::base::format_length(pair.upper, unit, 3)};
     if (!pair.overlap || !(pair.overlap->depth_lower > 0))

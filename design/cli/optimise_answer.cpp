@@ -120,7 +120,7 @@ std::string changes_text(const Design& design, const optimisers::OptimiserReport
         formatted("smallest change found that meets every requirement: %.4g of the ranges\n", std::sqrt(report.best.objective));
     for (size_t k = 0; k < design.parameters.size(); ++k) {
         const description::Parameter& p = design.parameters[k];
-        const double change = description::from_si(report.point[static_cast<Eigen::Index>(k)] - p.value, p.unit);
+        const double change = description::from_si(report.point[k] - p.value, p.unit);
         if (change != 0) text += formatted("  %-24s %+.5g %s\n", p.name.c_str(), change, std::string(p.unit.name).c_str());
     }
     return text;
@@ -147,10 +147,9 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
     for (size_t k = 0; k < design.parameters.size(); ++k) {
         const description::Parameter& p = design.parameters[k];
         const bool told = k < report.optimality.held.size();
-        text += formatted("  %-24s %12.7g -> %12.7g %s%s%s\n", p.name.c_str(),
-                          description::from_si(outcome.start[static_cast<Eigen::Index>(k)], p.unit),
-                          description::from_si(report.point[static_cast<Eigen::Index>(k)], p.unit), std::string(p.unit.name).c_str(),
-                          told ? ", held by " : "", told ? held_text(report.optimality.held[k]) : "");
+        text += formatted("  %-24s %12.7g -> %12.7g %s%s%s\n", p.name.c_str(), description::from_si(outcome.start[k], p.unit),
+                          description::from_si(report.point[k], p.unit), std::string(p.unit.name).c_str(), told ? ", held by " : "",
+                          told ? held_text(report.optimality.held[k]) : "");
     }
     for (size_t i = 0; i < outcome.final.constraints.size(); ++i) {
         const auto& [name, bounds, quantity] = design.constraints[i];

@@ -121,7 +121,7 @@ std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOp
         const std::string folder = (std::filesystem::path(request.out) / ("start-" + std::to_string(seed))).string();
         starts.push_back({seed, folder, "not run", "", Json(), 0});
     }
-    const int cores = core::base::thread_count(), at_once = std::min<int>(cores, static_cast<int>(starts.size()));
+    const int cores = core::base::thread_count(), at_once = std::min<int>(cores, count_of(starts));
     std::vector<Running> running;
     size_t next = 0;
     while (next < starts.size() || !running.empty()) {
@@ -130,7 +130,7 @@ std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOp
         for (Running& run : running) {
             if (stop) run.process.ask_to_stop();
         }
-        for (; next < starts.size() && static_cast<int>(running.size()) < at_once; ++next) {
+        for (; next < starts.size() && count_of(running) < at_once; ++next) {
             const std::filesystem::path folder = starts[next].out;
             std::error_code fault;
             std::filesystem::create_directories(folder, fault);
@@ -152,7 +152,7 @@ std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOp
         }
         if (collect(running, starts, console)) {
             const auto done = static_cast<int>(next - running.size());
-            if (!stop) console.progress("      starts", done, static_cast<int>(starts.size()));
+            if (!stop) console.progress("      starts", done, count_of(starts));
             continue;
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -29,7 +29,7 @@ using core::clearance::PairStatus;
 using core::model::Model;
 
 Json name_of(const Model& model, int body) {
-    const bool known = body >= 0 && body < static_cast<int>(model.bodies.size());
+    const bool known = body >= 0 && body < count_of(model.bodies);
     return known ? Json(model.bodies[static_cast<size_t>(body)].name) : Json(body);
 }
 

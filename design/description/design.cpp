@@ -44,7 +44,7 @@ Result<int> add_part(Design& design, core::scene::Body body, std::shared_ptr<con
     design.scene.bodies.push_back(std::move(body));
     design.shapes.resize(design.scene.bodies.size());
     design.shapes.back() = std::move(shape);
-    return static_cast<int>(design.scene.bodies.size()) - 1;
+    return count_of(design.scene.bodies) - 1;
 }
 
 }  // namespace fettle::design::description

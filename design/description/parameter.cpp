@@ -21,7 +21,7 @@ core::expression::Scope scope_of(const std::vector<Parameter>& parameters) {
 }
 
 VectorX values_of(const std::vector<Parameter>& parameters) {
-    VectorX p(static_cast<Eigen::Index>(parameters.size()));
+    VectorX p(parameters.size());
     for (Eigen::Index k = 0; k < p.size(); ++k) p[k] = parameters[static_cast<size_t>(k)].value;
     return p;
 }

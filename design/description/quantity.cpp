@@ -12,7 +12,7 @@ std::vector<Branch> Quantity::branches(const Simulated&, const Measurement&, dou
 Errors Quantity::check(const core::model::Model&, int) const { return {}; }
 
 Errors check_body(const core::model::Model& model, int body) {
-    if (body >= 0 && body < static_cast<int>(model.bodies.size())) return {};
+    if (body >= 0 && body < count_of(model.bodies)) return {};
     return {{ErrorCode::out_of_range, "",
              "there is no body " + std::to_string(body) + "; the scene has " + std::to_string(model.bodies.size()) + ", counted from 0"}};
 }

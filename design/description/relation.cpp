@@ -15,7 +15,7 @@ std::function<RelationValue(const VectorX&)> function_of(const core::expression:
         for (const int position : positions) inputs.push_back(p[position]);
         const core::expression::ValueAndGradient at = core::expression::differentiated(formula, inputs);
         RelationValue out{at.value, VectorX::Zero(p.size())};
-        for (size_t k = 0; k < positions.size(); ++k) out.gradient[positions[k]] = at.gradient[static_cast<Eigen::Index>(k)];
+        for (size_t k = 0; k < positions.size(); ++k) out.gradient[positions[k]] = at.gradient[k];
         return out;
     };
 }

@@ -27,10 +27,10 @@ int pieces_of(const ChartPoint& from, const ChartPoint& to) {
 }
 
 void add_step(const Trajectory& trajectory, int t, Assembly& out) {
-    const int segments = core::stepper::segment_count(trajectory, t), bodies = static_cast<int>(out.parts.size());
-    const auto& nodes = trajectory.steps[static_cast<std::size_t>(t)].nodes;
+    const int segments = core::stepper::segment_count(trajectory, t), bodies = count_of(out.parts);
+    const auto& nodes = trajectory.steps[t].nodes;
     for (int k = 0; k < segments; ++k) {
-        const auto &from = nodes[static_cast<std::size_t>(k)], &to = nodes[static_cast<std::size_t>(k) + 1];
+        const auto &from = nodes[k], &to = nodes[static_cast<std::size_t>(k) + 1];
         int pieces = 1;
         for (std::size_t b = 0; b < from.size(); ++b) pieces = std::max(pieces, pieces_of(from[b], to[b]));
         for (int j = 1; j <= pieces; ++j) {
@@ -62,7 +62,7 @@ Assembly assembly_of(const core::model::Model& model, const Trajectory& trajecto
         out.parts.push_back({body.name, colours[b], body.mesh, body.reference_point, false});
     }
     out.keyframes.push_back({core::stepper::time_at(trajectory, 0), true, trajectory.poses.front()});
-    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t) add_step(trajectory, t, out);
+    for (int t = 0; t < count_of(trajectory.steps); ++t) add_step(trajectory, t, out);
     for (std::size_t b = 0; b < out.parts.size(); ++b)
         out.parts[b].moves = std::any_of(out.keyframes.begin(), out.keyframes.end(),
                                          [&](const Keyframe& key) { return !same(key.poses[b], out.keyframes.front().poses[b]); });

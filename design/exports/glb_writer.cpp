@@ -89,8 +89,8 @@ private:
         const auto bound = [](const Vector3& x) {
             return Json{static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])};
         };
-        json_["accessors"][static_cast<std::size_t>(accessor)]["min"] = bound(mesh.vertices.rowwise().minCoeff());
-        json_["accessors"][static_cast<std::size_t>(accessor)]["max"] = bound(mesh.vertices.rowwise().maxCoeff());
+        json_["accessors"][accessor]["min"] = bound(mesh.vertices.rowwise().minCoeff());
+        json_["accessors"][accessor]["max"] = bound(mesh.vertices.rowwise().maxCoeff());
         return accessor;
     }
 
@@ -163,8 +163,8 @@ private:
             append_word(binary_, std::bit_cast<std::uint32_t>(last));
         }
         const int accessor = add_accessor(add_view(begin, none), float_type, "SCALAR", assembly_.keyframes.size());
-        json_["accessors"][static_cast<std::size_t>(accessor)]["min"] = Json::array({0.0F});
-        json_["accessors"][static_cast<std::size_t>(accessor)]["max"] = Json::array({last});
+        json_["accessors"][accessor]["min"] = Json::array({0.0F});
+        json_["accessors"][accessor]["max"] = Json::array({last});
         return accessor;
     }
 

@@ -50,19 +50,19 @@ std::vector<std::array<Vector3, 3>> corner_normals_of(const Mesh& mesh, const Ma
         std::size_t triangle;
         double angle;
     };
-    std::vector<std::vector<Corner>> corners(static_cast<std::size_t>(x.cols()));
+    std::vector<std::vector<Corner>> corners(x.cols());
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const auto& t = mesh.triangles[i];
         for (std::size_t k = 0; k < 3; ++k) {
             const Vector3 u = x.col(t[(k + 1) % 3]) - x.col(t[k]), v = x.col(t[(k + 2) % 3]) - x.col(t[k]);
-            corners[static_cast<std::size_t>(t[k])].push_back({i, std::atan2(u.cross(v).norm(), u.dot(v))});
+            corners[t[k]].push_back({i, std::atan2(u.cross(v).norm(), u.dot(v))});
         }
     }
     std::vector<std::array<Vector3, 3>> out;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         out.push_back({normals[i], normals[i], normals[i]});
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::vector<Corner>& there = corners[static_cast<std::size_t>(mesh.triangles[i][k])];
+            const std::vector<Corner>& there = corners[mesh.triangles[i][k]];
             if (there.size() > most) continue;
             Vector3 sum = Vector3::Zero();
             for (const Corner& other : there)
@@ -181,8 +181,7 @@ std::vector<PictureLine> PartsView::visible_edges(const Part& part, const DepthB
     std::vector<PictureLine> lines;
     for (const auto& [edge, triangles] : part.triangles) {
         if (triangles.size() == 2) {  // of others, loose, at a border or where more meet, all are drawn
-            const Vector3 &a = part.normals[static_cast<std::size_t>(triangles[0])],
-                          &b = part.normals[static_cast<std::size_t>(triangles[1])];
+            const Vector3 &a = part.normals[triangles[0]], &b = part.normals[triangles[1]];
             const bool is_outline = (a.dot(towards) > 1e-9) != (b.dot(towards) > 1e-9);
             if (!is_outline && !(a.dot(b) < std::cos(crease_))) continue;
         }

@@ -28,10 +28,10 @@ public:
     explicit PlaneFaces(const Body& body) : parent_(body.mesh.triangles.size()) {
         std::iota(parent_.begin(), parent_.end(), 0);
         std::map<Corners, int> triangle_at;  // a flat edge
-        for (int f = 0; f < static_cast<int>(parent_.size()); ++f)
+        for (int f = 0; f < count_of(parent_); ++f)
             for (const Corners& element : flat_elements(body, f))
                 if (const auto [known, is_new] = triangle_at.emplace(element, f); !is_new) join(known->second, f);
-        for (int f = 0; f < static_cast<int>(parent_.size()); ++f) {
+        for (int f = 0; f < count_of(parent_); ++f) {
             const core::geometry::Triangle& corners = body.mesh.triangles[static_cast<size_t>(f)];
             const int face = root(f);
             face_of_[ascending(corners)] = face;
@@ -207,7 +207,7 @@ std::vector<std::vector<ContactState>> contact_states(const Model& model, const 
     for (const Body& body : model.bodies) faces.emplace_back(body);
     const adjoint::stepper::SweepHistory history = adjoint::stepper::sweep_history(model, trajectory);
     std::vector<std::vector<ContactState>> out;
-    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t) {
+    for (int t = 0; t < count_of(trajectory.steps); ++t) {
         const core::energy::StepProblem problem = adjoint::stepper::problem_at(model, trajectory, t, history);
         out.push_back(StatesAt(model, faces, problem, trajectory.poses[static_cast<size_t>(t) + 1]).find());
     }

@@ -31,7 +31,7 @@ MatrixX quantity_gradients(const problem::DesignEvaluation& evaluation) {
 }
 
 VectorX parameter_ranges(const description::Design& design) {
-    VectorX ranges(static_cast<Eigen::Index>(design.parameters.size()));
+    VectorX ranges(design.parameters.size());
     for (Eigen::Index k = 0; k < ranges.size(); ++k) {
         const description::Parameter& parameter = design.parameters[static_cast<size_t>(k)];
         ranges[k] = parameter.upper > parameter.lower ? parameter.upper - parameter.lower : std::max(std::abs(parameter.value), 1e-6);
@@ -56,7 +56,7 @@ std::vector<LinePoint> DesignLine::evaluate(const std::vector<double>& ts, const
                                             const std::function<void()>& on_simulation) const {
     std::vector<LinePoint> points(ts.size());
     std::mutex progress;
-    core::base::parallel_for(static_cast<int>(ts.size()), 1, [&](int i) {
+    core::base::parallel_for(count_of(ts), 1, [&](int i) {
         LinePoint& point = points[static_cast<size_t>(i)];
         point.t = ts[static_cast<size_t>(i)];
         problem::EvaluateOptions options;

@@ -295,8 +295,7 @@ private:
             y.push_back(std::log(std::abs(remainder[k])));
         }
         if (static_cast<double>(x.size()) < fewest) return std::numeric_limits<double>::quiet_NaN();
-        const Eigen::Map<const VectorX> at(x.data(), static_cast<Eigen::Index>(x.size())),
-            of(y.data(), static_cast<Eigen::Index>(y.size()));
+        const Eigen::Map<const VectorX> at(x.data(), x.size()), of(y.data(), y.size());
         const VectorX offset = at.array() - at.mean();
         return offset.dot(of) / offset.squaredNorm();
     }
@@ -314,7 +313,7 @@ private:
 std::vector<int> parameters_to_check(const problem::DesignProblem& problem, const VectorX& gradient, int most) {
     std::vector<int> order(static_cast<size_t>(gradient.size()));
     std::iota(order.begin(), order.end(), 0);
-    if (most <= 0 || most >= static_cast<int>(order.size())) return order;
+    if (most <= 0 || most >= count_of(order)) return order;
     const VectorX share = gradient.cwiseProduct(parameter_ranges(problem.design())).cwiseAbs();
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share[a] > share[b]; });
     order.resize(static_cast<size_t>(most));
@@ -380,7 +379,7 @@ CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX
     const std::vector<int> chosen = parameters_to_check(problem, at.gradient, options.most_parameters);
     std::vector<ParameterDifferences> found(static_cast<size_t>(n));
     const CheckedDesign checked{at, contact_states(*at.model, at.simulation.trajectory)};
-    core::base::parallel_for(static_cast<int>(chosen.size()), 1, [&](int i) {
+    core::base::parallel_for(count_of(chosen), 1, [&](int i) {
         const int k = chosen[static_cast<size_t>(i)];
         found[static_cast<size_t>(k)] = ParameterCheck(problem, p, k, steps, options, checked).run(count);
     });

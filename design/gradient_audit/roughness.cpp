@@ -123,8 +123,8 @@ private:
             if (j - i > end - begin) begin = i, end = j;
             i = j + 1;
         }
-        MatrixX values(static_cast<Eigen::Index>(end - begin), quantities);
-        for (size_t i = begin; i < end; ++i) values.row(static_cast<Eigen::Index>(i - begin)) = row[i]->values.transpose();
+        MatrixX values(end - begin, quantities);
+        for (size_t i = begin; i < end; ++i) values.row(i - begin) = row[i]->values.transpose();
         return values;
     }
 
@@ -133,12 +133,12 @@ private:
         for (size_t q = 0; q < report_.quantities.size(); ++q) {
             QuantityRoughness& quantity = report_.quantities[q];
             for (const LinePoint& point : points_) {
-                if (point.usable) quantity.size = std::max(quantity.size, std::abs(point.values[static_cast<Eigen::Index>(q)]));
+                if (point.usable) quantity.size = std::max(quantity.size, std::abs(point.values[q]));
             }
             quantity.noise = noise[q];
             quantity.rounding = std::numeric_limits<double>::epsilon() * quantity.size;
             if (fine.spacing > 0) {
-                quantity.fine = optimisers::estimate_noise(VectorX(fine.values.col(static_cast<Eigen::Index>(q))), fine.spacing);
+                quantity.fine = optimisers::estimate_noise(VectorX(fine.values.col(q)), fine.spacing);
                 quantity.rounding = std::max(quantity.rounding, quantity.fine.noise);
             }
             quantity.rough =
@@ -164,7 +164,7 @@ private:
             quantity.holds = 0;
             quantity.breaks = infinity;
             for (const LinePoint* point : sorted) {
-                if (agrees(quantity, static_cast<Eigen::Index>(q), *point)) continue;
+                if (agrees(quantity, q, *point)) continue;
                 quantity.breaks = std::abs(point->t);
                 break;
             }

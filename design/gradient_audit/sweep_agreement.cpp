@@ -32,7 +32,7 @@ ModelTangent random_direction(const Model& model, int steps, std::mt19937_64& ra
     ModelTangent d = adjoint::zero_model_tangent(model, steps);
     d.gravity_dot = vector(model.gravity.norm());
     const double duration = std::max(1, steps) * model.timestep;
-    const int count = static_cast<int>(model.bodies.size());
+    const int count = count_of(model.bodies);
     for (int a = 0; a < count; ++a)
         for (int b = a + 1; b < count; ++b)
             if (may_collide(model, a, b) && friction_coefficient(model, a, b) > 0)
@@ -99,7 +99,7 @@ double forwards(const adjoint::TrajectoryGradient& seed, const Trajectory& traje
 // Of the objective and of each constraint: what depends on the motion.
 std::vector<adjoint::TrajectoryGradient> motion_seeds(const description::Design& design, const problem::DesignEvaluation& at) {
     const description::Simulated simulated{*at.model, at.simulation.trajectory, design.clearance_tolerance};
-    const auto zero = [&] { return adjoint::zero_seeds(*at.model, static_cast<int>(at.simulation.trajectory.steps.size())); };
+    const auto zero = [&] { return adjoint::zero_seeds(*at.model, count_of(at.simulation.trajectory.steps)); };
     std::vector<adjoint::TrajectoryGradient> out;
     adjoint::Seeds objective = zero();
     for (size_t k = 0; k < design.objective.size(); ++k) {
@@ -132,7 +132,7 @@ SweepAgreement compare_sweeps(const problem::DesignProblem& problem, const probl
     }
     std::mt19937_64 random(20261123);
     for (int d = 0; d < directions; ++d) {
-        const ModelTangent direction = random_direction(model, static_cast<int>(trajectory.steps.size()), random);
+        const ModelTangent direction = random_direction(model, count_of(trajectory.steps), random);
         Motion motion;
         auto poses = adjoint::stepper::tangent_sweep(model, trajectory, direction, &motion.multipliers);
         if (!poses) {

@@ -168,7 +168,7 @@ const Evaluation& Evaluator::values_at(const VectorX& point) { return asked(poin
 const Evaluation& Evaluator::look(const VectorX& point) { return asked(point, Wanted::values_of_no_candidate).scaled_evaluation; }
 
 void Evaluator::evaluate(Record& record, Wanted wanted) const {
-    const auto relations = static_cast<int>(problem_.relation_lower.size());
+    const auto relations = count_of(problem_.relation_lower);
     const bool values = wanted != Wanted::derivatives && problem_.values;
     record.evaluation =
         checked(values ? problem_.values(record.point) : problem_.evaluate(record.point), variables(), constraints() - relations);

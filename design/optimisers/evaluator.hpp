@@ -43,10 +43,10 @@ public:
     /// Errors: rethrows what Problem::evaluate throws, Interrupted excepted (stop_reason).
     Evaluator(const Problem& problem, EvaluatorOptions options);
 
-    int variables() const { return static_cast<int>(problem_.start.size()); }
+    int variables() const { return count_of(problem_.start); }
     int constraints() const { return static_cast<int>(problem_.constraint_lower.size() + problem_.relation_lower.size()); }
 
-    int simulated_constraints() const { return static_cast<int>(problem_.constraint_lower.size()); }  ///< the others are relations
+    int simulated_constraints() const { return count_of(problem_.constraint_lower); }  ///< the others are relations
 
     /// Scaled evaluation: x in [0, 1] (clamped), f, (c, r) and derivatives scaled. `usable` may be false.
     /// Throws StopOptimisation when the run is over.
@@ -85,7 +85,7 @@ public:
     const VectorX& scaled_point(int evaluation) const { return records_[static_cast<size_t>(evaluation)].scaled_point; }
     const Evaluation& scaled_evaluation(int evaluation) const { return records_[static_cast<size_t>(evaluation)].scaled_evaluation; }
 
-    int evaluations() const { return static_cast<int>(records_.size()); }
+    int evaluations() const { return count_of(records_); }
     int failures() const { return failures_; }
     StopReason stop_reason() const { return stop_reason_; }
     void rethrow() const;  ///< rethrows an exception of the problem, if there was one

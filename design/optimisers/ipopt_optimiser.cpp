@@ -71,7 +71,7 @@ public:
 
 private:
     int n() const { return evaluator_.variables(); }
-    int m() const { return static_cast<int>(rows_.size()); }
+    int m() const { return count_of(rows_); }
     int row(int i) const { return rows_[static_cast<size_t>(i)]; }
 
     // Null: there is no value there, or the run is over.

@@ -24,20 +24,20 @@ bool is_first(const Branches& b, size_t k) { return k == 0 || b.of[k] != b.of[k 
 double lagrangian(const Evaluation& e, const VectorX& y) {
     double value = e.objective - y.dot(e.constraints);
     for (size_t k = 0; k < e.objective_branches.of.size(); ++k)
-        if (is_first(e.objective_branches, k)) value -= e.objective_branches.values[static_cast<Eigen::Index>(k)];
+        if (is_first(e.objective_branches, k)) value -= e.objective_branches.values[k];
     return value;
 }
 VectorX lagrangian_gradient(const Evaluation& e, const VectorX& y) {
     VectorX gradient = e.gradient - e.jacobian.transpose() * y;
     for (size_t k = 0; k < e.objective_branches.of.size(); ++k)
-        if (is_first(e.objective_branches, k)) gradient -= e.objective_branches.jacobian.row(static_cast<Eigen::Index>(k)).transpose();
+        if (is_first(e.objective_branches, k)) gradient -= e.objective_branches.jacobian.row(k).transpose();
     return gradient;
 }
 
 Cuts cuts_of(const Evaluator& evaluator, const Evaluation& e) {
     const Branches &rows = e.constraint_branches, &terms = e.objective_branches;
     Cuts cuts;
-    cuts.rows.resize(static_cast<Eigen::Index>(rows.of.size() + terms.of.size()), e.gradient.size());
+    cuts.rows.resize(rows.of.size() + terms.of.size(), e.gradient.size());
     cuts.lower.resize(cuts.rows.rows());
     const auto add = [&cuts](int of, double lower, const VectorX& row) {
         const auto at = static_cast<Eigen::Index>(cuts.of.size());
@@ -58,7 +58,7 @@ Cuts cuts_of(const Evaluator& evaluator, const Evaluation& e) {
             add(-1 - terms.of[k], terms.values[j] - terms.values[first], (terms.jacobian.row(first) - terms.jacobian.row(j)).transpose());
         }
     }
-    cuts.rows.conservativeResize(static_cast<Eigen::Index>(cuts.of.size()), Eigen::NoChange);
+    cuts.rows.conservativeResize(cuts.of.size(), Eigen::NoChange);
     cuts.lower.conservativeResize(cuts.rows.rows());
     return cuts;
 }
@@ -141,14 +141,14 @@ VectorX smooth_multipliers(const QuadraticSolution& solution) {
     VectorX y = solution.multipliers;
     const double size = y.size() > 0 ? y.lpNorm<Eigen::Infinity>() : 0;
     for (size_t j = 0; j < solution.cut_of.size(); ++j)
-        if (solution.cut_of[j] >= 0 && solution.cut_multipliers[static_cast<Eigen::Index>(j)] > 1e-6 * size) y[solution.cut_of[j]] = 0;
+        if (solution.cut_of[j] >= 0 && solution.cut_multipliers[j] > 1e-6 * size) y[solution.cut_of[j]] = 0;
     return y;
 }
 
 VectorX whole_multipliers(const QuadraticSolution& solution) {
     VectorX y = solution.multipliers;
     for (size_t j = 0; j < solution.cut_of.size(); ++j)
-        if (solution.cut_of[j] >= 0) y[solution.cut_of[j]] += solution.cut_multipliers[static_cast<Eigen::Index>(j)];
+        if (solution.cut_of[j] >= 0) y[solution.cut_of[j]] += solution.cut_multipliers[j];
     return y;
 }
 

@@ -106,11 +106,10 @@ IpoptResult run_ipopt(NonlinearProgram& program, const VectorX& start, const Ipo
     VectorX row_lower = within_ipopts_infinity(bounds.row_lower), row_upper = within_ipopts_infinity(bounds.row_upper);
     FETTLE_ASSERT(lower.size() == start.size() && upper.size() == start.size() && row_upper.size() == row_lower.size(), "sizes agree");
     Conversation conversation{program};
-    const IpoptHandle problem(
-        ipopt.create_problem(static_cast<int>(start.size()), lower.data(), upper.data(), static_cast<int>(row_lower.size()),
-                             row_lower.data(), row_upper.data(), program.jacobian_entries(), program.hessian_entries(), 0, ask_value,
-                             ask_rows, ask_gradient, ask_jacobian, ask_hessian),
-        ipopt.free_problem);
+    const IpoptHandle problem(ipopt.create_problem(count_of(start), lower.data(), upper.data(), count_of(row_lower), row_lower.data(),
+                                                   row_upper.data(), program.jacobian_entries(), program.hessian_entries(), 0, ask_value,
+                                                   ask_rows, ask_gradient, ask_jacobian, ask_hessian),
+                              ipopt.free_problem);
     IpoptResult result;
     if (!problem) return result;
     set_options(ipopt, problem.get(), options);

@@ -30,7 +30,7 @@ RestCurvature curvature_near(const Evaluator& evaluator, const VectorX& best, co
     }
     std::sort(order.begin(), order.end());
     order.resize(std::min(order.size(), static_cast<size_t>(2 * best.size() + 2)));
-    RestCurvature rest(static_cast<int>(best.size()));
+    RestCurvature rest(count_of(best));
     for (auto it = order.rbegin(); it != order.rend(); ++it)
         rest.learn(evaluator.scaled_point(it->second), evaluator.scaled_evaluation(it->second), best, at, multipliers);
     return rest;

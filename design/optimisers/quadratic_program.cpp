@@ -28,7 +28,7 @@ public:
         for (int j = 0; j < cuts(); ++j) share_slack(j);
     }
 
-    int jacobian_entries() const override { return n() * rows() + static_cast<int>(places_.size()); }
+    int jacobian_entries() const override { return n() * rows() + count_of(places_); }
     int hessian_entries() const override { return n() * (n() + 1) / 2; }
 
     Bounds bounds() const override {
@@ -79,7 +79,7 @@ public:
                 values[k] = i < m() ? program_.rows(i, j) : program_.cuts.rows(i - m(), j);
             }
         }
-        for (int k = 0; k < static_cast<int>(places_.size()); ++k) {
+        for (int k = 0; k < count_of(places_); ++k) {
             const SlackPlace& place = places_[static_cast<size_t>(k)];
             if (values == nullptr) {
                 row[dense + k] = place.row;
@@ -125,7 +125,7 @@ private:
 
     // @param missing  By how much the row misses its side at d = 0.
     void add_slack(int row, double sign, double price, double missing) {
-        places_.push_back({row, static_cast<int>(slacks_.size()), sign});
+        places_.push_back({row, count_of(slacks_), sign});
         slacks_.push_back({price, std::max(0.0, missing)});
     }
 
@@ -143,11 +143,11 @@ private:
         places_.push_back({m() + j, slack, 1});
     }
 
-    int unknowns() const { return n() + static_cast<int>(slacks_.size()); }
+    int unknowns() const { return n() + count_of(slacks_); }
     int rows() const { return m() + cuts(); }
-    int n() const { return static_cast<int>(program_.gradient.size()); }
+    int n() const { return count_of(program_.gradient); }
     int m() const { return static_cast<int>(program_.rows.rows()); }
-    int cuts() const { return static_cast<int>(program_.cuts.of.size()); }
+    int cuts() const { return count_of(program_.cuts.of); }
     Eigen::Map<const VectorX> step(const double* x) const { return {x, n()}; }
 
     const QuadraticProgram& program_;

@@ -125,9 +125,9 @@ BoundsReport try_bounds(const DesignProblem& problem) {
         if (!any(broken_inequalities(problem, p))) points.push_back(std::move(p));
     }
     std::vector<Errors> found(points.size());
-    core::base::parallel_for(static_cast<int>(points.size()), 1,
+    core::base::parallel_for(count_of(points), 1,
                              [&](int i) { found[static_cast<size_t>(i)] = problem.obstacles(points[static_cast<size_t>(i)]); });
-    report.samples = static_cast<int>(points.size());
+    report.samples = count_of(points);
     report.obstacles = tally(found);
     for (const Obstacle& obstacle : report.obstacles) report.refused += obstacle.designs;
     return report;

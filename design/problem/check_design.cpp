@@ -76,7 +76,7 @@ private:
 
     void add(ErrorCode code, const std::string& where, const std::string& message) { errors_.push_back({code, where, message}); }
 
-    bool has_body(int body) const { return body >= 0 && body < static_cast<int>(design_.scene.bodies.size()); }
+    bool has_body(int body) const { return body >= 0 && body < count_of(design_.scene.bodies); }
 
     void check_shape(int body) {
         const Shape* shape = description::shape_of(design_, body);

@@ -205,11 +205,11 @@ std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const
     optimisers::Rows rows;
     std::vector<adjoint::Seeds> seeds;
     const std::vector<int> indices = rest_constraints();
-    rows.values.resize(static_cast<Eigen::Index>(indices.size()));
+    rows.values.resize(indices.size());
     for (const int i : indices) {
         const description::Quantity& quantity = *design_.constraints[static_cast<size_t>(i)].quantity;
         const description::Measurement measured = quantity.value(simulated);
-        rows.values[static_cast<Eigen::Index>(seeds.size())] = measured.value;
+        rows.values[seeds.size()] = measured.value;
         seeds.push_back(adjoint::zero_seeds(*model, 0));
         quantity.add_seeds(simulated, measured, 1, seeds.back());
     }
@@ -260,14 +260,14 @@ void DesignProblem::measure(DesignEvaluation& evaluation) const {
         evaluation.violation = std::max(evaluation.violation, description::violation(constraint.bounds, evaluation.constraints.back()));
     }
     for (size_t i = 0; i < design_.relations.size(); ++i) {
-        const double value = evaluation.relations.values[static_cast<Eigen::Index>(i)];
+        const double value = evaluation.relations.values[i];
         evaluation.violation = std::max(evaluation.violation, description::violation(design_.relations[i], value));
     }
 }
 
 void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, DesignEvaluation& evaluation) const {
     const Simulated simulated{*evaluation.model, evaluation.simulation.trajectory, design_.clearance_tolerance};
-    const auto zero = [&] { return adjoint::zero_seeds(simulated.model, static_cast<int>(simulated.trajectory.steps.size())); };
+    const auto zero = [&] { return adjoint::zero_seeds(simulated.model, count_of(simulated.trajectory.steps)); };
     std::vector<adjoint::Seeds> seeds{zero()};
     const auto refuse = [&](const std::string& reason) {
         evaluation.usable = false;
@@ -301,7 +301,7 @@ void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, De
     const Result<std::vector<adjoint::ModelGradient>> gradients =
         adjoint::stepper::seeded_sweep(simulated.model, simulated.trajectory, std::move(seeds));
     if (!gradients) return refuse(first_reason(gradients.errors()));
-    MatrixX rows(static_cast<Eigen::Index>(gradients->size()), parameter_count());
+    MatrixX rows(gradients->size(), parameter_count());
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
         rows.row(i) = pull_back(moved, *evaluation.model, (*gradients)[static_cast<size_t>(i)], parameter_count()).transpose();
     for (int k = 0; k < parameter_count(); ++k) {
@@ -311,9 +311,9 @@ void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, De
             if (!std::isfinite(rows(static_cast<Eigen::Index>(i) + 1, k))) return refuse(name_of(design_.constraints[i]) + by);
     }
     evaluation.gradient = rows.row(0).transpose();
-    evaluation.jacobian = rows.middleRows(1, static_cast<Eigen::Index>(design_.constraints.size()));
-    evaluation.residuals = Eigen::Map<const VectorX>(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
-    evaluation.residual_jacobian = rows.middleRows(static_cast<Eigen::Index>(first_residual), evaluation.residuals.size());
+    evaluation.jacobian = rows.middleRows(1, design_.constraints.size());
+    evaluation.residuals = Eigen::Map<const VectorX>(residuals.data(), residuals.size());
+    evaluation.residual_jacobian = rows.middleRows(first_residual, evaluation.residuals.size());
     take_jacobians(rows.bottomRows(rows.rows() - static_cast<Eigen::Index>(first_branch)), evaluation.jacobian, branches);
     if (reach == BranchReach::tied) {
         evaluation.ties = ties_of(design_, branches);

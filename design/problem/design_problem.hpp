@@ -62,7 +62,7 @@ public:
 
     /// With places by number (core/scene/place.hpp).
     const description::Design& design() const { return design_; }
-    int parameter_count() const { return static_cast<int>(design_.parameters.size()); }
+    int parameter_count() const { return count_of(design_.parameters); }
     /// That all designs are simulated with [N/m].
     double kappa() const { return kappa_; }
     /// What is odd about the scene as written: its meshes, its start.

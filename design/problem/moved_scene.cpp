@@ -52,8 +52,7 @@ private:
         for (const int position : positions) inputs.push_back(p[position]);
         const core::expression::ValueAndGradient at = core::expression::differentiated(number.formula, inputs);
         values_[place] = at.value;
-        for (size_t k = 0; k < positions.size(); ++k)
-            moved_.numbers.push_back({positions[k], place, at.gradient[static_cast<Eigen::Index>(k)]});
+        for (size_t k = 0; k < positions.size(); ++k) moved_.numbers.push_back({positions[k], place, at.gradient[k]});
     }
 
     // The pose follows from what was moved of it.

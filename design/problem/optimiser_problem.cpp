@@ -75,9 +75,8 @@ optimisers::Evaluation optimiser_evaluation(const DesignEvaluation& evaluation) 
     if (!e.usable) return e;
     e.objective = evaluation.objective;
     e.has_derivatives = evaluation.gradient.size() > 0;
-    e.constraints.resize(static_cast<Eigen::Index>(evaluation.constraints.size()));
-    for (size_t i = 0; i < evaluation.constraints.size(); ++i)
-        e.constraints[static_cast<Eigen::Index>(i)] = evaluation.constraints[i].value;
+    e.constraints.resize(evaluation.constraints.size());
+    for (size_t i = 0; i < evaluation.constraints.size(); ++i) e.constraints[i] = evaluation.constraints[i].value;
     e.violation = evaluation.violation;
     if (e.has_derivatives) {
         e.gradient = evaluation.gradient;

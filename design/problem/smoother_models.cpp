@@ -15,8 +15,8 @@ constexpr double worth_a_stage = 1.25;  // a width that is less than this times 
 
 std::vector<core::clearance::PairRequest> pairs_that_may_meet(const core::model::Model& model) {
     std::vector<core::clearance::PairRequest> pairs;
-    for (int a = 0; a < static_cast<int>(model.bodies.size()); ++a) {
-        for (int b = a + 1; b < static_cast<int>(model.bodies.size()); ++b) {
+    for (int a = 0; a < count_of(model.bodies); ++a) {
+        for (int b = a + 1; b < count_of(model.bodies); ++b) {
             if (core::model::may_collide(model, a, b)) pairs.push_back({a, b, 0});
         }
     }

@@ -12,14 +12,14 @@ namespace {
 using description::Design;
 
 VectorX ranges_of(const Design& design) {
-    VectorX ranges(static_cast<Eigen::Index>(design.parameters.size()));
+    VectorX ranges(design.parameters.size());
     for (Eigen::Index k = 0; k < ranges.size(); ++k)
         ranges[k] = design.parameters[static_cast<size_t>(k)].upper - design.parameters[static_cast<size_t>(k)].lower;
     return ranges;
 }
 
 VectorX values_of(const QuantityBranches& quantity) {
-    VectorX values(static_cast<Eigen::Index>(quantity.branches.size()));
+    VectorX values(quantity.branches.size());
     for (Eigen::Index k = 0; k < values.size(); ++k) values[k] = quantity.branches[static_cast<size_t>(k)].value;
     return values;
 }
@@ -32,7 +32,7 @@ struct Row {
 
 optimisers::Branches joined(const std::vector<Row>& rows, Eigen::Index parameters) {
     optimisers::Branches branches;
-    branches.values.resize(static_cast<Eigen::Index>(rows.size()));
+    branches.values.resize(rows.size());
     branches.jacobian.resize(branches.values.size(), parameters);
     for (const Row& row : rows) {
         const auto at = static_cast<Eigen::Index>(branches.of.size());
@@ -72,7 +72,7 @@ std::vector<QuantityBranches> branches_of(const Design& design, const descriptio
 
 void add_seeds(const QuantityBranches& quantity, const description::Simulated& simulated, std::vector<adjoint::Seeds>& seeds) {
     for (size_t k = quantity.of_objective ? 0 : 1; k < quantity.branches.size(); ++k) {
-        seeds.push_back(adjoint::zero_seeds(simulated.model, static_cast<int>(simulated.trajectory.steps.size())));
+        seeds.push_back(adjoint::zero_seeds(simulated.model, count_of(simulated.trajectory.steps)));
         quantity.branches[k].add_seeds(1, seeds.back());
     }
 }
@@ -136,10 +136,10 @@ std::vector<Tie> ties_of(const Design& design, const std::vector<QuantityBranche
     const VectorX ranges = ranges_of(design);
     std::vector<Tie> ties;
     for (const QuantityBranches& quantity : all) {
-        const VectorX same = VectorX::Constant(static_cast<Eigen::Index>(quantity.branches.size()), quantity.branches.front().value);
+        const VectorX same = VectorX::Constant(quantity.branches.size(), quantity.branches.front().value);
         const std::vector<int> others = telling_branches(same, quantity.jacobian, ranges);
         if (others.empty()) continue;
-        Tie tie{quantity.of_objective, quantity.index, 1 + static_cast<int>(others.size()), quantity.jacobian.row(0).transpose(), {}};
+        Tie tie{quantity.of_objective, quantity.index, 1 + count_of(others), quantity.jacobian.row(0).transpose(), {}};
         tie.greatest = tie.least;
         for (const int j : others) {
             tie.least = tie.least.cwiseMin(quantity.jacobian.row(j).transpose());

@@ -55,7 +55,7 @@ PairClearance Clearance::certify(const Simulated& s) const {
     options.motion = range_.motion;
     const std::vector<core::clearance::PairRequest> request{{range_.a, range_.b, minimum_}};
     if (!range_.motion || range_.windows <= 1) return core::clearance::certify_clearance(s.model, s.trajectory, request, options).front();
-    const auto [first, last] = window_steps(static_cast<int>(s.trajectory.steps.size()), range_.window, range_.windows);
+    const auto [first, last] = window_steps(count_of(s.trajectory.steps), range_.window, range_.windows);
     PairClearance pair = core::clearance::certify_clearance(s.model, part_of(s.trajectory, first, last), request, options).front();
     if (pair.witness.step >= 0) pair.witness.step += first;
     return pair;
@@ -85,7 +85,7 @@ void Clearance::add_seeds(const Simulated& s, const Measurement& measured, doubl
 std::vector<Witness> Clearance::other_witnesses(const Simulated& s, const PairClearance& pair, double room) const {
     std::vector<Witness> near = adjoint::clearance::tied_features(s.model, s.trajectory, pair.a, pair.b, pair.witness, room);
     if (range_.motion) {
-        const auto [first, last] = window_steps(static_cast<int>(s.trajectory.steps.size()), range_.window, range_.windows);
+        const auto [first, last] = window_steps(count_of(s.trajectory.steps), range_.window, range_.windows);
         const std::vector<Witness> later =
             core::clearance::nearest_by_window(s.model, s.trajectory, {pair.a, pair.b}, {first, last, branch_windows},
                                                pair.witness.distance + room, std::min(window_accuracy * pair.upper, room));

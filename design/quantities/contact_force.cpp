@@ -44,7 +44,7 @@ Errors ContactForce::check(const core::model::Model& model, int steps) const {
         for (const core::base::Error& error : description::check_body(model, body)) errors.push_back(error);
     if (!errors.empty()) return errors;
     bool touches = false;
-    for (int other = 0; other < static_cast<int>(model.bodies.size()); ++other)
+    for (int other = 0; other < count_of(model.bodies); ++other)
         touches = touches || ((!of_.other || other == *of_.other) && may_collide(model, of_.body, other));
     if (!touches)
         errors.push_back({ErrorCode::inconsistent, "",

@@ -45,7 +45,7 @@ public:
 
     double effort() const {
         double sum = 0;
-        for_each_row([&](size_t i) { sum -= multipliers_[static_cast<Eigen::Index>(i)] / weight_; });
+        for_each_row([&](size_t i) { sum -= multipliers_[i] / weight_; });
         return sum;
     }
 
@@ -54,7 +54,7 @@ public:
 
     // Adds the seeds of scale (effort).
     void add_effort_seeds(double scale, VectorX& multiplier_bar) const {
-        for_each_row([&](size_t i) { multiplier_bar[static_cast<Eigen::Index>(i)] -= scale / weight_; });
+        for_each_row([&](size_t i) { multiplier_bar[i] -= scale / weight_; });
     }
 
     // Of scale (force . n), or of the torque.
@@ -74,8 +74,8 @@ public:
             if (body_of(m.a) == body_) v.head<6>() = motion;
             if (body_of(m.b) == body_) v.tail<6>() = motion;
             const double change = tangent_gradient(g.a).dot(v.head<6>()) + tangent_gradient(g.b).dot(v.tail<6>());
-            const double along = -scale * part.factor / weight_, carried = along * multipliers_[static_cast<Eigen::Index>(i)];
-            multiplier_bar[static_cast<Eigen::Index>(i)] += along * change;
+            const double along = -scale * part.factor / weight_, carried = along * multipliers_[i];
+            multiplier_bar[i] += along * change;
             add_placement_gradient_of_change(m, f, carried, {frames_, rotations_}, v, seeds.model_bar.mechanism.frames);
             seeds.model_bar.mechanism.row_factors[i][static_cast<size_t>(&part - mechanism_.rows[i].parts.data())] +=
                 carried / part.factor * change;
@@ -108,7 +108,7 @@ private:
         Vector6 sum = Vector6::Zero();
         for_each_part([&](size_t i, const RowPart& part, const Measure& m) {
             const core::measure::PoseGradients g = pose_gradients(m, vector_function(m, frames_), frames_);
-            const double carried = -part.factor * multipliers_[static_cast<Eigen::Index>(i)] / weight_;
+            const double carried = -part.factor * multipliers_[i] / weight_;
             if (body_of(m.a) == body_) sum += carried * tangent_gradient(g.a);
             if (body_of(m.b) == body_) sum += carried * tangent_gradient(g.b);
         });

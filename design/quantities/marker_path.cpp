@@ -39,7 +39,7 @@ MarkerPath::Place MarkerPath::nearest(const std::vector<Vector3>& path, const Ve
 
 std::vector<MarkerPath::Place> MarkerPath::places(const Simulated& s) const {
     std::vector<Vector3> path;
-    const int last = static_cast<int>(s.trajectory.poses.size()) - 1;
+    const int last = count_of(s.trajectory.poses) - 1;
     for (int t = 0; t <= last; ++t) path.push_back(marker_position(s, t, body_, point_));
     FETTLE_ASSERT(last >= 1, "a marker's path needs a step");
     std::vector<Place> result;

@@ -120,11 +120,11 @@ std::vector<std::size_t> best_first(const std::vector<Json>& results) {
 
 // Nothing if they are not all there, or far outside the bounds, where parts can be too large to be made.
 std::optional<VectorX> values_of(const description::Design& design, const Json& result) {
-    VectorX p(static_cast<Eigen::Index>(design.parameters.size()));
+    VectorX p(design.parameters.size());
     for (std::size_t k = 0; k < design.parameters.size(); ++k) {
         const Json value = member(member(result, "parameters"), design.parameters[k].name);
         if (!value.is_number()) return std::nullopt;
-        p[static_cast<Eigen::Index>(k)] = value.get<double>();
+        p[k] = value.get<double>();
     }
     if (!description::check_values(design.parameters, p).empty()) return std::nullopt;
     return p;

@@ -51,7 +51,7 @@ struct Node {
 // All nodes but those that are the end of the step before, each `every`th step's.
 std::vector<Node> nodes_of(const Trajectory& trajectory, int every) {
     std::vector<Node> nodes{{}};
-    const auto steps = static_cast<int>(trajectory.steps.size());
+    const auto steps = count_of(trajectory.steps);
     for (int t = 0; t < steps; ++t) {
         const int count = core::stepper::segment_count(trajectory, t);
         if ((t + 1) % every != 0 && t + 1 != steps) continue;

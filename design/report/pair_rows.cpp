@@ -43,7 +43,7 @@ int index_of(const core::model::Model& model, const std::string& name) {
 
 std::vector<PairRequest> pairs_that_may_collide(const core::model::Model& model) {
     std::vector<PairRequest> requests;
-    const auto count = static_cast<int>(model.bodies.size());
+    const auto count = count_of(model.bodies);
     for (int a = 0; a < count; ++a)
         for (int b = a + 1; b < count; ++b)
             if (core::model::may_collide(model, a, b)) requests.push_back({a, b, 0});
@@ -53,8 +53,8 @@ std::vector<PairRequest> pairs_that_may_collide(const core::model::Model& model)
 Json row_of(const PairClearance& pair, const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
     const core::clearance::Witness& w = pair.witness;
     const bool pushes = pair.status == core::clearance::PairStatus::contact;
-    return {{"a", model.bodies[static_cast<std::size_t>(pair.a)].name},
-            {"b", model.bodies[static_cast<std::size_t>(pair.b)].name},
+    return {{"a", model.bodies[pair.a].name},
+            {"b", model.bodies[pair.b].name},
             {"body_a", pair.a},
             {"body_b", pair.b},
             {"motion", true},
@@ -138,7 +138,7 @@ Json worst_poses(const Json& poses, const core::model::Model& model) {
     for (const core::model::Body& body : model.bodies) {
         core::kinematics::Pose pose = body.pose_start;
         if (const auto moved = poses.find(body.name); moved != poses.end()) {
-            for (int row = 0; row < 3; ++row) pose.rotation.row(row) = vector_of(moved->at("rotation").at(static_cast<std::size_t>(row)));
+            for (int row = 0; row < 3; ++row) pose.rotation.row(row) = vector_of(moved->at("rotation").at(row));
             pose.position = vector_of(moved->at("position")) + pose.rotation * body.reference_point;
         }
         append_pose(numbers, pose);
@@ -249,10 +249,10 @@ Json margin_curves(const Json& rows, const core::model::Model& model, const core
                    const std::function<bool()>& should_stop) {
     if (trajectory.steps.empty()) return {};
     std::vector<double> times;
-    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t)
+    for (int t = 0; t < count_of(trajectory.steps); ++t)
         for (int k = 0; k < core::stepper::segment_count(trajectory, t); ++k) times.push_back(core::stepper::time_at(trajectory, t, k, 0));
     const std::size_t stretches = times.size();
-    times.push_back(core::stepper::time_at(trajectory, static_cast<int>(trajectory.steps.size())));
+    times.push_back(core::stepper::time_at(trajectory, count_of(trajectory.steps)));
     Json curves = Json::array();
     std::vector<std::pair<int, int>> done;
     for (std::size_t k = 0; k < rows.size() && curves.size() < most_margins; ++k) {

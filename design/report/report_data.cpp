@@ -66,7 +66,7 @@ void add_optimisation(Json& data, const ReportSource& source) {
 
 // Of what steps of the motion an answer's pairs are.
 std::vector<StepRange> steps_of(const ReportSource& source, std::size_t pairs) {
-    const auto all = static_cast<int>(source.motion->trajectory.steps.size());
+    const auto all = count_of(source.motion->trajectory.steps);
     if (source.kind == ReportKind::clearance) return std::vector<StepRange>(pairs, {0, member(source.result, "motion") == true ? all : 0});
     std::vector<StepRange> steps;
     for (const auto& constraint : source.design ? source.design->constraints : std::vector<description::Constraint>()) {
@@ -92,7 +92,7 @@ Json pairs_of(const ReportSource& source, const std::function<bool()>& should_st
 
 void add_motion(Json& data, const ReportSource& source, const std::function<bool()>& should_stop) {
     const core::stepper::Trajectory& trajectory = source.motion->trajectory;
-    const auto steps = static_cast<int>(trajectory.steps.size());
+    const auto steps = count_of(trajectory.steps);
     data["motion"] = steps > 0;
     data["steps"] = steps;
     data["step"] = steps > 0 ? trajectory.timestep : 0.0;

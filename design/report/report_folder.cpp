@@ -58,7 +58,7 @@ Vector3 gravity_in(const std::string& text) {
     if (!json.is_object() || !json.contains("gravity") || !json["gravity"].is_array()) return gravity;
     const Json& list = json["gravity"];
     for (std::size_t k = 0; k < std::min<std::size_t>(3, list.size()); ++k)
-        if (list[k].is_number()) gravity[static_cast<Eigen::Index>(k)] = list[k].get<double>();
+        if (list[k].is_number()) gravity[k] = list[k].get<double>();
     return gravity;
 }
 
@@ -127,9 +127,9 @@ bool same_poses(const core::stepper::Trajectory& x, const core::stepper::Traject
 
 // Values of an answer's `parameters_start`, SI; nothing if they are not all there.
 std::optional<VectorX> start_values(const description::Design& design, const Json& result) {
-    VectorX p(static_cast<Eigen::Index>(design.parameters.size()));
+    VectorX p(design.parameters.size());
     for (Eigen::Index k = 0; k < p.size(); ++k) {
-        const description::Parameter& parameter = design.parameters[static_cast<std::size_t>(k)];
+        const description::Parameter& parameter = design.parameters[k];
         const Json start = result.value("parameters_start", Json());
         if (!start.is_object() || !start.contains(parameter.name) || !start[parameter.name].is_number()) return std::nullopt;
         p[k] = core::base::to_si(start[parameter.name].get<double>(), parameter.unit);
@@ -192,7 +192,7 @@ private:
         source_.linear = linear_motors(file.design.scene.mechanism);
         if (Errors errors = read_history(); !errors.empty()) return errors;
         source_.design = file.design;
-        for (Eigen::Index k = 0; k < values.size(); ++k) source_.design->parameters[static_cast<std::size_t>(k)].value = values[k];
+        for (Eigen::Index k = 0; k < values.size(); ++k) source_.design->parameters[k].value = values[k];
         if (!source_.motion) return {};
         std::optional<problem::DesignProblem> made;
         if (known == nullptr) {

@@ -58,7 +58,7 @@ bool TableRows::has(std::string_view column) const { return std::find(header_.be
 
 const std::string& TableRows::word(std::size_t row, std::string_view column) const {
     const auto found = std::find(header_.begin(), header_.end(), column);
-    return found == header_.end() ? no_word : rows_[row][static_cast<std::size_t>(found - header_.begin())];
+    return found == header_.end() ? no_word : rows_[row][found - header_.begin()];
 }
 
 double TableRows::number(std::size_t row, std::string_view column) const {

@@ -11,9 +11,9 @@ DimensionDual link_half_width(const LinkOutline& o, const DimensionDual& x) {
 
 // Points of a ring over the same angles as the end arc that starts at `first`.
 Ring ring_arc(const Ring& ring, int first) {
-    const int n = static_cast<int>(ring.size());
+    const int n = count_of(ring);
     Ring arc;
-    for (int i = first; i <= first + n / 2; ++i) arc.push_back(ring[static_cast<std::size_t>(i % n)]);
+    for (int i = first; i <= first + n / 2; ++i) arc.push_back(ring[i % n]);
     return arc;
 }
 
@@ -63,8 +63,8 @@ LinkFace add_link_face_vertices(const LinkOutline& o, const DimensionDual& big_r
 
 void add_link_face(const LinkFace& f, Facing facing, ShapeBuilder& builder) {
     const int n = builder.segments();
-    const auto big = [&](int i) { return f.big_ring[static_cast<std::size_t>(i)]; };
-    const auto small = [&](int i) { return f.small_ring[static_cast<std::size_t>(i)]; };
+    const auto big = [&](int i) { return f.big_ring[i]; };
+    const auto small = [&](int i) { return f.small_ring[i]; };
     add_link_end(f.big_arc, ring_arc(f.big_ring, n / 4), facing, builder);
     builder.add_quadrant_outside(f.left_top, f.big_ring, 0, facing);
     builder.add_quadrant_outside(f.left_bottom, f.big_ring, 3, facing);

@@ -34,7 +34,7 @@ public:
     /// @param segments  Segments of a full circle. Contract: a positive multiple of 4.
     explicit MeshBuilder(int segments) : circle_(unit_circle(segments)) {}
 
-    int segments() const { return static_cast<int>(circle_.size()); }
+    int segments() const { return count_of(circle_); }
     const std::vector<Point>& vertices() const { return vertices_; }
     const std::vector<Triangle>& triangles() const { return triangles_; }
 
@@ -45,7 +45,7 @@ public:
 
     int add_vertex(const Point& position) {
         vertices_.push_back(position);
-        return static_cast<int>(vertices_.size()) - 1;
+        return count_of(vertices_) - 1;
     }
 
     void add_triangle(int a, int b, int c, Facing facing = Facing::forward) {
@@ -70,7 +70,7 @@ public:
     Ring add_arc(const Circle& circle, int first, int last) {
         Ring arc;
         for (int i = first; i <= last; ++i) {
-            const auto& unit = circle_[static_cast<std::size_t>(i % segments())];
+            const auto& unit = circle_[i % segments()];
             arc.push_back(add_vertex(
                 point(circle.axis, circle.along, circle.centre_u + circle.radius * unit[0], circle.centre_v + circle.radius * unit[1])));
         }
@@ -109,9 +109,9 @@ public:
     /// Rectangle with a circular hole: each quadrant of the hole is fanned to its corner. Valid for a circle inside the rectangle.
     void add_rectangle_with_hole(const RectangleCorners& corners, const Ring& hole, Facing facing) {
         for (int quadrant = 0; quadrant < 4; ++quadrant) {
-            const int corner = corners[static_cast<std::size_t>(quadrant)];
+            const int corner = corners[quadrant];
             add_quadrant_outside(corner, hole, quadrant, facing);
-            add_triangle(corner, corners[static_cast<std::size_t>((quadrant + 1) % 4)], at(hole, (quadrant + 1) * segments() / 4), facing);
+            add_triangle(corner, corners[(quadrant + 1) % 4], at(hole, (quadrant + 1) * segments() / 4), facing);
         }
     }
 
@@ -120,9 +120,9 @@ public:
     void add_disc_with_rectangle(const Ring& rim, const RectangleCorners& corners, Facing facing) {
         const int count = segments() / 4;
         for (int quadrant = 0; quadrant < 4; ++quadrant) {
-            const int corner = corners[static_cast<std::size_t>(quadrant)];
+            const int corner = corners[quadrant];
             for (int i = quadrant * count; i < (quadrant + 1) * count; ++i) add_triangle(corner, at(rim, i), at(rim, i + 1), facing);
-            add_triangle(corners[static_cast<std::size_t>((quadrant + 1) % 4)], corner, at(rim, (quadrant + 1) * count), facing);
+            add_triangle(corners[(quadrant + 1) % 4], corner, at(rim, (quadrant + 1) * count), facing);
         }
     }
 

@@ -111,19 +111,19 @@ ProgramEnd wait_for(pid_t process, double time_limit) {
 
 // The same mesh in one order: programs write the same triangles in another order each time.
 core::geometry::Mesh in_order(const core::geometry::Mesh& mesh, const std::string& name) {
-    std::vector<Eigen::Index> order(static_cast<std::size_t>(mesh.vertices.cols()));
+    std::vector<Eigen::Index> order(mesh.vertices.cols());
     std::iota(order.begin(), order.end(), Eigen::Index{0});
     const auto place = [&](Eigen::Index i) { return std::array{mesh.vertices(0, i), mesh.vertices(1, i), mesh.vertices(2, i)}; };
     std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return place(a) < place(b); });
     Matrix3X vertices(3, mesh.vertices.cols());
     std::vector<int> renamed(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
-        vertices.col(static_cast<Eigen::Index>(k)) = mesh.vertices.col(order[k]);
-        renamed[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
+        vertices.col(k) = mesh.vertices.col(order[k]);
+        renamed[order[k]] = static_cast<int>(k);
     }
     std::vector<core::geometry::Triangle> triangles = mesh.triangles;
     for (core::geometry::Triangle& t : triangles) {
-        for (int& i : t) i = renamed[static_cast<std::size_t>(i)];
+        for (int& i : t) i = renamed[i];
         std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     }
     std::sort(triangles.begin(), triangles.end());
@@ -152,7 +152,7 @@ Errors check_program(const MeshProgram& program, const std::vector<ShapeDimensio
         filled(word, [&](const std::string& name) {
             const auto found = std::find(known.begin(), known.end(), name);
             if (found != known.end()) {
-                named[static_cast<std::size_t>(found - known.begin())] = true;
+                named[found - known.begin()] = true;
             } else {
                 errors.push_back(
                     {ErrorCode::unknown_key, "program", "{" + name + "} is not a dimension; " + core::files::did_you_mean(name, known)});

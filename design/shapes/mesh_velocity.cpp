@@ -30,14 +30,14 @@ bool have_same_topology(const Mesh& a, const Mesh& b) {
 // The same triangle begins with its least vertex.
 Triangle turned(const Triangle& t) {
     const auto least = std::min_element(t.begin(), t.end()) - t.begin();
-    return {t[static_cast<std::size_t>(least)], t[static_cast<std::size_t>((least + 1) % 3)], t[static_cast<std::size_t>((least + 2) % 3)]};
+    return {t[least], t[(least + 1) % 3], t[(least + 2) % 3]};
 }
 
 std::set<Triangle> triangle_set(const Mesh& mesh, const std::vector<int>* renamed = nullptr) {
     std::set<Triangle> all;
     for (Triangle t : mesh.triangles) {
         if (renamed != nullptr)
-            for (int& i : t) i = (*renamed)[static_cast<std::size_t>(i)];
+            for (int& i : t) i = (*renamed)[i];
         all.insert(turned(t));
     }
     return all;
@@ -47,15 +47,15 @@ std::set<Triangle> triangle_set(const Mesh& mesh, const std::vector<int>* rename
 std::optional<Matrix3X> matched_vertices(const Mesh& at, const Mesh& other) {
     if (at.vertices.cols() != other.vertices.cols() || at.triangles.size() != other.triangles.size()) return std::nullopt;
     if (at.triangles == other.triangles) return other.vertices;
-    std::vector<int> partner(static_cast<std::size_t>(other.vertices.cols()));
+    std::vector<int> partner(other.vertices.cols());
     std::vector<bool> taken(partner.size(), false);
     Matrix3X matched(3, at.vertices.cols());
     for (Eigen::Index j = 0; j < other.vertices.cols(); ++j) {
         Eigen::Index nearest = 0;
         (at.vertices.colwise() - other.vertices.col(j)).colwise().squaredNorm().minCoeff(&nearest);
-        if (taken[static_cast<std::size_t>(nearest)]) return std::nullopt;
-        taken[static_cast<std::size_t>(nearest)] = true;
-        partner[static_cast<std::size_t>(j)] = static_cast<int>(nearest);
+        if (taken[nearest]) return std::nullopt;
+        taken[nearest] = true;
+        partner[j] = static_cast<int>(nearest);
         matched.col(nearest) = other.vertices.col(j);
     }
     if (triangle_set(at) != triangle_set(other, &partner)) return std::nullopt;
@@ -91,7 +91,7 @@ public:
 private:
     Eigen::Index count() const { return static_cast<Eigen::Index>(mesh_.triangles.size()); }
     std::array<Vector3, 3> corners(Eigen::Index f) const {
-        const Triangle& t = mesh_.triangles[static_cast<std::size_t>(f)];
+        const Triangle& t = mesh_.triangles[f];
         return {mesh_.vertices.col(t[0]), mesh_.vertices.col(t[1]), mesh_.vertices.col(t[2])};
     }
 
@@ -122,7 +122,7 @@ MeshVelocity normal_velocity(const Mesh& at, const Mesh& plus, const Mesh& minus
         double speed;
     };
     std::vector<Row> rows;
-    std::vector<NormalSum> sums(static_cast<std::size_t>(at.vertices.cols()));
+    std::vector<NormalSum> sums(at.vertices.cols());
     for (const Triangle& t : at.triangles) {
         const Vector3 a = at.vertices.col(t[0]), b = at.vertices.col(t[1]), c = at.vertices.col(t[2]);
         const Vector3 doubled = (b - a).cross(c - a);
@@ -132,14 +132,14 @@ MeshVelocity normal_velocity(const Mesh& at, const Mesh& plus, const Mesh& minus
             const Vector3 point = 0.75 * Vector3(at.vertices.col(i)) + 0.25 * middle;
             const double speed = normal.dot(above.closest(point) - below.closest(point)) / width;
             rows.push_back({i, normal, speed});
-            sums[static_cast<std::size_t>(i)].matrix += normal * normal.transpose();
-            sums[static_cast<std::size_t>(i)].right += normal * speed;
+            sums[i].matrix += normal * normal.transpose();
+            sums[i].right += normal * speed;
         }
     }
     MeshVelocity found;
     found.by_normals = true;
     found.velocity.resize(3, at.vertices.cols());
-    for (Eigen::Index i = 0; i < found.velocity.cols(); ++i) found.velocity.col(i) = least_velocity(sums[static_cast<std::size_t>(i)]);
+    for (Eigen::Index i = 0; i < found.velocity.cols(); ++i) found.velocity.col(i) = least_velocity(sums[i]);
     for (const Row& row : rows) found.misfit = std::max(found.misfit, std::abs(row.normal.dot(found.velocity.col(row.vertex)) - row.speed));
     return found;
 }

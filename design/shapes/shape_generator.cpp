@@ -39,9 +39,9 @@ void check_names(const GeneratorInfo& info, const std::map<std::string, double>&
 
 Dimensions read_dimensions(const GeneratorInfo& info, const std::map<std::string, double>& given, Errors& errors) {
     Dimensions dimensions;
-    const int count = static_cast<int>(info.dimensions.size());
+    const int count = count_of(info.dimensions);
     for (int k = 0; k < count; ++k) {
-        const DimensionInfo& dimension = info.dimensions[static_cast<std::size_t>(k)];
+        const DimensionInfo& dimension = info.dimensions[k];
         const auto found = given.find(dimension.name);
         const double value = found == given.end() ? dimension.default_value : found->second;
         const std::string where = info.name + "/" + dimension.name;
@@ -74,7 +74,7 @@ GeneratedShape shape_of(const GeneratorInfo& info, const ShapeBuilder& builder) 
     }
     for (Eigen::Index i = 0; i < count; ++i) {
         for (int axis = 0; axis < 3; ++axis) {
-            const DimensionDual& x = builder.vertices()[static_cast<std::size_t>(i)][static_cast<std::size_t>(axis)];
+            const DimensionDual& x = builder.vertices()[i][axis];
             vertices(axis, i) = x.value;
             for (std::size_t k = 0; k < shape.jacobian.size(); ++k) shape.jacobian[k](axis, i) = x.derivative(static_cast<int>(k));
         }

@@ -162,7 +162,7 @@ private:
         for (std::size_t k = 0; good && k < 3; ++k) {
             const auto value = core::files::parsed_number(words[k]);
             good = value && std::abs(*value) <= 1e30;
-            if (good) out[static_cast<Eigen::Index>(k)] = *value;
+            if (good) out[k] = *value;
         }
         if (!good) xml_.fail(ErrorCode::parse, "the attribute `" + std::string(key) + "` is not three numbers");
         return out;

@@ -37,8 +37,8 @@ Mesh sphere_mesh(double radius) {
     for (int round = 0; round < sphere_rounds; ++round) {
         std::map<std::array<int, 2>, int> middles;
         const auto middle = [&](int a, int b) {
-            const auto [found, added] = middles.insert({{std::min(a, b), std::max(a, b)}, static_cast<int>(vertices.size())});
-            if (added) vertices.push_back((vertices[static_cast<std::size_t>(a)] + vertices[static_cast<std::size_t>(b)]).normalized());
+            const auto [found, added] = middles.insert({{std::min(a, b), std::max(a, b)}, count_of(vertices)});
+            if (added) vertices.push_back((vertices[a] + vertices[b]).normalized());
             return found->second;
         };
         std::vector<core::geometry::Triangle> finer;
@@ -48,8 +48,8 @@ Mesh sphere_mesh(double radius) {
         }
         triangles = std::move(finer);
     }
-    Matrix3X x(3, static_cast<Eigen::Index>(vertices.size()));
-    for (std::size_t i = 0; i < vertices.size(); ++i) x.col(static_cast<Eigen::Index>(i)) = radius * vertices[i];
+    Matrix3X x(3, vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) x.col(i) = radius * vertices[i];
     return core::geometry::make_mesh("sphere", x, triangles);
 }
 
@@ -109,13 +109,13 @@ Result<Mesh> link_mesh(const Link& link, const ImportOptions& options) {
         const Result<Mesh> mesh = mesh_of(geometry, options);
         errors.insert(errors.end(), mesh.errors().begin(), mesh.errors().end());
         if (!mesh) continue;
-        const int first = static_cast<int>(vertices.size());
+        const int first = count_of(vertices);
         for (const auto& x : mesh->vertices.colwise()) vertices.push_back(core::kinematics::world_position(geometry.origin, x));
         for (const auto& t : mesh->triangles) triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }
     if (!errors.empty()) return errors;
-    Matrix3X x(3, static_cast<Eigen::Index>(vertices.size()));
-    for (std::size_t i = 0; i < vertices.size(); ++i) x.col(static_cast<Eigen::Index>(i)) = vertices[i];
+    Matrix3X x(3, vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) x.col(i) = vertices[i];
     return core::geometry::make_mesh(link.name, x, triangles);
 }
 
@@ -167,8 +167,7 @@ private:
             if (parent_joint_.count(robot_.links[i].name) != 0) continue;
             if (root_ >= 0)
                 errors_.push_back({ErrorCode::inconsistent, robot_.name,
-                                   "two links have no parent: \"" + robot_.links[static_cast<std::size_t>(root_)].name + "\" and \"" +
-                                       robot_.links[i].name + "\""});
+                                   "two links have no parent: \"" + robot_.links[root_].name + "\" and \"" + robot_.links[i].name + "\""});
             root_ = static_cast<int>(i);
         }
         if (root_ < 0) errors_.push_back({ErrorCode::inconsistent, robot_.name, "every link has a parent, so that there is no root"});

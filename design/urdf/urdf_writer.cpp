@@ -94,10 +94,10 @@ private:
     void find_tree() {
         std::vector<bool> placed(scene_.bodies.size());
         std::vector<bool> used(scene_.mechanism.joints.size());
-        const auto is_placed = [&](int body) { return body == world || placed[static_cast<std::size_t>(body)]; };
+        const auto is_placed = [&](int body) { return body == world || placed[body]; };
         const auto hang = [&](int body, Hanging from) {
-            hanging_[static_cast<std::size_t>(body)] = from;
-            placed[static_cast<std::size_t>(body)] = true;
+            hanging_[body] = from;
+            placed[body] = true;
         };
         for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
             if (stays(scene_.bodies[i])) hang(static_cast<int>(i), {world, nullptr, false, scene_.bodies[i].pose});
@@ -109,14 +109,14 @@ private:
                 if (used[j] || is_coupling(joint) || is_placed(a) == is_placed(b)) continue;
                 const bool turned = is_placed(b);
                 const core::scene::Attachment& end = turned ? joint.a : joint.b;
-                const Pose& pose = scene_.bodies[static_cast<std::size_t>(turned ? a : b)].pose;
+                const Pose& pose = scene_.bodies[turned ? a : b].pose;
                 hang(turned ? a : b, {turned ? b : a, &joint, turned, {pose.rotation, core::kinematics::world_position(pose, end.point)}});
                 used[j] = again = true;
             }
             const auto left = std::find(placed.begin(), placed.end(), false);
             if (again || left == placed.end()) continue;
             const int root = static_cast<int>(left - placed.begin());
-            hang(root, {world, nullptr, false, scene_.bodies[static_cast<std::size_t>(root)].pose});
+            hang(root, {world, nullptr, false, scene_.bodies[root].pose});
             again = true;
         }
         for (std::size_t j = 0; j < used.size(); ++j) {
@@ -181,8 +181,8 @@ private:
     std::string joint_text(std::size_t i) const {
         const Hanging& from = hanging_[i];
         const core::scene::Body& body = scene_.bodies[i];
-        const std::string parent = from.parent == world ? "world" : links_[static_cast<std::size_t>(from.parent)];
-        const Pose above = from.parent == world ? Pose{} : hanging_[static_cast<std::size_t>(from.parent)].frame;
+        const std::string parent = from.parent == world ? "world" : links_[from.parent];
+        const Pose above = from.parent == world ? Pose{} : hanging_[from.parent].frame;
         const std::string type = from.joint ? type_of(*from.joint) : stays(body) ? "fixed" : "floating";
         std::string text = "<joint name=" + in_quotes(carriers_[i]) + " type=\"" + type + "\"><parent link=" + in_quotes(parent) +
                            "/><child link=" + in_quotes(links_[i]) + "/>" + origin_text(composed(inverse(above), from.frame));

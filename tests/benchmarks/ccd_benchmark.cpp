@@ -55,7 +55,7 @@ std::vector<RigidQuery> passing_queries(int count) {
     std::uniform_real_distribution<double> uniform;
     const auto vector = [&] { return Vector3(normal(random), normal(random), normal(random)); };
     std::vector<RigidQuery> all;
-    while (static_cast<int>(all.size()) < count) {
+    while (count_of(all) < count) {
         RigidQuery q;
         q.type = uniform(random) < 0.5 ? core::geometry::PairType::point_triangle : core::geometry::PairType::edge_edge;
         for (Vector3& x : q.X) x = 0.5 * vector();

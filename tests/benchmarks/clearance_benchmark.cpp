@@ -100,7 +100,7 @@ std::vector<double> least_at_nodes(const model::Model& model, const stepper::Tra
     for (const PairRequest& pair : pairs) {
         const PieceTree &a = trees[pair.a], &b = trees[pair.b];
         std::vector<PairSegment> segments;
-        for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t)
+        for (int t = 0; t < count_of(trajectory.steps); ++t)
             for (int k = 0; k < stepper::segment_count(trajectory, t); ++k)
                 segments.push_back(pair_segment(stepper::path_segment(trajectory, t, k, pair.a),
                                                 stepper::path_segment(trajectory, t, k, pair.b), a.radius(), b.radius()));
@@ -121,9 +121,9 @@ int main(int argc, char** argv) {
     const model::Model model = chain(links);
     std::size_t triangles = 0;
     std::vector<PairRequest> pairs;
-    for (int a = 0; a < static_cast<int>(model.bodies.size()); ++a) {
+    for (int a = 0; a < count_of(model.bodies); ++a) {
         triangles += model.bodies[a].mesh.triangles.size();
-        for (int b = a + 1; b < static_cast<int>(model.bodies.size()); ++b) pairs.push_back({a, b, 0});
+        for (int b = a + 1; b < count_of(model.bodies); ++b) pairs.push_back({a, b, 0});
     }
     stepper::SimulationOptions simulate;
     simulate.steps = steps;

@@ -48,7 +48,7 @@ model::Model flagship(const std::string& folder) {
 
 // Of the last body's position, and a little of all poses.
 adjoint::TrajectoryGradient seed_of(const model::Model& model, int steps) {
-    adjoint::TrajectoryGradient seed = adjoint::zero_trajectory_gradient(steps, static_cast<int>(model.bodies.size()));
+    adjoint::TrajectoryGradient seed = adjoint::zero_trajectory_gradient(steps, count_of(model.bodies));
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> unit(-1, 1);
     for (auto& bodies : seed.pose_bar)
@@ -63,7 +63,7 @@ struct Entry {
 
 // Of the sweep and of the parameters that hang on these entries, each with weight 1.
 Times sweep_times(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<Entry>& entries, int parameters) {
-    const adjoint::TrajectoryGradient seed = seed_of(model, static_cast<int>(trajectory.steps.size()));
+    const adjoint::TrajectoryGradient seed = seed_of(model, count_of(trajectory.steps));
     Times least;
     for (int trial = 0; trial < 9; ++trial) {
         const auto begin = std::chrono::steady_clock::now();
@@ -86,7 +86,7 @@ Times sweep_times(const model::Model& model, const stepper::Trajectory& trajecto
 
 // Forwards against backwards along a random direction in all vertices.
 double disagreement(const model::Model& model, const stepper::Trajectory& trajectory) {
-    const int steps = static_cast<int>(trajectory.steps.size());
+    const int steps = count_of(trajectory.steps);
     const adjoint::TrajectoryGradient seed = seed_of(model, steps);
     adjoint::ModelTangent direction = adjoint::zero_model_tangent(model, steps);
     std::mt19937_64 random(2);

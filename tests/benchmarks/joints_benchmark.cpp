@@ -118,8 +118,7 @@ double energy(const model::Model& model, const stepper::Trajectory& t) {
 }
 
 double backward_milliseconds(const model::Model& model, const stepper::Trajectory& trajectory) {
-    adjoint::TrajectoryGradient seed =
-        adjoint::zero_trajectory_gradient(static_cast<int>(trajectory.steps.size()), static_cast<int>(model.bodies.size()));
+    adjoint::TrajectoryGradient seed = adjoint::zero_trajectory_gradient(count_of(trajectory.steps), count_of(model.bodies));
     seed.pose_bar.back().back()(1, 3) = 1;
     const auto begin = std::chrono::steady_clock::now();
     const auto gradient = adjoint::stepper::reverse_sweep(model, trajectory, {seed});

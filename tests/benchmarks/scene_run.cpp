@@ -60,13 +60,13 @@ bool is_finite(const Trajectory& trajectory) {
 /// All steps, in an order that spreads whatever part of them there is time for: 0, then strides that halve.
 std::vector<int> spread_order(int count) {
     std::vector<int> order;
-    std::vector<bool> taken(static_cast<std::size_t>(count), false);
+    std::vector<bool> taken(count, false);
     int stride = 1;
     while (stride < count) stride *= 2;
     for (; stride >= 1; stride /= 2)
         for (int i = 0; i < count; i += stride) {
-            if (taken[static_cast<std::size_t>(i)]) continue;
-            taken[static_cast<std::size_t>(i)] = true;
+            if (taken[i]) continue;
+            taken[i] = true;
             order.push_back(i);
         }
     return order;
@@ -77,7 +77,7 @@ void check_intersections(const core::model::Model& model, const Trajectory& traj
     support::IntersectionReport found;
     const support::IntersectionOracle oracle(model);
     const double start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
-    for (const int step : spread_order(static_cast<int>(trajectory.steps.size()))) {
+    for (const int step : spread_order(count_of(trajectory.steps))) {
         oracle.look_at_step(trajectory, step, options.instants_between, enough, found);
         ++row.steps_checked;
         if (found.intersections.size() >= enough || clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start > options.check_seconds) break;
@@ -104,7 +104,7 @@ Simulation timed_run(const core::model::Model& model, const RunOptions& options,
 void describe(const Simulation& run, SceneRow& row) {
     row.status = to_string(run.report.status);
     row.message = run.report.message;
-    row.steps = static_cast<int>(run.trajectory.steps.size());
+    row.steps = count_of(run.trajectory.steps);
     row.newton_iterations = run.report.newton_iterations;
     row.minimum_distance = std::numeric_limits<double>::infinity();
     for (const core::stepper::StepReport& step : run.report.steps) {

@@ -79,9 +79,9 @@ bool holds_its_elements(const geometry::BodyHierarchy& hierarchy, const geometry
     for (const geometry::HierarchyNode& node : hierarchy.nodes()) {
         if (!node.is_leaf()) continue;
         for (int i = node.first; i < node.first + node.count; ++i, ++seen) {
-            const geometry::HierarchyElement& element = hierarchy.elements()[static_cast<std::size_t>(i)];
+            const geometry::HierarchyElement& element = hierarchy.elements()[i];
             for (int k = 0; k < element.vertex_count; ++k) {
-                const Vector3 x = mesh.vertices.col(element.vertices[static_cast<std::size_t>(k)]);
+                const Vector3 x = mesh.vertices.col(element.vertices[k]);
                 if (((x - node.center).cwiseAbs() - node.half_extent).maxCoeff() > 0) return false;
             }
         }

@@ -54,7 +54,7 @@ void run_scene(const std::string& path, const model::Model& model, int steps, in
     stepper::SimulationOptions options;
     options.steps = steps;
     const stepper::Simulation simulation = stepper::simulate(model, options);
-    const int done = static_cast<int>(simulation.trajectory.steps.size());
+    const int done = count_of(simulation.trajectory.steps);
     INFO("step " << done << " of " << steps << ": " << to_string(simulation.report.status) << " " << simulation.report.message);
     CHECK(simulation.report.status == stepper::SimulationStatus::ok);
     bool finite = true;

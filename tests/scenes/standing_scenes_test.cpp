@@ -32,7 +32,7 @@ struct Run {
     }
 
     const std::vector<kinematics::Pose>& poses_at(double time) const {
-        return simulation.trajectory.poses[static_cast<std::size_t>(std::lround(time / model.timestep))];
+        return simulation.trajectory.poses[std::lround(time / model.timestep)];
     }
 
     /// The furthest that any point of any body gets from where it was at `from`, seen at `to`.

@@ -64,7 +64,7 @@ bool stay_apart(const model::Model& model, const stepper::Trajectory& trajectory
 }
 
 bool never_meet(const model::Model& model, const stepper::Trajectory& trajectory) {
-    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t)
+    for (int t = 0; t < count_of(trajectory.steps); ++t)
         for (int k = 0; k < segment_count(trajectory, t); ++k) {
             double speed = 0;
             for (int body = 0; body < 2; ++body) {

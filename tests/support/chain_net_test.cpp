@@ -39,7 +39,7 @@ TEST_CASE("a net of n x n has its bodies and its links", "[support]") {
     for (const int n : {3, 8}) {
         const auto scene = core::scene_files::parse_scene(chain_net_scene(n), path);
         REQUIRE(scene.has_value());
-        CHECK(static_cast<int>(scene->bodies.size()) == n * n - 4 + 2 * (n - 2) * (n - 1));
+        CHECK(count_of(scene->bodies) == n * n - 4 + 2 * (n - 2) * (n - 1));
     }
 }
 

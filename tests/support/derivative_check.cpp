@@ -104,7 +104,7 @@ TaylorCheck check_taylor(const ScalarFunction& f, const VectorX& x, const Vector
         log_h.push_back(std::log(h));
         log_remainder.push_back(std::log(remainder));
     }
-    check.points = static_cast<int>(log_h.size());
+    check.points = count_of(log_h);
     check.below_rounding = finite && check.points == 0;
     if (!finite || check.points < 2) return check;
     // The four smallest steps that stand clear of rounding: farthest into the range where the leading term rules.

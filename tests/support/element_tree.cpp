@@ -19,17 +19,17 @@ std::vector<Element> elements_of(const core::geometry::Mesh& mesh) {
         elements.push_back({ElementKind::triangle, static_cast<int>(i), t});
         for (int k = 0; k < 3; ++k) of_triangles.insert({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
     }
-    std::vector<bool> used(static_cast<std::size_t>(mesh.vertices.cols()), false);
+    std::vector<bool> used(mesh.vertices.cols(), false);
     for (const auto& t : mesh.triangles)
-        for (const int v : t) used[static_cast<std::size_t>(v)] = true;
+        for (const int v : t) used[v] = true;
     for (std::size_t i = 0; i < mesh.edges.size(); ++i) {
         const auto [a, b] = mesh.edges[i];
-        used[static_cast<std::size_t>(a)] = used[static_cast<std::size_t>(b)] = true;
+        used[a] = used[b] = true;
         if (of_triangles.count({std::min(a, b), std::max(a, b)}) == 0)
             elements.push_back({ElementKind::edge, static_cast<int>(i), {a, b, b}});
     }
-    for (int v = 0; v < static_cast<int>(used.size()); ++v)
-        if (!used[static_cast<std::size_t>(v)]) elements.push_back({ElementKind::point, v, {v, v, v}});
+    for (int v = 0; v < count_of(used); ++v)
+        if (!used[v]) elements.push_back({ElementKind::point, v, {v, v, v}});
     return elements;
 }
 
@@ -62,7 +62,7 @@ Spread spread_of(const core::kinematics::PathSegment& path, double duration) {
 
 ElementTree::ElementTree(const core::geometry::Mesh& mesh) : elements_(elements_of(mesh)) {
     for (const Element& element : elements_) has_loose_elements_ |= element.kind != ElementKind::triangle;
-    build(0, static_cast<int>(elements_.size()), mesh);
+    build(0, count_of(elements_), mesh);
     for (const Node& node : nodes_)
         if (node.left < 0) element_size_ += node.half.maxCoeff() / static_cast<double>(elements_.size());
 }
@@ -85,7 +85,7 @@ int ElementTree::build(int first, int count, const core::geometry::Mesh& mesh) {
     node.center = box.center();
     node.half = box.sizes() * (0.5 + rounding);
     node.first = first, node.count = count;
-    const int here = static_cast<int>(nodes_.size());
+    const int here = count_of(nodes_);
     nodes_.push_back(node);
     if (count <= leaf_size) return here;
     int axis = 0;

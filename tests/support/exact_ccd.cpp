@@ -131,7 +131,7 @@ bool contact(PairType type, const PairVertices& t0, const PairVertices& t1, int 
     for (std::size_t i = 0; i < 4; ++i)
         for (int k = 0; k < 3; ++k) {
             const Integer a = scaled(t0[i][k], exponent, Integer()), b = scaled(t1[i][k], exponent, Integer());
-            Polynomial<Integer>& p = x[i][static_cast<std::size_t>(k)];
+            Polynomial<Integer>& p = x[i][k];
             p.c[0] = a;
             p.c[1] = b - a;
             p.size = 2;
@@ -200,7 +200,7 @@ bool surely_farther(PairType type, const PairVertices& t0, const PairVertices& t
     for (std::size_t i = 0; i < 4; ++i)
         for (int k = 0; k < 3; ++k) {
             const Real a = t0[i][k], b = t1[i][k];
-            x[i][static_cast<std::size_t>(k)] = a + static_cast<Real>(t) * (b - a);
+            x[i][k] = a + static_cast<Real>(t) * (b - a);
             size = std::max({size, std::abs(a), std::abs(b)});
         }
     const std::size_t first_count = type == PairType::point_triangle ? 1 : 2;
@@ -236,8 +236,7 @@ bool exact_distance_at_most(PairType type, const PairVertices& t0, const PairVer
     if (surely_farther(type, t0, t1, t, distance)) return false;
     std::array<Fixed, 4> x;
     for (std::size_t i = 0; i < 4; ++i)
-        for (int k = 0; k < 3; ++k)
-            x[i][static_cast<std::size_t>(k)] = Number(t0[i][k]) + Number(t) * (Number(t1[i][k]) - Number(t0[i][k]));
+        for (int k = 0; k < 3; ++k) x[i][k] = Number(t0[i][k]) + Number(t) * (Number(t1[i][k]) - Number(t0[i][k]));
     return distance_squared(type, x) <= Number(distance) * Number(distance);
 }
 

@@ -123,9 +123,7 @@ private:
     /// Width that keeps the box's image within the tolerance: a third of it per dimension, by the longest edge of the corner hexahedron.
     void set_dimension_tolerances() {
         std::array<double, 3> length{0, 0, 0};
-        const auto lengthen = [&](int k, const Vector3& edge) {
-            length[static_cast<std::size_t>(k)] = std::max(length[static_cast<std::size_t>(k)], edge.cwiseAbs().maxCoeff());
-        };
+        const auto lengthen = [&](int k, const Vector3& edge) { length[k] = std::max(length[k], edge.cwiseAbs().maxCoeff()); };
         for (const double a : {0.0, 1.0}) {
             for (const double b : {0.0, 1.0}) {
                 lengthen(0, difference(x_t1_, a, b) - difference(x_t0_, a, b));

@@ -157,7 +157,7 @@ void search_all(const core::model::Model& model, const std::vector<ElementTree>&
     std::vector<Eigen::AlignedBox3d> boxes;
     const double spacing = times.size() > 1 ? times[1] - times[0] : 0;
     for (std::size_t i = 0; i < bodies.size(); ++i) boxes.push_back(swept_box(trees[i], bodies[i], spacing));
-    const int count = static_cast<int>(bodies.size());
+    const int count = count_of(bodies);
     for (where.body_a = 0; where.body_a < count; ++where.body_a)
         for (where.body_b = where.body_a + 1; where.body_b < count; ++where.body_b) {
             if (!boxes[where.body_a].intersects(boxes[where.body_b])) continue;
@@ -173,8 +173,8 @@ std::vector<std::pair<int, int>> intersecting_pairs(const std::vector<SpaceTrian
     std::vector<std::pair<int, int>> pairs;
     const auto mesh_of = [](const std::vector<SpaceTriangle>& triangles) {
         core::geometry::Mesh mesh;
-        mesh.vertices.resize(3, static_cast<Eigen::Index>(3 * triangles.size()));
-        for (int i = 0; i < static_cast<int>(triangles.size()); ++i) {
+        mesh.vertices.resize(3, 3 * triangles.size());
+        for (int i = 0; i < count_of(triangles); ++i) {
             for (int k = 0; k < 3; ++k) mesh.vertices.col(3 * i + k) = triangles[i][k];
             mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
         }
@@ -248,7 +248,7 @@ IntersectionReport find_intersections(const core::model::Model& model, const cor
                                       std::size_t max_count) {
     IntersectionReport report;
     const IntersectionOracle oracle(model);
-    const int steps = static_cast<int>(trajectory.steps.size());
+    const int steps = count_of(trajectory.steps);
     for (int step = 0; step < steps; ++step) oracle.look_at_step(trajectory, step, instants_between, max_count, report);
     Intersection end;
     end.step = steps > 0 ? steps : -1;

@@ -136,15 +136,14 @@ inline core::stepper::Simulation run(const core::model::Model& model, int steps,
     core::stepper::Simulation out = core::stepper::simulate(model, options);
     INFO(out.report.message);
     REQUIRE(out.report.status == core::stepper::SimulationStatus::ok);
-    REQUIRE(static_cast<int>(out.outputs.size()) == steps);
+    REQUIRE(count_of(out.outputs) == steps);
     return out;
 }
 
 /// Where a point of a body's file frame is.
 inline Vector3 place(const core::model::Model& model, const core::stepper::Simulation& run, int step, int body, const Vector3& point) {
     const auto i = static_cast<std::size_t>(body);
-    return core::kinematics::world_position(run.trajectory.poses[static_cast<std::size_t>(step)][i],
-                                            point - model.bodies[i].reference_point);
+    return core::kinematics::world_position(run.trajectory.poses[step][i], point - model.bodies[i].reference_point);
 }
 
 }  // namespace fettle::tests::mechanisms

@@ -78,7 +78,7 @@ Case bent_case(std::mt19937& random, int nodes) {
     Case c = random_case(random, true);
     c.poses.pop_back();
     std::uniform_real_distribution<double> u(0.1, 0.3);
-    c.bends.resize(static_cast<std::size_t>(nodes));
+    c.bends.resize(nodes);
     for (std::size_t k = 0; k < c.bends.size(); ++k)
         for (std::size_t i = 0; i < 2; ++i)
             c.bends[k].push_back({0.3 * static_cast<double>(k + 1), random_vector(random, u(random)), random_vector(random, u(random))});
@@ -95,8 +95,8 @@ TEST_CASE("Nodes of a path that say nothing of how they move: no derivative besi
         const PairClearance pair = c.certify();
         if (pair.upper < 0.05) continue;
         const auto gradient = adjoint::clearance::clearance_gradient(c.model, c.trajectory(), 0, 1, pair.witness);
-        const bool is_end = (pair.witness.segment == 0 && pair.witness.s == 0) ||
-                            (pair.witness.segment == static_cast<int>(c.bends.size()) && pair.witness.s == 1);
+        const bool is_end =
+            (pair.witness.segment == 0 && pair.witness.s == 0) || (pair.witness.segment == count_of(c.bends) && pair.witness.s == 1);
         at_ends += is_end;
         beside += !is_end;
         CAPTURE(i, pair.witness.segment, pair.witness.s, gradient.refusal);
@@ -158,8 +158,7 @@ TEST_CASE("The stored path's own derivative: nodes and base, whatever moves them
             const auto part = adjoint::clearance::segment_gradient(c.model, stored, 0, 1, pair.witness, b);
             REQUIRE(part);
             gradient.segment<3>(3 * b) = part->base_bar;
-            for (int k = 0; k < 2; ++k)
-                gradient.segment<6>(6 + 12 * (pair.witness.segment + k) + 6 * b) = part->node_bar[static_cast<std::size_t>(k)];
+            for (int k = 0; k < 2; ++k) gradient.segment<6>(6 + 12 * (pair.witness.segment + k) + 6 * b) = part->node_bar[k];
         }
         tests::support::StepSweep sweep;
         sweep.largest = 1e-4;

@@ -35,7 +35,7 @@ void check_one_sided(const Case& c, int directions, int least_witnesses, double 
     std::normal_distribution<double> normal;
     const PairClearance pair = c.certify();
     CAPTURE(pair.witnesses.size());
-    CHECK(static_cast<int>(pair.witnesses.size()) >= least_witnesses);
+    CHECK(count_of(pair.witnesses) >= least_witnesses);
     int differ = 0;
     for (int i = 0; i < directions; ++i) {
         VectorX v(coordinate_count(c));

@@ -24,15 +24,15 @@ core::model::Body sized_body(const Solid& solid) {
 double own_distance(const Case& c, const Witness& w) {
     const auto trajectory = c.trajectory();
     const auto corners = [&](int body, core::clearance::Primitive kind, int index) {
-        const core::geometry::Mesh& mesh = c.model.bodies[static_cast<std::size_t>(body)].mesh;
+        const core::geometry::Mesh& mesh = c.model.bodies[body].mesh;
         const Pose pose = pose_at(trajectory, w.step, w.segment, w.s, body);
         std::vector<Vector3> x;
         const auto add = [&](int v) { x.push_back(pose.rotation * mesh.vertices.col(v) + pose.position); };
         if (kind == core::clearance::Primitive::vertex) add(index);
         if (kind == core::clearance::Primitive::edge)
-            for (const int v : mesh.edges[static_cast<std::size_t>(index)]) add(v);
+            for (const int v : mesh.edges[index]) add(v);
         if (kind == core::clearance::Primitive::triangle)
-            for (const int v : mesh.triangles[static_cast<std::size_t>(index)]) add(v);
+            for (const int v : mesh.triangles[index]) add(v);
         return x;
     };
     const auto a = corners(0, w.kind_a, w.primitive_a), b = corners(1, w.kind_b, w.primitive_b);
@@ -107,8 +107,8 @@ TEST_CASE("Each window's nearest instant is found, but none on a slope towards t
     CHECK(std::min(both[0].distance, both[1].distance) == Approx(pair.upper).epsilon(1e-8));
     for (int t = 0; t < 2; ++t) {
         Case part = c;
-        part.poses = {c.poses[static_cast<std::size_t>(t)], c.poses[static_cast<std::size_t>(t) + 1]};
-        CHECK(both[static_cast<std::size_t>(t)].distance == Approx(part.certify().upper).epsilon(1e-8));
+        part.poses = {c.poses[t], c.poses[static_cast<std::size_t>(t) + 1]};
+        CHECK(both[t].distance == Approx(part.certify().upper).epsilon(1e-8));
     }
     CHECK(nearest(1, 10).size() == 1);
     CHECK(nearest(2, 0.99 * pair.upper).empty());

@@ -74,7 +74,7 @@ Eigen::Index coordinate_count(const Model& model) {
 Model moved(Model model, const VectorX& d) {
     Eigen::Index at = rates_end;
     for (const int i : {arm, post}) {
-        core::model::Body& body = model.bodies[static_cast<std::size_t>(i)];
+        core::model::Body& body = model.bodies[i];
         body.pose_start.position += d.segment<3>(6 * i);
         body.pose_start.rotation = core::kinematics::rotation(Vector3(d.segment<3>(6 * i + 3))) * body.pose_start.rotation;
         for (Eigen::Index v = 0; v < body.mesh.vertices.cols(); ++v, at += 3) body.mesh.vertices.col(v) += d.segment<3>(at);
@@ -99,8 +99,8 @@ VectorX gradient_of(const Model& model, const core::stepper::Trajectory& traject
     VectorX out = VectorX::Zero(coordinate_count(model));
     Eigen::Index at = rates_end;
     for (const int i : {arm, post}) {
-        const BodyGradient& bar = swept->front().bodies[static_cast<std::size_t>(i)];
-        const Matrix3& rotation = model.bodies[static_cast<std::size_t>(i)].pose_start.rotation;
+        const BodyGradient& bar = swept->front().bodies[i];
+        const Matrix3& rotation = model.bodies[i].pose_start.rotation;
         out.segment<3>(6 * i) = bar.pose_start_bar.col(3);
         for (int k = 0; k < 3; ++k)
             out[6 * i + 3 + k] = (bar.pose_start_bar.leftCols<3>().transpose() * cross_matrix(Vector3::Unit(k)) * rotation).trace();
@@ -108,8 +108,8 @@ VectorX gradient_of(const Model& model, const core::stepper::Trajectory& traject
     }
     const BodyGradient& bar = swept->front().bodies[arm];
     for (int t = 0; t < steps; ++t) {
-        out[poses_end] += bar.increment_bar[static_cast<std::size_t>(t)][0] * running(*model.bodies[arm].prescribed[0], t);
-        out[poses_end + 1] += bar.increment_bar[static_cast<std::size_t>(t)][5] * running(*model.bodies[arm].prescribed[5], t);
+        out[poses_end] += bar.increment_bar[t][0] * running(*model.bodies[arm].prescribed[0], t);
+        out[poses_end + 1] += bar.increment_bar[t][5] * running(*model.bodies[arm].prescribed[5], t);
     }
     return out;
 }

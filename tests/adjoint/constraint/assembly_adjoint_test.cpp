@@ -58,7 +58,7 @@ Start start() {
     loose.mechanism = {};
     Start out{built(scene), {}, {}};
     for (const core::model::Body& body : built(loose).bodies) out.written.push_back(body.pose_start);
-    out.targets.resize(static_cast<Eigen::Index>(out.model.mechanism.rows.size()));
+    out.targets.resize(out.model.mechanism.rows.size());
     for (std::size_t i = 0; i < out.model.mechanism.rows.size(); ++i) out.targets[i] = target_at(out.model.mechanism.rows[i], 0);
     return out;
 }

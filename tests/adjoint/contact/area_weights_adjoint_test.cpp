@@ -21,8 +21,8 @@ TEST_CASE("areas of vertices and edges follow the vertices", "[adjoint][area_wei
         moved.mesh.vertices += x.reshaped(3, n);
         tests::support::refresh(moved);
         VectorX out(n + edges);
-        for (Eigen::Index k = 0; k < n; ++k) out[k] = moved.vertex_area[static_cast<std::size_t>(k)];
-        for (Eigen::Index k = 0; k < edges; ++k) out[n + k] = moved.edge_area[static_cast<std::size_t>(k)];
+        for (Eigen::Index k = 0; k < n; ++k) out[k] = moved.vertex_area[k];
+        for (Eigen::Index k = 0; k < edges; ++k) out[n + k] = moved.edge_area[k];
         return out;
     };
     const auto tangent = [&](const VectorX& v) {

@@ -24,7 +24,7 @@ Model bars(int held) {
     scene.integrator = core::scene::Integrator::newmark;
     scene.bodies[1].damping = {0.3, 0.2};
     Model model = built(scene);
-    if (held >= 0) model.bodies[0].prescribed[static_cast<std::size_t>(held)] = core::scene::MotionCurve{};
+    if (held >= 0) model.bodies[0].prescribed[held] = core::scene::MotionCurve{};
     return model;
 }
 

@@ -44,17 +44,17 @@ RowChange row_change(const StartChanges& at, std::size_t i, const Changes& poses
     const std::vector<core::measure::PlacedFrame> frames = placed(at.problem.set.frames, at.poses);
     for (std::size_t k = 0; k < row.parts.size(); ++k) {
         const core::constraint::RowPart& part = row.parts[k];
-        const core::measure::Measure& m = at.problem.set.measures[static_cast<std::size_t>(part.measure)];
+        const core::measure::Measure& m = at.problem.set.measures[part.measure];
         const measure::MeasureTangent t = measure::measure_tangent(at.problem.set, m, {at.poses, poses_dot, dot.frames});
         const double factor_dot = dot.row_factors[i][k];
         out.value_dot += part.factor * t.value_dot;
         if (factor_dot != 0)
             out.value_dot += factor_dot * core::constraint::value_at(at.problem.set, part.measure, frames, at.model.mechanism.angles_start);
         const auto add = [&](int frame, const Matrix34& gradient, const Matrix34& gradient_dot) {
-            const int body = at.problem.set.frames[static_cast<std::size_t>(frame)].body;
+            const int body = at.problem.set.frames[frame].body;
             if (body == core::measure::world) return;
-            out.gradient[static_cast<std::size_t>(body)] += part.factor * gradient;
-            out.gradient_dot[static_cast<std::size_t>(body)] += part.factor * gradient_dot + factor_dot * gradient;
+            out.gradient[body] += part.factor * gradient;
+            out.gradient_dot[body] += part.factor * gradient_dot + factor_dot * gradient;
         };
         add(m.a, t.gradient_a, t.gradient_a_dot);
         add(m.b, t.gradient_b, t.gradient_b_dot);
@@ -66,10 +66,7 @@ RowChange row_change(const StartChanges& at, std::size_t i, const Changes& poses
 class StartSystem {
 public:
     explicit StartSystem(const StartChanges& at)
-        : at_(at),
-          count_(at.problem.dofs.count),
-          rows_(static_cast<int>(at.problem.rows.size())),
-          still_(at.poses.size(), Matrix34::Zero()) {
+        : at_(at), count_(at.problem.dofs.count), rows_(count_of(at.problem.rows)), still_(at.poses.size(), Matrix34::Zero()) {
         for (int i = 0; i < rows_; ++i) along_rest_.push_back(row_change(at_, static_cast<std::size_t>(i), still_, zero_mechanism()));
     }
 
@@ -79,7 +76,7 @@ public:
     void add_along_motions(const Changes& gradient, const std::vector<Matrix3>& rotations, VectorX& out) const {
         for (std::size_t b = 0; b < gradient.size(); ++b)
             for (int k = 0; k < 6; ++k)
-                if (const int place = at_.problem.dofs.index[b][static_cast<std::size_t>(k)]; place >= 0)
+                if (const int place = at_.problem.dofs.index[b][k]; place >= 0)
                     out[place] += gradient[b].cwiseProduct(matrix_of_motion(Vector6::Unit(k), rotations[b])).sum();
     }
 
@@ -93,7 +90,7 @@ public:
     Changes carried(const VectorX& multipliers) const {
         Changes out = still_;
         for (int i = 0; i < rows_; ++i)
-            for (std::size_t b = 0; b < out.size(); ++b) out[b] += multipliers[i] * along_rest_[static_cast<std::size_t>(i)].gradient[b];
+            for (std::size_t b = 0; b < out.size(); ++b) out[b] += multipliers[i] * along_rest_[i].gradient[b];
         return out;
     }
 
@@ -104,7 +101,7 @@ public:
         MatrixX c(count_, rows_);
         for (int i = 0; i < rows_; ++i) {
             VectorX column = VectorX::Zero(count_);
-            add_along_motions(along_rest_[static_cast<std::size_t>(i)].gradient, rotations(), column);
+            add_along_motions(along_rest_[i].gradient, rotations(), column);
             c.col(i) = column;
         }
         return c.fullPivHouseholderQr().solve(-left);
@@ -114,7 +111,7 @@ public:
     std::vector<Vector6> motions(const VectorX& y, std::vector<Vector6> held) const {
         for (std::size_t b = 0; b < held.size(); ++b)
             for (int k = 0; k < 6; ++k)
-                if (const int place = at_.problem.dofs.index[b][static_cast<std::size_t>(k)]; place >= 0) held[b][k] = y[place];
+                if (const int place = at_.problem.dofs.index[b][k]; place >= 0) held[b][k] = y[place];
         return held;
     }
 
@@ -133,7 +130,7 @@ public:
     }
 
     MechanismTangent zero_mechanism() const { return zero_model_tangent(at_.model, 0).mechanism; }
-    const RowChange& rest(int i) const { return along_rest_[static_cast<std::size_t>(i)]; }
+    const RowChange& rest(int i) const { return along_rest_[i]; }
     const Changes& still() const { return still_; }
     int count() const { return count_; }
     int rows() const { return rows_; }
@@ -205,8 +202,7 @@ private:
         for (int i = 0; i < system_.rows(); ++i) {
             const RowChange row = row_change(at_, static_cast<std::size_t>(i), poses_dot, dot);
             for (std::size_t b = 0; b < force_dot.size(); ++b) force_dot[b] += multipliers_[i] * row.gradient_dot[b];
-            out[system_.count() + i] =
-                row.value_dot - target_change(at_.problem.rows[static_cast<std::size_t>(i)], dot, static_cast<std::size_t>(i));
+            out[system_.count() + i] = row.value_dot - target_change(at_.problem.rows[i], dot, static_cast<std::size_t>(i));
         }
         system_.add_along_motions(force_dot, system_.rotations(), out);
         std::vector<Matrix3> rotations_dot;
@@ -235,8 +231,7 @@ public:
         VectorX b = VectorX::Zero(system_.size());
         const Changes moving = system_.matrices(written);
         for (int i = 0; i < system_.rows(); ++i)
-            b[system_.count() + i] = change_of_row(i, moving) -
-                                     core::model::rate_at_start(at.problem.rows[static_cast<std::size_t>(i)].curve, at.model.timestep);
+            b[system_.count() + i] = change_of_row(i, moving) - core::model::rate_at_start(at.problem.rows[i].curve, at.model.timestep);
         const std::vector<Vector6> nothing(written.size(), Vector6::Zero());
         const VectorX x = system_.solve(b, [&](const VectorX& unit) { return times(unit, nothing); });
         delta_ = system_.motions(x, nothing);

@@ -108,7 +108,7 @@ TEST_CASE("forces of contact are those that the steps report", "[adjoint][steppe
                     const double sign = f.a == of.body ? 1 : -1;
                     reported += sign * (of.about ? f.torque : f.force);
                     if (!of.about) continue;
-                    const core::kinematics::Pose& pose = done.trajectory.poses[t + 1][static_cast<std::size_t>(of.body)];
+                    const core::kinematics::Pose& pose = done.trajectory.poses[t + 1][of.body];
                     reported -= sign * world_position(pose, *of.about).cross(f.force);
                 }
                 CHECK((forces[t] - reported).norm() <= 1e-9 * (1 + reported.norm()));

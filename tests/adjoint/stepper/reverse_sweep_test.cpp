@@ -31,7 +31,7 @@ core::stepper::Trajectory trajectory_of(const SweepScene& scene) {
 
 // Position component `axis` of `body` at the end.
 TrajectoryGradient end_position(const SweepScene& scene, int body, int axis) {
-    TrajectoryGradient seed = fettle::adjoint::zero_trajectory_gradient(scene.steps, static_cast<int>(scene.model.bodies.size()));
+    TrajectoryGradient seed = fettle::adjoint::zero_trajectory_gradient(scene.steps, count_of(scene.model.bodies));
     seed.pose_bar.back()[body](axis, 3) = 1;
     return seed;
 }
@@ -94,7 +94,7 @@ TEST_CASE("where rounds of friction ended is kept for gradients alone", "[adjoin
     const core::stepper::Simulation done = core::stepper::simulate(scene.model, options);
     for (std::size_t t = 0; t < done.trajectory.steps.size(); ++t) {
         const auto& rounds = done.trajectory.steps[t].friction_rounds;
-        REQUIRE(static_cast<int>(rounds.size()) == done.report.steps[t].friction_rounds);
+        REQUIRE(count_of(rounds) == done.report.steps[t].friction_rounds);
         for (std::size_t i = 0; i < scene.model.bodies.size(); ++i)
             CHECK(rounds.back()[i].position == done.trajectory.poses[t + 1][i].position);
     }
@@ -211,7 +211,7 @@ TEST_CASE("another frame for a body's shape is the same body", "[adjoint][steppe
     const auto tangents = tangent_sweep(scene.model, trajectory, direction);
     REQUIRE(tangents);
     for (std::size_t t = 0; t < trajectory.poses.size(); ++t)
-        for (int i = 0; i < static_cast<int>(scene.model.bodies.size()); ++i) {
+        for (int i = 0; i < count_of(scene.model.bodies); ++i) {
             Vector6 expected = Vector6::Zero();
             if (i == body) expected.head<3>() = -trajectory.poses[t][i].rotation * c;
             CAPTURE(t, i);

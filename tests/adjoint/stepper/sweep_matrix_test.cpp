@@ -206,7 +206,7 @@ std::vector<SweepScene> loads_table() {
     // A box that lies flat, its tilts in equilibrium with a torque.
     SweepScene flat = scene_of(Sort::face, Integrator::quasi_static, 0);
     core::model::Body& body = flat.model.bodies[1];
-    for (const int dof : {3, 4}) body.prescribed[static_cast<std::size_t>(dof)].reset();
+    for (const int dof : {3, 4}) body.prescribed[dof].reset();
     body.pose_start = make_pose({0.002, -0.001, 0.3}, {0.003, -0.002, 0.04});
     body.torque = {0.02, -0.03, 0.05};
     flat.name += ", torque on tilts";
@@ -324,7 +324,7 @@ struct Differentiated {
         gradients = *found;
     }
 
-    const ModelGradient& gradient(int k) const { return gradients[static_cast<std::size_t>(k)]; }
+    const ModelGradient& gradient(int k) const { return gradients[k]; }
 
     /// Of the k-th scalar. @param wrong_by  a relative error that is put into the derivative
     tests::support::LineCheck check(int k, const ModelTangent& direction, const tests::support::LineSweep& sweep,
@@ -332,8 +332,7 @@ struct Differentiated {
         const auto change = [&](double s) {
             const core::stepper::Simulation there = simulation_of(scene, moved(scene, direction, s));
             const bool ok = there.report.status == core::stepper::SimulationStatus::ok;
-            return ok ? objective_change(seeds[static_cast<std::size_t>(k)], done.trajectory, there.trajectory)
-                      : std::numeric_limits<double>::quiet_NaN();
+            return ok ? objective_change(seeds[k], done.trajectory, there.trajectory) : std::numeric_limits<double>::quiet_NaN();
         };
         return tests::support::check_line(change, (1 + wrong_by) * pairing(scene, gradient(k), direction), sweep);
     }

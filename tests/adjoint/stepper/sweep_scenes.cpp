@@ -210,7 +210,7 @@ ModelTangent random_direction(const SweepScene& scene, ParameterKind kind, std::
     ModelTangent d = fettle::adjoint::zero_model_tangent(scene.model, scene.steps);
     if (kind == ParameterKind::gravity) d.gravity_dot = vector(10);
     if (kind == ParameterKind::dmin) d.dmin_dot = scene.model.dmin * uniform(random);
-    const int count = static_cast<int>(d.bodies.size());
+    const int count = count_of(d.bodies);
     const bool is_friction = kind == ParameterKind::friction;
     const double mu_dot = is_friction ? uniform(random) : 0;
     for (int a = 0; a < count && is_friction; ++a)
@@ -302,7 +302,7 @@ Model moved(const SweepScene& scene, const ModelTangent& direction, double s) {
         for (int k = 0; k < 6; ++k) {
             if (is_free(body, k)) continue;
             body.prescribed[k] = moved_curve(*scene.model.bodies[i].prescribed[k], model.timestep, scene.steps,
-                                             [&](int t) { return s * dot.increment_dot[static_cast<std::size_t>(t)][k]; });
+                                             [&](int t) { return s * dot.increment_dot[t][k]; });
         }
     }
     return model;
@@ -326,7 +326,7 @@ double pairing(const SweepScene& scene, const ModelGradient& gradient, const Mod
 
 TrajectoryGradient random_seed(const SweepScene& scene, std::mt19937_64& random) {
     std::uniform_real_distribution<double> uniform(-1, 1);
-    TrajectoryGradient seed = fettle::adjoint::zero_trajectory_gradient(scene.steps, static_cast<int>(scene.model.bodies.size()));
+    TrajectoryGradient seed = fettle::adjoint::zero_trajectory_gradient(scene.steps, count_of(scene.model.bodies));
     for (auto& bodies : seed.pose_bar)
         for (Matrix34& bar : bodies) {
             bar = Matrix34::NullaryExpr([&] { return uniform(random); });

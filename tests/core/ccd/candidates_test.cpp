@@ -53,16 +53,16 @@ std::map<Key, double> all_distances(const model::Model& m, const std::vector<kin
     const auto &a = m.bodies[0].mesh, &b = m.bodies[1].mesh;
     const auto at_a = [&](int v) { return world_position(poses[0], a.vertices.col(v)); };
     const auto at_b = [&](int v) { return world_position(poses[1], b.vertices.col(v)); };
-    for (int t = 0; t < static_cast<int>(b.triangles.size()); ++t)
+    for (int t = 0; t < count_of(b.triangles); ++t)
         for (int v = 0; v < a.vertices.cols(); ++v)
             out[{0, v, t}] = std::sqrt(geometry::point_triangle_distance_squared(at_a(v), at_b(b.triangles[t][0]), at_b(b.triangles[t][1]),
                                                                                  at_b(b.triangles[t][2])));
-    for (int t = 0; t < static_cast<int>(a.triangles.size()); ++t)
+    for (int t = 0; t < count_of(a.triangles); ++t)
         for (int v = 0; v < b.vertices.cols(); ++v)
             out[{1, t, v}] = std::sqrt(geometry::point_triangle_distance_squared(at_b(v), at_a(a.triangles[t][0]), at_a(a.triangles[t][1]),
                                                                                  at_a(a.triangles[t][2])));
-    for (int i = 0; i < static_cast<int>(a.edges.size()); ++i)
-        for (int j = 0; j < static_cast<int>(b.edges.size()); ++j)
+    for (int i = 0; i < count_of(a.edges); ++i)
+        for (int j = 0; j < count_of(b.edges); ++j)
             out[{2, i, j}] = std::sqrt(
                 geometry::edge_edge_distance_squared(at_a(a.edges[i][0]), at_a(a.edges[i][1]), at_b(b.edges[j][0]), at_b(b.edges[j][1])));
     return out;
@@ -140,7 +140,7 @@ TEST_CASE("candidates at a configuration hold the true distances", "[candidates]
         REQUIRE(found.count(key) == 1);
         CHECK(found.at(key) == Approx(d).margin(1e-12));
     }
-    CHECK(expected == static_cast<int>(found.size()));
+    CHECK(expected == count_of(found));
 }
 
 TEST_CASE("a pair of bodies is searched anew only when it leaves its allowance", "[candidates]") {
@@ -326,7 +326,7 @@ TEST_CASE("contacts of points, wires and solids have the bodies' least distance,
         add(loose_mesh(vertices(4), {{0, 1}, {1, 2}, {2, 3}}));
         add(loose_mesh(vertices(3), {{0, 1}}));  // a wire and a point
         add(box_mesh(Vector3::Constant(-0.2), Vector3::Constant(0.2)));
-        const int n = static_cast<int>(poses.size());
+        const int n = count_of(poses);
         const Candidates candidates = find_candidates(model, poses, 0);
         const contact::ContactSet contacts = contact::find_contacts(model, candidates, poses);
         for (int a = 0; a < n; ++a)

@@ -73,7 +73,7 @@ public:
                 }
                 break;
             case 6:
-                q.t0[0] = q.t0[static_cast<std::size_t>(integer(1, 3))];
+                q.t0[0] = q.t0[integer(1, 3)];
                 break;
             default:
                 q.t1[0] = q.t1[3];

@@ -106,14 +106,14 @@ TEST_CASE("a body whose path is not finite is near everything") {
                 Candidates candidates;
                 cover(model, segments, model.dhat, candidates);
                 REQUIRE(candidates.pairs.empty());
-                entry(segments[static_cast<std::size_t>(body)], k) = bad;
+                entry(segments[body], k) = bad;
                 cover(model, segments, model.dhat, candidates);
                 INFO("value " << bad << " at " << k);
                 REQUIRE(candidates.pairs.size() == 1);
                 const BodyPairCandidates& pair = candidates.pairs[0];
-                CHECK(static_cast<int>(pair.vertex_triangle.size()) == vertex_triangle_pairs);
-                CHECK(static_cast<int>(pair.triangle_vertex.size()) == vertex_triangle_pairs);
-                CHECK(static_cast<int>(pair.edge_edge.size()) == edge_pairs);
+                CHECK(count_of(pair.vertex_triangle) == vertex_triangle_pairs);
+                CHECK(count_of(pair.triangle_vertex) == vertex_triangle_pairs);
+                CHECK(count_of(pair.edge_edge) == edge_pairs);
                 for (const geometry::PrimitivePair& p : pair.edge_edge) CHECK(p.distance <= 0);
             }
 }

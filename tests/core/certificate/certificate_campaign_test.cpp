@@ -27,7 +27,7 @@ MovingBodies turntable(std::mt19937& random) {
     const Vector3 turn(tilt, -tilt, between(random, -3, 3));
     return {std::move(a), prism(n + 1, size * between(random, 0.2, 1), size), path,
             path_through(std::vector<Vector3>(static_cast<std::size_t>(steps) + 1, Vector3(0, 0, size * (1 + tilt) + gap)),
-                         Matrix3::Identity(), std::vector<Vector3>(static_cast<std::size_t>(steps), turn))};
+                         Matrix3::Identity(), std::vector<Vector3>(steps, turn))};
 }
 
 // A pin that turns in a bore, next to it somewhere: bodies of many elements.
@@ -145,11 +145,11 @@ Outcome examine(int seed) {
 }
 
 void campaign(int first, int count, int least_proven) {
-    std::vector<Outcome> outcomes(static_cast<std::size_t>(count));
-    core::base::parallel_for(count, 1, [&](int i) { outcomes[static_cast<std::size_t>(i)] = examine(first + i); });
+    std::vector<Outcome> outcomes(count);
+    core::base::parallel_for(count, 1, [&](int i) { outcomes[i] = examine(first + i); });
     int proven = 0;
     for (int i = 0; i < count; ++i) {
-        const Outcome& o = outcomes[static_cast<std::size_t>(i)];
+        const Outcome& o = outcomes[i];
         CAPTURE(first + i, o.size, o.tolerance / o.size, o.lower, o.upper, o.complete, o.leaves, o.pieces, o.fault);
         CHECK(o.accepted);
         CHECK((o.leaves > 0) == (o.lower > 0));

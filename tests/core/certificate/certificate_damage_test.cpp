@@ -244,7 +244,7 @@ const std::vector<std::pair<const char*, Damage>>& damages() {
                  std::swap(nodes[p.segment][body], nodes[p.segment + 1][body]);
              else
                  std::swap(c.trajectory.steps[p.step], c.trajectory.steps[r() % c.trajectory.steps.size()]);
-             return p.segment + 1 < static_cast<int>(c.trajectory.steps[p.step].nodes.size()) && claim_is_false(c);
+             return p.segment + 1 < count_of(c.trajectory.steps[p.step].nodes) && claim_is_false(c);
          }},
         {"vertex moved",
          [](Case& c, std::mt19937& r) {

@@ -91,7 +91,7 @@ TEST_CASE("Thinning takes back needless splits, and nothing that it cannot prove
         const auto b = certified_body(c.certificate.bodies[1], c.model.bodies[1].mesh);
         REQUIRE((a && b));
         std::size_t index = 0;
-        for (int t = 0; t < static_cast<int>(c.trajectory.steps.size()); ++t) {
+        for (int t = 0; t < count_of(c.trajectory.steps); ++t) {
             for (int k = 0; k < core::stepper::segment_count(c.trajectory, t); ++k) {
                 BoxProof& proof = pair.boxes[index++];
                 BoxProof wasteful;

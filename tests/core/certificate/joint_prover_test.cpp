@@ -42,12 +42,12 @@ Driven driven(const scene::Curve& curve, int steps) {
 double seen(const Driven& d, int body, int instants) {
     const stepper::Trajectory& trajectory = d.motion.trajectory;
     double most = 0;
-    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t)
+    for (int t = 0; t < count_of(trajectory.steps); ++t)
         for (int i = 0; i <= instants; ++i) {
             const double s = static_cast<double>(i) / instants;
             const double angle = curve_value(d.curve, time_at(trajectory, t, 0, s)) - curve_value(d.curve, 0);
             const kinematics::Pose pose = pose_at(trajectory, t, 0, s, body);
-            const auto& vertices = d.model.bodies[static_cast<std::size_t>(body)].mesh.vertices;
+            const auto& vertices = d.model.bodies[body].mesh.vertices;
             for (Eigen::Index v = 0; v < vertices.cols(); ++v)
                 most = std::max(most, (world_position(pose, vertices.col(v)) - vertex_at(d.model, body, v, angle)).norm());
         }
@@ -64,7 +64,7 @@ TEST_CASE("joint prover: a four-bar is nowhere farther from its path than proven
         INFO(proven.fault);
         REQUIRE(proven.of_body.size() == 3);
         for (int body = 0; body < 3; ++body) {
-            const double farthest = seen(d, body, 16), bound = proven.of_body[static_cast<std::size_t>(body)];
+            const double farthest = seen(d, body, 16), bound = proven.of_body[body];
             CAPTURE(steps, body, farthest, bound);
             CHECK(farthest > 1e-7);
             CHECK(farthest <= bound);
@@ -85,7 +85,7 @@ TEST_CASE("joint prover: what motors' curves do between nodes counts", "[mechani
         INFO(proven.fault);
         REQUIRE(proven.of_body.size() == 3);
         for (int body = 0; body < 3; ++body) {
-            const double farthest = seen(d, body, 40), bound = proven.of_body[static_cast<std::size_t>(body)];
+            const double farthest = seen(d, body, 40), bound = proven.of_body[body];
             CAPTURE(static_cast<int>(kind), body, farthest, bound);
             CHECK(farthest <= bound);
             CHECK(bound < 30 * farthest);
@@ -95,7 +95,7 @@ TEST_CASE("joint prover: what motors' curves do between nodes counts", "[mechani
     const Driven d = driven(spline, 50);
     const ProvenDeviations proven = prove_deviations(d.joints, d.model, d.motion.trajectory);
     REQUIRE(proven.of_body.size() == 3);
-    for (int body = 0; body < 3; ++body) CHECK(seen(d, body, 40) <= proven.of_body[static_cast<std::size_t>(body)]);
+    for (int body = 0; body < 3; ++body) CHECK(seen(d, body, 40) <= proven.of_body[body]);
 }
 
 namespace {
@@ -166,14 +166,14 @@ scene::Scene bolt_and_piston(double h) {
 std::vector<kinematics::Pose> met_at(const model::Model& model, const stepper::Trajectory& trajectory, int t, double s) {
     constraint::AssemblyProblem problem{model.mechanism.set, model.mechanism.rows, {}, {}, {}, model.diagonal};
     std::vector<kinematics::Pose> poses;
-    for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
-        problem.moments.push_back(model.bodies[static_cast<std::size_t>(i)].moments);
+    for (int i = 0; i < count_of(model.bodies); ++i) {
+        problem.moments.push_back(model.bodies[i].moments);
         problem.dofs.add_body([](int) { return true; });
         poses.push_back(pose_at(trajectory, t, 0, s, i));
     }
-    problem.targets.resize(static_cast<Eigen::Index>(model.mechanism.rows.size()));
+    problem.targets.resize(model.mechanism.rows.size());
     for (std::size_t r = 0; r < model.mechanism.rows.size(); ++r)
-        problem.targets[static_cast<Eigen::Index>(r)] = target_at(model.mechanism.rows[r], time_at(trajectory, t, 0, s));
+        problem.targets[r] = target_at(model.mechanism.rows[r], time_at(trajectory, t, 0, s));
     const constraint::Assembly found = assemble(problem, poses);
     REQUIRE(found.is_met);
     return found.poses;
@@ -182,7 +182,7 @@ std::vector<kinematics::Pose> met_at(const model::Model& model, const stepper::T
 // Of each body's vertices, at some instants of every step.
 std::vector<double> farthest_from_met(const model::Model& model, const stepper::Trajectory& trajectory) {
     std::vector<double> farthest(model.bodies.size(), 0.0);
-    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t)
+    for (int t = 0; t < count_of(trajectory.steps); ++t)
         for (const double s : {0.0, 0.2, 0.5, 0.7, 1.0}) {
             const std::vector<kinematics::Pose> met = met_at(model, trajectory, t, s);
             for (std::size_t i = 0; i < met.size(); ++i) {

@@ -31,7 +31,7 @@ RangeCase certified_case(std::mt19937& random, int most_coordinates_of_it) {
         if (count < 1 || count > most_coordinates_of_it) continue;
         c.start = as_assembled(c.tree.model);
         ClearanceOptions options;
-        const double size = c.tree.model.bodies[static_cast<std::size_t>(c.tree.b)].radius;
+        const double size = c.tree.model.bodies[c.tree.b].radius;
         options.tolerance = (count <= 2 ? 1e-3 : 5e-2) * size;
         auto proven = certify_ranges_with_proof(c.tree.model, c.tree.ranges, {{c.tree.a, c.tree.b}}, options);
         c.found = proven.pairs.front();
@@ -50,12 +50,11 @@ bool claim_is_false(RangeCase& c, std::mt19937& random) {
     const PairCertificate& pair = c.certificate.pairs[0];
     const LinkedPair linked = linked_pair(*c.certificate.linkage, pair.a, pair.b);
     const auto shape = [&](int body) {
-        const model::Body& b = c.tree.model.bodies[static_cast<std::size_t>(body)];
+        const model::Body& b = c.tree.model.bodies[body];
         return make_piece_tree(b.mesh, *b.hierarchy);
     };
     const PieceTree a = shape(pair.a), b = shape(pair.b);
-    const ScrewedPair moved = screwed_pair(a, b, *c.certificate.linkage, linked, c.start.poses[0][static_cast<std::size_t>(pair.a)],
-                                           c.start.poses[0][static_cast<std::size_t>(pair.b)]);
+    const ScrewedPair moved = screwed_pair(a, b, *c.certificate.linkage, linked, c.start.poses[0][pair.a], c.start.poses[0][pair.b]);
     for (int i = 0; i < 40; ++i) {
         Coordinates at{};
         for (std::size_t k = 0; k < linked.coordinates.size(); ++k) {
@@ -124,8 +123,7 @@ const std::vector<std::pair<const char*, Damage>>& damages_of_claims() {
              return c.certificate.pairs[0].solids = r() % 2 ? Solids::overlap : Solids::not_closed, true;
          }},
         {"other bodies", [](RangeCase& c, std::mt19937& r) { return c.certificate.pairs[0].b = r() % 2 ? -1 : 50, true; }},
-        {"element missing",
-         [](RangeCase& c, std::mt19937&) { return c.certificate.bodies[static_cast<std::size_t>(c.tree.a)].elements.pop_back(), true; }},
+        {"element missing", [](RangeCase& c, std::mt19937&) { return c.certificate.bodies[c.tree.a].elements.pop_back(), true; }},
     };
     return list;
 }
@@ -167,8 +165,7 @@ const std::vector<std::pair<const char*, Damage>>& damages_of_proofs() {
         {"range wider",
          [](RangeCase& c, std::mt19937& r) {
              const LinkedPair linked = linked_pair(*c.certificate.linkage, c.tree.a, c.tree.b);
-             auto& coordinate =
-                 c.certificate.linkage->coordinates[static_cast<std::size_t>(linked.coordinates[r() % linked.coordinates.size()])];
+             auto& coordinate = c.certificate.linkage->coordinates[linked.coordinates[r() % linked.coordinates.size()]];
              (r() % 2 ? coordinate.high : coordinate.low) += r() % 2 ? 0.5 : -0.5;
              if (!(coordinate.low <= coordinate.start && coordinate.start <= coordinate.high)) return true;
              return claim_is_false(c, r);
@@ -176,39 +173,39 @@ const std::vector<std::pair<const char*, Damage>>& damages_of_proofs() {
         {"range not a number", [](RangeCase& c, std::mt19937&) { return c.certificate.linkage->coordinates[0].high = std::nan(""), true; }},
         {"screw moved",
          [](RangeCase& c, std::mt19937& r) {
-             auto& screws = c.certificate.linkage->bodies[static_cast<std::size_t>(c.tree.b)].screws;
+             auto& screws = c.certificate.linkage->bodies[c.tree.b].screws;
              if (screws.empty()) return false;
              screws[0].point += tests::clearance::random_vector(r, std::pow(10, uniform(r, -3, 0)));
              return claim_is_false(c, r);
          }},
         {"screw turned about",
          [](RangeCase& c, std::mt19937& r) {
-             auto& screws = c.certificate.linkage->bodies[static_cast<std::size_t>(c.tree.b)].screws;
+             auto& screws = c.certificate.linkage->bodies[c.tree.b].screws;
              if (screws.empty()) return false;
              screws[0].axis = tests::clearance::random_vector(r, 1);
              return claim_is_false(c, r);
          }},
         {"screw of no coordinate",
          [](RangeCase& c, std::mt19937& r) {
-             auto& screws = c.certificate.linkage->bodies[static_cast<std::size_t>(c.tree.b)].screws;
+             auto& screws = c.certificate.linkage->bodies[c.tree.b].screws;
              if (screws.empty()) return false;
              return screws[0].coordinate = r() % 2 ? -1 : 77, true;
          }},
         {"axis too long",
          [](RangeCase& c, std::mt19937&) {
-             auto& screws = c.certificate.linkage->bodies[static_cast<std::size_t>(c.tree.b)].screws;
+             auto& screws = c.certificate.linkage->bodies[c.tree.b].screws;
              if (screws.empty()) return false;
              return screws[0].axis *= 1.1, true;
          }},
         {"parents in a ring",
          [](RangeCase& c, std::mt19937&) {
              auto& bodies = c.certificate.linkage->bodies;
-             return bodies[static_cast<std::size_t>(c.tree.b)].parent = c.tree.b, true;
+             return bodies[c.tree.b].parent = c.tree.b, true;
          }},
         {"body moved closer",
          [](RangeCase& c, std::mt19937& r) {
              const Vector3 way = c.found.witness.point_a - c.found.witness.point_b;
-             auto& pose = c.start.poses[0][static_cast<std::size_t>(c.tree.a)];
+             auto& pose = c.start.poses[0][c.tree.a];
              pose.position -= uniform(r, 0.01, 2) * way;
              c.certificate.path_hash = records::path_hash(c.start);  // or the hash alone would give it away
              return claim_is_false(c, r);

@@ -93,9 +93,9 @@ TEST_CASE("The number of threads and the order of pairs change no bit", "[cleara
         const core::base::ThreadLimit limit(threads);
         int reports = 0;
         ClearanceOptions options;
-        options.on_pair = [&](int, int of) { reports += of == static_cast<int>(requests.size()); };
+        options.on_pair = [&](int, int of) { reports += of == count_of(requests); };
         const auto results = certify_clearance(model, as_assembled(model), requests, options);
-        CHECK(reports == static_cast<int>(requests.size()));
+        CHECK(reports == count_of(requests));
         return results;
     };
     const auto one = run(1, pairs), four = run(4, pairs);
@@ -150,7 +150,7 @@ TEST_CASE("All witnesses that tie, each once", "[clearance]") {
     REQUIRE(result.witnesses.size() >= static_cast<std::size_t>(n));
     CHECK(result.witnesses.size() <= static_cast<std::size_t>(options.max_witnesses));
     CHECK((result.witnesses[0].point_a == result.witness.point_a && result.witnesses[0].primitive_b == result.witness.primitive_b));
-    std::vector<bool> side(static_cast<std::size_t>(n), false);
+    std::vector<bool> side(n, false);
     for (std::size_t i = 0; i < result.witnesses.size(); ++i) {
         const Witness& w = result.witnesses[i];
         CHECK(w.distance <= result.upper + options.witness_tolerance);

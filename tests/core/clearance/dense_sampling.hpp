@@ -30,7 +30,7 @@ public:
 
     /// @param samples  at least so many of them, apart from the first look
     Real least(int samples) {
-        const int segments = static_cast<int>(bodies_.path_a.size()), blocks = std::max(1, 600 / segments);
+        const int segments = count_of(bodies_.path_a), blocks = std::max(1, 600 / segments);
         for (int i = 0; i < segments; ++i)
             for (int k = 0; k < 4; ++k) look_at_middle(i, (k + 0.5) / 4);
         struct Block {
@@ -46,7 +46,7 @@ public:
             }
         }
         if (alive.empty()) return best_;
-        const int each = samples / static_cast<int>(alive.size()) + 1;
+        const int each = samples / count_of(alive) + 1;
         for (const Block& block : alive) {
             sample_block(block.segment, Real(block.index) / blocks, Real(1) / blocks / each, each, block.pairs);
             taken_ += each + 1;
@@ -75,7 +75,7 @@ private:
 
     static std::vector<Element> elements_of(const core::geometry::Mesh& mesh) {
         std::vector<Element> elements;
-        std::vector<bool> used(static_cast<std::size_t>(mesh.vertices.cols()), false);
+        std::vector<bool> used(mesh.vertices.cols(), false);
         const auto add = [&](std::array<int, 3> v) {
             Element e{v, (mesh.vertices.col(v[0]) + mesh.vertices.col(v[1]) + mesh.vertices.col(v[2])) / 3};
             for (const int k : v) {
@@ -88,7 +88,7 @@ private:
         for (const auto& t : mesh.triangles) add(t);
         for (const auto& e : mesh.edges)
             if (!used[e[0]] || !used[e[1]] || mesh.triangles.empty()) add({e[0], e[1], e[1]});
-        for (int v = 0; v < static_cast<int>(used.size()); ++v)
+        for (int v = 0; v < count_of(used); ++v)
             if (!used[v]) add({v, v, v});
         return elements;
     }
@@ -151,10 +151,10 @@ private:
         for (const Element& e : elements_b_)
             centers.push_back((at_b.rotation * e.center.cast<Real>() + at_b.position - at_a.position).cast<double>());
         Pairs pairs;
-        for (int i = 0; i < static_cast<int>(elements_a_.size()); ++i) {
+        for (int i = 0; i < count_of(elements_a_); ++i) {
             const Element& a = elements_a_[i];
             const Vector3 center = (at_a.rotation * a.center.cast<Real>()).cast<double>();
-            for (int j = 0; j < static_cast<int>(elements_b_.size()); ++j) {
+            for (int j = 0; j < count_of(elements_b_); ++j) {
                 const Element& b = elements_b_[j];
                 double* until =
                     safe != nullptr ? &(*safe)[static_cast<std::size_t>(i) * elements_b_.size() + static_cast<std::size_t>(j)] : nullptr;

@@ -24,7 +24,7 @@ namespace {
 // Every pair, every second one in reverse.
 std::vector<PairRequest> all_pairs(const Scene& scene, double minimum, double far) {
     std::vector<PairRequest> pairs;
-    const auto count = static_cast<int>(scene.model.bodies.size());
+    const auto count = count_of(scene.model.bodies);
     for (int a = 0; a < count; ++a)
         for (int b = a + 1; b < count; ++b)
             pairs.push_back((a + b) % 2 == 0 ? PairRequest{a, b, minimum, far} : PairRequest{b, a, minimum, far});

@@ -52,8 +52,8 @@ inline core::scene::Scene four_bar_scene(const core::scene::Curve& drive, double
 
 /// Where trigonometry has a vertex of a bar.
 inline Vector3 vertex_at(const core::model::Model& model, int body, Eigen::Index vertex, double angle) {
-    const core::model::Body& b = model.bodies[static_cast<std::size_t>(body)];
-    const Bar at = bars_at(angle)[static_cast<std::size_t>(body)];
+    const core::model::Body& b = model.bodies[body];
+    const Bar at = bars_at(angle)[body];
     return Vector3(at.x, at.y, 0) + core::kinematics::rotation(Vector3(0, 0, at.angle)) * (b.mesh.vertices.col(vertex) + b.reference_point);
 }
 

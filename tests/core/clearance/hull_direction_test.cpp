@@ -95,7 +95,7 @@ TEST_CASE("Pieces of bodies have corners and hulls of their own", "[clearance]")
         const int index = static_cast<int>(random() % tree.pieces.size());
         const Vector3 direction = random_vector(random, 1);
         double most = -1e300;
-        for (const PieceElement& element : tree.elements_of(tree.pieces[static_cast<std::size_t>(index)]))
+        for (const PieceElement& element : tree.elements_of(tree.pieces[index]))
             most = std::max(most, (direction.transpose() * element.corners.x).maxCoeff());
         const Support found = support(tree, direction, any_support(tree, index), index);
         CHECK(found.value == Approx(most).epsilon(1e-14).margin(1e-15));

@@ -35,10 +35,10 @@ scene::Scene hinged(const std::optional<std::array<double, 2>>& limits) {
 // Where every body is.
 std::vector<kinematics::Pose> poses_at(const Tree& tree, const std::vector<double>& u) {
     std::vector<kinematics::Pose> out;
-    for (int i = 0; i < static_cast<int>(tree.model.bodies.size()); ++i) {
-        kinematics::Pose pose = tree.model.bodies[static_cast<std::size_t>(i)].pose_start;
-        for (int at = i; at >= 0; at = tree.ranges.linkage.bodies[static_cast<std::size_t>(at)].parent) {
-            const auto& screws = tree.ranges.linkage.bodies[static_cast<std::size_t>(at)].screws;
+    for (int i = 0; i < count_of(tree.model.bodies); ++i) {
+        kinematics::Pose pose = tree.model.bodies[i].pose_start;
+        for (int at = i; at >= 0; at = tree.ranges.linkage.bodies[at].parent) {
+            const auto& screws = tree.ranges.linkage.bodies[at].screws;
             for (auto screw = screws.rbegin(); screw != screws.rend(); ++screw) {
                 const auto k = static_cast<std::size_t>(screw->coordinate);
                 const double d = u[k] - tree.ranges.linkage.coordinates[k].start;
@@ -72,8 +72,7 @@ TEST_CASE("joint ranges: wherever coordinates are, the simulation's rows are met
             CHECK(angles[m] == Approx(wanted).margin(1e-12));
         }
         const VectorX values = constraint::row_values(mechanism.set, mechanism.rows, frames, angles);
-        for (std::size_t k = 0; k < mechanism.rows.size(); ++k)
-            CHECK(std::abs(values[static_cast<Eigen::Index>(k)] - mechanism.rows[k].constant) < 1e-12);
+        for (std::size_t k = 0; k < mechanism.rows.size(); ++k) CHECK(std::abs(values[k] - mechanism.rows[k].constant) < 1e-12);
     }
 }
 

@@ -172,7 +172,7 @@ TEST_CASE("jointed clearance: where the joints have bodies is not proven, so the
     const std::vector<PairRequest> pairs{{coupler_body, plate_body, 1e-3}, {plate_body, post, 0.1}, {crank_body, rocker_body, 0}};
     const auto [results, certificate] = certify_jointed_with_proof(model, trajectory, pairs, options, unproven);
     for (const int k : {0, 2}) {
-        const PairClearance& untold = results[static_cast<std::size_t>(k)];
+        const PairClearance& untold = results[k];
         CAPTURE(k, untold.reason);
         CHECK(untold.status == PairStatus::undecided);
         CHECK(contains(untold.reason, "why"));
@@ -180,7 +180,7 @@ TEST_CASE("jointed clearance: where the joints have bodies is not proven, so the
         CHECK(untold.lower == 0);
         CHECK(untold.upper == base::infinity);
         CHECK(untold.margin.empty());
-        CHECK(untold.minimum == pairs[static_cast<std::size_t>(k)].minimum);
+        CHECK(untold.minimum == pairs[k].minimum);
     }
     CHECK(results[1].status == PairStatus::clear);
     CHECK(results[1].is_bounded);

@@ -45,7 +45,7 @@ Outcome examine(int seed, int samples) {
     const auto vertices = [](const PieceTree& tree, int element) {
         const PieceElement& e = tree.elements[element];
         std::array<int, 3> v = e.vertices;
-        for (int k = e.corners.count; k < 3; ++k) v[static_cast<std::size_t>(k)] = v[static_cast<std::size_t>(e.corners.count - 1)];
+        for (int k = e.corners.count; k < 3; ++k) v[k] = v[e.corners.count - 1];
         return v;
     };
     const Encounter& n = found.nearest;
@@ -57,11 +57,11 @@ Outcome examine(int seed, int samples) {
 }
 
 void campaign(int first, int count, int samples, int least_apart) {
-    std::vector<Outcome> outcomes(static_cast<std::size_t>(count));
-    core::base::parallel_for(count, 1, [&](int i) { outcomes[static_cast<std::size_t>(i)] = examine(first + i, samples); });
+    std::vector<Outcome> outcomes(count);
+    core::base::parallel_for(count, 1, [&](int i) { outcomes[i] = examine(first + i, samples); });
     int apart = 0;
     for (int i = 0; i < count; ++i) {
-        const Outcome& o = outcomes[static_cast<std::size_t>(i)];
+        const Outcome& o = outcomes[i];
         CAPTURE(first + i, o.name, o.lower, o.upper, o.sampled, o.at_witness, o.tolerance, o.taken);
         CHECK(o.upper >= o.lower);
         if (!o.apart) continue;

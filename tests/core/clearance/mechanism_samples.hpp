@@ -19,7 +19,7 @@ inline double between(std::mt19937& random, double low, double high) { return st
 
 /// Prism over a polygon that is star-shaped about the origin, given by its corners in order.
 inline Solid star_prism(const std::vector<Vector2>& polygon, double height) {
-    const int n = static_cast<int>(polygon.size());
+    const int n = count_of(polygon);
     Matrix3X x(3, 2 * n + 2);
     std::vector<core::geometry::Triangle> triangles;
     for (int i = 0; i < n; ++i) {
@@ -111,7 +111,7 @@ inline std::vector<core::kinematics::PathSegment> path_through(const std::vector
 
 inline std::vector<core::kinematics::PathSegment> turning_about_z(const Vector3& at, double phase, double turn, int steps) {
     return path_through(std::vector<Vector3>(static_cast<std::size_t>(steps) + 1, at), core::kinematics::rotation({0, 0, phase}),
-                        std::vector<Vector3>(static_cast<std::size_t>(steps), Vector3(0, 0, turn)));
+                        std::vector<Vector3>(steps, Vector3(0, 0, turn)));
 }
 
 inline MovingBodies gear_pair(std::mt19937& random) {
@@ -156,7 +156,7 @@ inline MovingBodies pin_in_slot(std::mt19937& random) {
     std::vector<Vector3> positions;
     for (int t = 0; t <= steps; ++t)
         positions.emplace_back(half * 0.9 * std::sin(2 * M_PI * t / steps), 0.3 * play * std::cos(5.0 * t), 0.2 * radius * t / steps);
-    const std::vector<Vector3> turns(static_cast<std::size_t>(steps), Vector3(0, 0, between(random, -0.5, 0.5)));
+    const std::vector<Vector3> turns(steps, Vector3(0, 0, between(random, -0.5, 0.5)));
     return {slotted_plate(n, half, radius + play, radius, radius), prism(n, radius * std::cos(M_PI / n), 3 * radius),
             turning_about_z(Vector3::Zero(), 0, between(random, -0.002, 0.002), steps),
             path_through(positions, Matrix3::Identity(), turns)};

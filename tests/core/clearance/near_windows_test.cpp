@@ -37,7 +37,7 @@ bool holds(const std::vector<NearWindow>& windows, int a, int b, int place) {
 
 double least_alone(const Scene& scene, const ClearanceOptions& options) {
     std::vector<PairRequest> pairs;
-    const int count = static_cast<int>(scene.model.bodies.size());
+    const int count = count_of(scene.model.bodies);
     for (int a = 0; a < count; ++a) {
         for (int b = a + 1; b < count; ++b) {
             if (model::may_collide(scene.model, a, b)) pairs.push_back({a, b, 0});
@@ -67,8 +67,8 @@ TEST_CASE("what is not in a window is farther apart than the reach") {
         for (const double reach : {0.0, 0.1, 1.0}) {
             const NearWindows found = near_windows(scene.model, scene.trajectory, places, reach);
             CHECK_FALSE(found.everything);
-            for (int place = 0; place < static_cast<int>(places.size()); ++place) {
-                const stepper::Trajectory part = only(scene.trajectory, places[static_cast<std::size_t>(place)]);
+            for (int place = 0; place < count_of(places); ++place) {
+                const stepper::Trajectory part = only(scene.trajectory, places[place]);
                 for (int a = 0; a < 6; ++a) {
                     for (int b = a + 1; b < 6; ++b) {
                         if (!model::may_collide(scene.model, a, b)) {
@@ -143,7 +143,7 @@ TEST_CASE("everything, nothing, and what cannot be measured") {
         const bool three = window.a == 3 || window.b == 3;
         of_three += three;
         CHECK(window.measurable == !three);
-        if (three) CHECK((window.first == 0 && window.last == static_cast<int>(places.size())));
+        if (three) CHECK((window.first == 0 && window.last == count_of(places)));
     }
     CHECK(of_three == 5);
     ClearanceOptions options;

@@ -139,7 +139,7 @@ TEST_CASE("A proof of enough that is cut short tells no more than holds for what
     pair.path_b.position_t0 << 6, 0.1, 0.2;
     pair.path_b.position_step << -3.5, 0, 0;
     for (const int copies : {1, 20}) {
-        const std::vector<PairSegment> segments(static_cast<std::size_t>(copies), pair.segment());
+        const std::vector<PairSegment> segments(copies, pair.segment());
         SearchOptions options;
         options.enough = 3;
         for (options.max_evaluations = 1; options.max_evaluations < 40; ++options.max_evaluations) {

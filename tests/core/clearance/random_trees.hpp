@@ -45,7 +45,7 @@ inline double value_of(const Tree& tree, const std::vector<double>& u, const std
 
 /// World positions of a body's vertices.
 inline clearance::RealVertices placed_vertices(const Tree& tree, const std::vector<double>& u, int body) {
-    const core::model::Body& b = tree.model.bodies[static_cast<std::size_t>(body)];
+    const core::model::Body& b = tree.model.bodies[body];
     clearance::RealVertices x =
         (b.pose_start.rotation.cast<Real>() * b.mesh.vertices.cast<Real>()).colwise() + b.pose_start.position.cast<Real>();
     for (int at = body; at >= 0;) {
@@ -71,8 +71,8 @@ inline clearance::RealVertices placed_vertices(const Tree& tree, const std::vect
 }
 
 inline Real distance_at(const Tree& tree, const std::vector<double>& u) {
-    return clearance::oracle_distance(tree.model.bodies[static_cast<std::size_t>(tree.a)].mesh, placed_vertices(tree, u, tree.a),
-                                      tree.model.bodies[static_cast<std::size_t>(tree.b)].mesh, placed_vertices(tree, u, tree.b));
+    return clearance::oracle_distance(tree.model.bodies[tree.a].mesh, placed_vertices(tree, u, tree.a), tree.model.bodies[tree.b].mesh,
+                                      placed_vertices(tree, u, tree.b));
 }
 
 inline std::vector<double> random_coordinates(const Tree& tree, std::mt19937& random) {
@@ -89,7 +89,7 @@ inline core::scene::Joint scene_joint(const Tree& tree, const TreeJoint& joint, 
     const auto attachment = [&](int body) {
         core::scene::Attachment out{"", joint.point, joint.axis};
         if (body < 0) return out;
-        const core::scene::Body& b = tree.scene.bodies[static_cast<std::size_t>(body)];
+        const core::scene::Body& b = tree.scene.bodies[body];
         out.body = b.name;
         out.point = b.pose.rotation.transpose() * (joint.point - b.pose.position);
         out.axis = b.pose.rotation.transpose() * joint.axis;
@@ -140,7 +140,7 @@ inline Tree random_tree(std::mt19937& random) {
         if (i > 1 && random() % 4 == 0) {
             parent = static_cast<int>(random() % static_cast<unsigned>(i)) - 1;
             if (parent == 0) parent = -1;
-            at = parent < 0 ? Vector3(random_vector(random, 0.1)) : place[static_cast<std::size_t>(parent)];
+            at = parent < 0 ? Vector3(random_vector(random, 0.1)) : place[parent];
         }
         const Vector3 center = at + random_vector(random, 0.05);
         add_body(center, 0.05);

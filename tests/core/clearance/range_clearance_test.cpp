@@ -42,9 +42,7 @@ PairClearance certified(const scene::Scene& scene, int a, int b, double toleranc
     return certify_ranges(model, *ranges, {{a, b, minimum}}, options).front();
 }
 
-double size_of(const Tree& tree) {
-    return tree.model.bodies[static_cast<std::size_t>(tree.a)].radius + tree.model.bodies[static_cast<std::size_t>(tree.b)].radius;
-}
+double size_of(const Tree& tree) { return tree.model.bodies[tree.a].radius + tree.model.bodies[tree.b].radius; }
 
 PairClearance certified(const Tree& tree, double tolerance) {
     ClearanceOptions options;
@@ -56,7 +54,7 @@ PairClearance certified(const Tree& tree, double tolerance) {
 std::vector<double> at_witness(const Tree& tree, const PairClearance& found) {
     std::vector<double> u;
     for (const auto& c : tree.ranges.linkage.coordinates) u.push_back(c.start);
-    for (std::size_t k = 0; k < found.coordinates.size(); ++k) u[static_cast<std::size_t>(found.coordinates[k])] = found.at[k];
+    for (std::size_t k = 0; k < found.coordinates.size(); ++k) u[found.coordinates[k]] = found.at[k];
     return u;
 }
 
@@ -89,7 +87,7 @@ void look_at(const Tree& tree, int samples, std::mt19937& random, Campaign& camp
     campaign.widest[k] = std::max(campaign.widest[k], found.upper - found.lower);
     campaign.widest_share[k] = std::max(campaign.widest_share[k], (found.upper - found.lower) / size_of(tree));
     campaign.geared += std::any_of(found.coordinates.begin(), found.coordinates.end(),
-                                   [&](int c) { return tree.ranges.linkage.coordinates[static_cast<std::size_t>(c)].joints.size() > 1; });
+                                   [&](int c) { return tree.ranges.linkage.coordinates[c].joints.size() > 1; });
     CHECK(found.complete);
     CHECK(found.upper - found.lower <= tolerance);
     const std::vector<double> worst = at_witness(tree, found);
@@ -194,13 +192,12 @@ TEST_CASE("ranges: a bound without its losses is found out", "[ranges]") {
         const int count = pair_coordinates(tree);
         if (count < 1 || count > 2) continue;
         const auto shape = [&](int body) {
-            const model::Body& b = tree.model.bodies[static_cast<std::size_t>(body)];
+            const model::Body& b = tree.model.bodies[body];
             return make_piece_tree(b.mesh, *b.hierarchy);
         };
         const PieceTree a = shape(tree.a), b = shape(tree.b);
         const ScrewedPair pair = screwed_pair(a, b, tree.ranges.linkage, linked_pair(tree.ranges.linkage, tree.a, tree.b),
-                                              tree.model.bodies[static_cast<std::size_t>(tree.a)].pose_start,
-                                              tree.model.bodies[static_cast<std::size_t>(tree.b)].pose_start);
+                                              tree.model.bodies[tree.a].pose_start, tree.model.bodies[tree.b].pose_start);
         // The best that the whole box proves, without its losses: more than is there.
         const BoxBound whole(pair, pair.ranges);
         const Vector3 n = Vector3(kinematics::world_position(whole.middle_a(), a.pieces[0].center) -

@@ -85,8 +85,8 @@ NodePlanes hull_planes(const SpanGroup& group, HullDirection& hulls) {
     NodePlanes planes;
     for (int j = 0; j <= most_spans; ++j) {
         const HullDirection::Bound bound = hulls.at(group.at(j), 0);
-        planes.n[static_cast<std::size_t>(j)] = bound.n;
-        planes.f[static_cast<std::size_t>(j)] = bound.apart;
+        planes.n[j] = bound.n;
+        planes.f[j] = bound.apart;
     }
     return planes;
 }
@@ -130,8 +130,8 @@ Verdict judge(std::mt19937& random, int steps, double size, double turn, bool ju
         for (int j = 0; j < group.count; ++j) {
             double sampled = 1e300;
             for (const int i : segments_of(spans, group, j)) {
-                sampled = std::min(sampled, least[static_cast<std::size_t>(i)]);
-                if (group.level == 0) ++verdict.seen[static_cast<std::size_t>(i)];
+                sampled = std::min(sampled, least[i]);
+                if (group.level == 0) ++verdict.seen[i];
             }
             ++verdict.spans;
             verdict.wrong += of_elements.spans[j] > sampled || of_boxes.spans[j] > sampled || of_planes.spans[j] > sampled;

@@ -36,17 +36,17 @@ inline TumblingBoxes tumbling(int bodies, int steps, unsigned seed) {
     scene.trajectory.timestep = 0.1;
     for (int t = 0; t < steps; ++t) {
         core::stepper::TrajectoryStep step;
-        step.nodes.resize(static_cast<std::size_t>(2 + t % 3));
+        step.nodes.resize(2 + t % 3);
         std::vector<core::kinematics::Pose> end = scene.trajectory.poses.back();
         for (int i = 0; i < bodies; ++i) {
-            const core::kinematics::Pose& pose = scene.trajectory.poses.back()[static_cast<std::size_t>(i)];
+            const core::kinematics::Pose& pose = scene.trajectory.poses.back()[i];
             const core::base::Vector3 turn = i == 0 ? core::base::Vector3::Zero() : vector(1.5),
                                       shift = i == 0 ? core::base::Vector3::Zero() : vector(0.4);
             for (std::size_t k = 0; k < step.nodes.size(); ++k) {
                 const double s = static_cast<double>(k) / static_cast<double>(step.nodes.size() - 1);
                 step.nodes[k].push_back({pose.position + s * shift, s * turn});
             }
-            end[static_cast<std::size_t>(i)] = {core::kinematics::rotation(turn) * pose.rotation, pose.position + shift};
+            end[i] = {core::kinematics::rotation(turn) * pose.rotation, pose.position + shift};
         }
         scene.trajectory.steps.push_back(step);
         scene.trajectory.poses.push_back(end);

@@ -23,8 +23,8 @@ geometry::Mesh cut(const geometry::Mesh& mesh) {
     for (const auto& x : mesh.vertices.colwise()) vertices.push_back(x);
     std::map<std::pair<int, int>, int> middles;
     const auto middle = [&](int a, int b) {
-        const auto [at, added] = middles.try_emplace(std::minmax(a, b), static_cast<int>(vertices.size()));
-        if (added) vertices.push_back(0.5 * (vertices[static_cast<std::size_t>(a)] + vertices[static_cast<std::size_t>(b)]));
+        const auto [at, added] = middles.try_emplace(std::minmax(a, b), count_of(vertices));
+        if (added) vertices.push_back(0.5 * (vertices[a] + vertices[b]));
         return at->second;
     };
     std::vector<geometry::Triangle> triangles;
@@ -32,8 +32,8 @@ geometry::Mesh cut(const geometry::Mesh& mesh) {
         const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
         for (const geometry::Triangle& t : {geometry::Triangle{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}) triangles.push_back(t);
     }
-    Matrix3X x(3, static_cast<Eigen::Index>(vertices.size()));
-    for (std::size_t i = 0; i < vertices.size(); ++i) x.col(static_cast<Eigen::Index>(i)) = vertices[i];
+    Matrix3X x(3, vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) x.col(i) = vertices[i];
     return geometry::make_mesh("cut", x, triangles);
 }
 
@@ -97,14 +97,14 @@ TEST_CASE("shares of areas add up to the contacts' weights", "[area_weight]") {
         const ccd::Candidates candidates = ccd::find_candidates(model, poses, 0);
         const ContactSet set = find_contacts(model, candidates, poses);
         const ContactAreas areas = contact_areas(model, candidates, poses);
-        REQUIRE(static_cast<int>(areas.shares.size()) == set.count);
+        REQUIRE(count_of(areas.shares) == set.count);
         std::size_t place = 0;
         for (const BodyPairContacts& list : set.pairs)
             for (const ContactPair& pair : list.contacts) {
                 double sum = 0;
                 for (const AreaShare& share : areas.shares[place]) {
-                    const model::Body& body = model.bodies[static_cast<std::size_t>(share.body)];
-                    sum += share.factor * (share.is_edge ? body.edge_area : body.vertex_area)[static_cast<std::size_t>(share.element)];
+                    const model::Body& body = model.bodies[share.body];
+                    sum += share.factor * (share.is_edge ? body.edge_area : body.vertex_area)[share.element];
                     edges += share.is_edge ? 1 : 0;
                     negative += share.factor < 0 ? 1 : 0;
                 }

@@ -22,8 +22,8 @@ namespace {
 using Corners = std::vector<std::array<double, 2>>;
 
 geometry::Mesh sheet(const Corners& corners, const std::vector<geometry::Triangle>& triangles) {
-    Matrix3X x = Matrix3X::Zero(3, static_cast<Eigen::Index>(corners.size()));
-    for (std::size_t k = 0; k < corners.size(); ++k) x.col(static_cast<Eigen::Index>(k)).head<2>() << corners[k][0], corners[k][1];
+    Matrix3X x = Matrix3X::Zero(3, corners.size());
+    for (std::size_t k = 0; k < corners.size(); ++k) x.col(k).head<2>() << corners[k][0], corners[k][1];
     return geometry::make_mesh("sheet", x, triangles);
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("contacts with the same closest features are one, of the same potentia
         kinematics::BlockHessian hessian{std::vector<Matrix6>(2, Matrix6::Zero()), {}};
         add_barrier_derivatives(set, poses, parameters, kind, gradients, hessian);
         Matrix12 all = Matrix12::Zero();
-        for (int i = 0; i < 2; ++i) all.block<6, 6>(6 * i, 6 * i) = hessian.diagonal[static_cast<std::size_t>(i)];
+        for (int i = 0; i < 2; ++i) all.block<6, 6>(6 * i, 6 * i) = hessian.diagonal[i];
         all.topRightCorner<6, 6>() = hessian.off_diagonal.at(0).block;
         Eigen::Matrix<double, 12, 1> gradient;
         gradient << tangent_gradient(gradients[0]), tangent_gradient(gradients[1]);
@@ -267,8 +267,8 @@ TEST_CASE("two boxes face to face: their diagonals do not matter", "[counted_con
                 std::vector<int> ring;
                 const geometry::Triangle p = box.triangles[t], q = box.triangles[t + 1];
                 for (int k = 0; k < 3; ++k) {
-                    ring.push_back(p[static_cast<std::size_t>(k)]);
-                    const int a = p[static_cast<std::size_t>(k)], b = p[static_cast<std::size_t>((k + 1) % 3)];
+                    ring.push_back(p[k]);
+                    const int a = p[k], b = p[(k + 1) % 3];
                     const bool shared = std::find(q.begin(), q.end(), a) != q.end() && std::find(q.begin(), q.end(), b) != q.end();
                     for (const int v : q)
                         if (shared && v != a && v != b) ring.push_back(v);

@@ -45,7 +45,7 @@ TEST_CASE("laws of measures agree with differences", "[measure_terms]") {
     const StepProblem problem = step_problem(model, start_history(model), model.kappa);
     for (std::size_t k = 0; k < model.mechanism.terms.size(); ++k) {
         const model::MeasureTerm& term = model.mechanism.terms[k];
-        const double start = problem.mechanism.measures[static_cast<std::size_t>(term.measure)];
+        const double start = problem.mechanism.measures[term.measure];
         for (const double m : {start + 0.003, start - 0.004, start + 0.08}) {
             CAPTURE(k, static_cast<int>(term.kind), m);
             const auto at = [&](double x) { return measure_law(problem, term, x); };

@@ -52,7 +52,7 @@ ValueAndGradient evaluate(const Formula& formula, const VectorX& p) {
     for (const int position : positions) inputs.push_back(p[position]);
     const ValueAndGradient at = differentiated(formula, inputs);
     ValueAndGradient out{at.value, VectorX::Zero(p.size())};
-    for (size_t k = 0; k < positions.size(); ++k) out.gradient[positions[k]] = at.gradient[static_cast<Eigen::Index>(k)];
+    for (size_t k = 0; k < positions.size(); ++k) out.gradient[positions[k]] = at.gradient[k];
     return out;
 }
 

@@ -30,7 +30,7 @@ TEST_CASE("what is recorded gives the same numbers again, at other inputs too") 
     CHECK(z.value == sample(1.25, 2.25));
     for (const auto& inputs : {std::array{1.25, 2.25}, std::array{3.0, 0.75}}) {
         const std::vector<double> at = values<double>(tape.nodes(), inputs);
-        CHECK(at[static_cast<std::size_t>(z.node)] == sample(inputs[0], inputs[1]));
+        CHECK(at[z.node] == sample(inputs[0], inputs[1]));
     }
 }
 
@@ -42,7 +42,7 @@ TEST_CASE("gradients forwards and backwards are those of differences, on both si
         const std::vector<double> at = values<double>(tape.nodes(), inputs);
         const VectorX forwards = gradients(tape.nodes(), at, 2).col(z.node);
         std::vector<double> weights(at.size(), 0);
-        weights[static_cast<std::size_t>(z.node)] = 1;
+        weights[z.node] = 1;
         const VectorX backwards = weighted_gradient(tape.nodes(), at, weights, 2);
         CHECK((forwards - backwards).norm() <= 1e-13 * forwards.norm());
         const auto check = tests::support::check_gradient([](const VectorX& p) { return sample(p[0], p[1]); },

@@ -20,12 +20,12 @@ class Halving {
 public:
     Halving(const Mesh& mesh, const std::vector<Triangle>& faces) : mesh_(mesh), faces_(faces), order(faces.size()) {
         std::iota(order.begin(), order.end(), 0);
-        split(0, static_cast<int>(order.size()));
+        split(0, count_of(order));
     }
 
 private:
     Vector3 middle(int face) const {
-        const Matrix3 x = mesh_.vertices(Eigen::all, faces_[static_cast<std::size_t>(face)]);
+        const Matrix3 x = mesh_.vertices(Eigen::all, faces_[face]);
         return 0.5 * (x.rowwise().minCoeff() + x.rowwise().maxCoeff());
     }
     void split(int first, int count) {
@@ -33,8 +33,8 @@ private:
         if (count <= 2) return;
         Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
         for (int i = first; i < first + count; ++i) {
-            low = low.cwiseMin(middle(order[static_cast<std::size_t>(i)]));
-            high = high.cwiseMax(middle(order[static_cast<std::size_t>(i)]));
+            low = low.cwiseMin(middle(order[i]));
+            high = high.cwiseMax(middle(order[i]));
         }
         int axis = 0;
         (high - low).maxCoeff(&axis);
@@ -79,15 +79,14 @@ TEST_CASE("a hierarchy is that of its definition, node for node") {
             const HierarchyNode& node = hierarchy.nodes()[i];
             same_parts = same_parts && std::pair(node.first, node.count) == halving.parts[i];
             if (!node.is_leaf()) {
-                const HierarchyNode &left = hierarchy.nodes()[static_cast<std::size_t>(node.left)],
-                                    &right = hierarchy.nodes()[static_cast<std::size_t>(node.right)];
+                const HierarchyNode &left = hierarchy.nodes()[node.left], &right = hierarchy.nodes()[node.right];
                 same_parts = same_parts && left.first == node.first && right.first == left.first + left.count &&
                              left.count + right.count == node.count;
             }
             Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
             double radius = 0;
             for (int e = node.first; e < node.first + node.count; ++e) {
-                for (const int v : hierarchy.elements()[static_cast<std::size_t>(e)].vertices) {
+                for (const int v : hierarchy.elements()[e].vertices) {
                     low = low.cwiseMin(mesh.vertices.col(v));
                     high = high.cwiseMax(mesh.vertices.col(v));
                     radius = std::max(radius, mesh.vertices.col(v).norm());
@@ -125,15 +124,14 @@ TEST_CASE("each vertex and each edge has one owner that contains it") {
     for (const HierarchyElement& element : hierarchy.elements()) {
         for (int k = 0; k < element.owned_vertex_count; ++k) {
             const auto at = static_cast<std::size_t>(k);
-            ++vertex_owners[static_cast<std::size_t>(element.owned_vertices[at])];
-            CHECK(element.vertices[static_cast<std::size_t>(element.owned_vertex_corner[at])] == element.owned_vertices[at]);
+            ++vertex_owners[element.owned_vertices[at]];
+            CHECK(element.vertices[element.owned_vertex_corner[at]] == element.owned_vertices[at]);
         }
         for (int k = 0; k < element.owned_edge_count; ++k) {
             const auto at = static_cast<std::size_t>(k);
-            const Edge& edge = mesh.edges[static_cast<std::size_t>(element.owned_edges[at])];
-            ++edge_owners[static_cast<std::size_t>(element.owned_edges[at])];
-            for (std::size_t end = 0; end < 2; ++end)
-                CHECK(element.vertices[static_cast<std::size_t>(element.owned_edge_corners[at][end])] == edge[end]);
+            const Edge& edge = mesh.edges[element.owned_edges[at]];
+            ++edge_owners[element.owned_edges[at]];
+            for (std::size_t end = 0; end < 2; ++end) CHECK(element.vertices[element.owned_edge_corners[at][end]] == edge[end]);
         }
     }
     CHECK(std::all_of(vertex_owners.begin(), vertex_owners.end(), [](int n) { return n == 1; }));

@@ -47,9 +47,9 @@ TEST_CASE("every overlapping pair of boxes is visited once") {
         }
         bool once = true;
         std::size_t overlapping = 0;
-        for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
-            for (int j = i + 1; j < static_cast<int>(boxes.size()); ++j) {
-                const bool overlaps = boxes[static_cast<std::size_t>(i)].overlaps(boxes[static_cast<std::size_t>(j)]);
+        for (int i = 0; i < count_of(boxes); ++i) {
+            for (int j = i + 1; j < count_of(boxes); ++j) {
+                const bool overlaps = boxes[i].overlaps(boxes[j]);
                 overlapping += overlaps ? 1 : 0;
                 once = once && visited.count({i, j}) <= 1 && (!overlaps || visited.count({i, j}) == 1);
             }

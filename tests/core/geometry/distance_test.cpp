@@ -76,8 +76,7 @@ TEST_CASE("closest points of slivers are as far apart as exact arithmetic says")
         x[0] = at * (1 - along) * x[2] + along * x[3];
         x[0] += std::ldexp(g.integer(1, 9), -g.integer(4, 12)) * (x[2] - x[1]).cross(x[3] - x[1]).normalized();
         const int turn = g.integer(0, 2);
-        const PairVertices turned{x[0], x[static_cast<std::size_t>(1 + turn)], x[static_cast<std::size_t>(1 + (1 + turn) % 3)],
-                                  x[static_cast<std::size_t>(1 + (2 + turn) % 3)]};
+        const PairVertices turned{x[0], x[1 + turn], x[1 + (1 + turn) % 3], x[1 + (2 + turn) % 3]};
         const ClosestPoints c = closest(PairType::point_triangle, turned);
         const double distance = std::sqrt(c.distance_squared), slack = 1e-15 * reach;
         wrong += !tests::exact_distance_at_most(PairType::point_triangle, turned, turned, 0, distance + slack);
@@ -109,7 +108,7 @@ TEST_CASE("weights say where the closest points are") {
         // At an interior minimum the difference is normal to every way the weights are free to change.
         for (int k = 0; k < c.free_count; ++k) {
             Vector3 way = Vector3::Zero();
-            for (std::size_t j = 0; j < 4; ++j) way += c.free_weight[static_cast<std::size_t>(k)][j] * x[j];
+            for (std::size_t j = 0; j < 4; ++j) way += c.free_weight[k][j] * x[j];
             wrong += std::abs(way.dot(c.difference)) > 1e-12 * (1 + way.norm());
         }
     }

@@ -74,7 +74,7 @@ TEST_CASE("edges of triangles are numbered as they first appear") {
                     of_side.push_back(-1);
                     continue;
                 }
-                const auto [at, fresh] = number.try_emplace(ends(t, k), static_cast<int>(edges.size()));
+                const auto [at, fresh] = number.try_emplace(ends(t, k), count_of(edges));
                 if (fresh) edges.push_back({t[k], t[(k + 1) % 3]});
                 of_side.push_back(at->second);
             }

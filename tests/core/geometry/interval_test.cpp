@@ -115,7 +115,7 @@ TEST_CASE("cross and norm_bound contain the exact results") {
     for (const double x : {1.0, 1.7, 2.0})
         for (const double y : {-2.0, 0.3, 4.0}) {
             const Vector3 v = Vector3(x, 0.25, 0.5).cross(Vector3(3, y, 1.25));
-            for (int k = 0; k < 3; ++k) CHECK(c[static_cast<std::size_t>(k)].contains(v[k]));
+            for (int k = 0; k < 3; ++k) CHECK(c[k].contains(v[k]));
             CHECK(norm_bound(c) >= v.norm());
         }
     CHECK(norm_bound({Interval(3), Interval(-4), Interval(0)}) >= 5);

@@ -14,10 +14,10 @@ namespace {
 
 /// Every triangle with its own three vertices, as an STL file has it.
 Mesh soup_of(const Mesh& mesh) {
-    Matrix3X v(3, 3 * static_cast<int>(mesh.triangles.size()));
+    Matrix3X v(3, 3 * count_of(mesh.triangles));
     std::vector<Triangle> triangles;
     for (const Triangle& t : mesh.triangles) {
-        const int first = 3 * static_cast<int>(triangles.size());
+        const int first = 3 * count_of(triangles);
         for (int k = 0; k < 3; ++k) v.col(first + k) = mesh.vertices.col(t[k]);
         triangles.push_back({first, first + 1, first + 2});
     }
@@ -43,7 +43,7 @@ TEST_CASE("edges of a box appear once, in the order of their first triangle") {
 
 TEST_CASE("Euler characteristic of a torus") {
     const Mesh torus = tests::torus_mesh(2, 0.5, 20);
-    CHECK(torus.vertices.cols() - static_cast<int>(torus.edges.size()) + static_cast<int>(torus.triangles.size()) == 0);
+    CHECK(torus.vertices.cols() - count_of(torus.edges) + count_of(torus.triangles) == 0);
 }
 
 TEST_CASE("shells are edge-connected and numbered by first triangle") {
@@ -145,7 +145,7 @@ TEST_CASE("of large shapes a single vertex tells, wherever it is") {
     for (int i = 0; i + 2 < count; ++i) faces.push_back({i, i + 1, i + 2});
     const Mesh first = make_mesh("first", x, faces);
     std::vector<Mesh> others(200, first);
-    for (int k = 0; k < 200; k += 2) others[static_cast<std::size_t>(k)].vertices(1, 5 * k) += 1e-9;
+    for (int k = 0; k < 200; k += 2) others[k].vertices(1, 5 * k) += 1e-9;
     std::vector<const Mesh*> meshes{&first};
     std::vector<std::size_t> expected{0};
     for (std::size_t k = 0; k < others.size(); ++k) {

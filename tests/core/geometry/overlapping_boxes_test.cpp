@@ -16,9 +16,9 @@ using Pairs = std::vector<std::pair<int, int>>;
 
 Pairs by_all_pairs(const std::vector<Box>& boxes) {
     Pairs pairs;
-    for (int i = 0; i < static_cast<int>(boxes.size()); ++i)
-        for (int j = i + 1; j < static_cast<int>(boxes.size()); ++j)
-            if (boxes[static_cast<std::size_t>(i)].overlaps(boxes[static_cast<std::size_t>(j)])) pairs.emplace_back(i, j);
+    for (int i = 0; i < count_of(boxes); ++i)
+        for (int j = i + 1; j < count_of(boxes); ++j)
+            if (boxes[i].overlaps(boxes[j])) pairs.emplace_back(i, j);
     return pairs;
 }
 

@@ -30,14 +30,14 @@ FreeDofs some_free(int bodies, std::mt19937& random) {
 kinematics::BlockHessian coupled(int bodies, double density, double shift, std::mt19937& random) {
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> chance(0, 1);
-    kinematics::BlockHessian h{std::vector<Matrix6>(static_cast<std::size_t>(bodies), shift * Matrix6::Identity()), {}};
+    kinematics::BlockHessian h{std::vector<Matrix6>(bodies, shift * Matrix6::Identity()), {}};
     for (int a = 0; a < bodies; ++a)
         for (int b = a + 1; b < bodies; ++b) {
             if (chance(random) > density) continue;
             const Matrix6 p = Matrix6::NullaryExpr([&] { return normal(random); }),
                           q = Matrix6::NullaryExpr([&] { return normal(random); });
-            h.diagonal[static_cast<std::size_t>(a)] += p * p.transpose();
-            h.diagonal[static_cast<std::size_t>(b)] += q * q.transpose();
+            h.diagonal[a] += p * p.transpose();
+            h.diagonal[b] += q * q.transpose();
             h.off_diagonal.push_back({a, b, p * q.transpose()});
         }
     return h;

@@ -74,10 +74,10 @@ TEST_CASE("under rows an indefinite matrix is solved, for many right-hand sides 
             const auto h = random_hessian(bodies, shift, random);
             RowJacobian rows;
             for (int i = 0; i + 1 < bodies; ++i) {
-                rows.first.push_back(static_cast<int>(rows.entries.size()));
+                rows.first.push_back(count_of(rows.entries));
                 for (const int body : {i, i + 1}) rows.entries.push_back({body, Vector6::NullaryExpr([&] { return normal(random); })});
             }
-            rows.first.push_back(static_cast<int>(rows.entries.size()));
+            rows.first.push_back(count_of(rows.entries));
             CHECK(system.factorise(h, rows) == (shift > 0));
             REQUIRE(system.factorise_any(h, rows));
             const MatrixX r = MatrixX::Random(system.dofs().count, 5), c = MatrixX::Random(rows.count(), 5);
@@ -95,7 +95,7 @@ TEST_CASE("a singular matrix has no factor", "[linear_system]") {
     for (const int bodies : {2, 40}) {
         LinearSystem system(chain_of_bodies(bodies));
         BlockHessian h;
-        h.diagonal.assign(static_cast<std::size_t>(bodies), Matrix6::Identity());
+        h.diagonal.assign(bodies, Matrix6::Identity());
         h.diagonal.back()(5, 5) = 0;
         CHECK_FALSE(system.factorise_any(h));
     }

@@ -40,13 +40,13 @@ System ring(int bodies, int rows_a_joint, std::mt19937_64& random) {
     }
     for (int i = 0; i < bodies; ++i)
         for (int k = 0; k < rows_a_joint; ++k) {
-            s.rows.first.push_back(static_cast<int>(s.rows.entries.size()));
+            s.rows.first.push_back(count_of(s.rows.entries));
             for (const int b : {std::min(i, (i + 1) % bodies), std::max(i, (i + 1) % bodies)}) {
                 s.rows.entries.push_back({b, Vector6::Zero()});
                 noise(s.rows.entries.back().gradient);
             }
         }
-    s.rows.first.push_back(static_cast<int>(s.rows.entries.size()));
+    s.rows.first.push_back(count_of(s.rows.entries));
     s.dense_h = MatrixX::Zero(s.dofs.count, s.dofs.count);
     s.dense_c = MatrixX::Zero(s.rows.count(), s.dofs.count);
     const auto place = [&](int a, int b, const Matrix6& block) {
@@ -152,7 +152,7 @@ TEST_CASE("rows that are sums of others are found, with what they are sums of", 
         sum.gradient += 0.5 * s.rows.entries[k - s.rows.first[2] + s.rows.first[3]].gradient;
         more.entries.push_back(sum);
     }
-    more.first.push_back(static_cast<int>(more.entries.size()));
+    more.first.push_back(count_of(more.entries));
     const std::vector<constraint::DependentRow> found = constraint::dependent_rows(masses, s.dofs, more);
     REQUIRE(found.size() == 1);
     std::vector<int> all = found[0].on;

@@ -283,7 +283,7 @@ TEST_CASE("A convex polygon is a fan without a test; a star that turns left ever
         circle.emplace_back(0, 100 * std::cos(angle), 100 * std::sin(angle));
         corners.push_back(i);
     }
-    for (int i = 0; i < 5; ++i) star.push_back(circle[static_cast<std::size_t>(2 * i % 5 * (n / 5))]);
+    for (int i = 0; i < 5; ++i) star.push_back(circle[2 * i % 5 * (n / 5)]);
     std::int64_t tests = 0;
     for (const bool turned : {false, true}) {
         if (turned) std::reverse(corners.begin(), corners.end());
@@ -372,7 +372,7 @@ TEST_CASE("every mesh of the paper's scenes loads, and is judged as CGAL judges 
         CHECK(mesh->codimensional_points.empty());
         if (!core::solids::is_closed(*mesh)) not_closed.push_back(mesh->name);
         const auto pairs = core::solids::self_intersections(*mesh, 1000);
-        if (!pairs.empty()) intersecting[mesh->name] = static_cast<int>(pairs.size());
+        if (!pairs.empty()) intersecting[mesh->name] = count_of(pairs);
 
         // The oracle knows no shared vertices: compare the pairs without any.
         const auto share = [&](const std::pair<int, int>& pair) {

@@ -109,7 +109,7 @@ TEST_CASE("3MF: a mirrored item stays a solid, support is left out, other parts 
     for (std::size_t i = 0; i < raw->corners.size(); i += 3)
         triangles.push_back({raw->corners[i], raw->corners[i + 1], raw->corners[i + 2]});
     Matrix3X vertices(3, 4);
-    for (int i = 0; i < 4; ++i) vertices.col(i) = raw->vertices[static_cast<std::size_t>(i)];
+    for (int i = 0; i < 4; ++i) vertices.col(i) = raw->vertices[i];
     CHECK(geometry::solid_moments(vertices, triangles)(3, 3) > 0.02);
     CHECK(vertices.row(0).minCoeff() == Approx(5 - 0.1234567890123456));
 

@@ -19,7 +19,7 @@ constexpr double pi = std::numbers::pi;
 
 base::Result<scene::Scene> read(const std::string& top, const std::string& problem, const std::string& body) {
     return scene_files::parse_scene("{" + top + R"("rigid_body_problem": {)" + problem + R"("rigid_bodies": [{)" + tet + body + "}]}}",
-                                    "/tmp/a.json");
+                                    "fixture.json");
 }
 
 scene::Body body_with(const std::string& keys) {
@@ -115,7 +115,7 @@ TEST_CASE("Groups: bodies that are not dynamic share one", "[scene]") {
                                       body(R"("type": "kinematic", "position": [10, 0, 0])") + "," + body(R"("group_id": 1)") + "," +
                                       body(R"("group_id": 2, "position": [15, 0, 0])") + "," + body(R"("enabled": false)") + "," +
                                       body(R"("group_id": -1, "position": [20, 0, 0])")),
-                                 "/tmp/a.json");
+                                 "fixture.json");
     REQUIRE(scene);
     REQUIRE(scene->bodies.size() == 5);
     const auto model = model::build_model(*scene);

@@ -16,7 +16,7 @@ inline const std::string tet =
 
 /// The scene of one body.
 inline scene::Scene scene_with_body(const std::string& body, const std::string& top = "") {
-    const auto scene = scene_files::parse_scene("{" + top + R"("rigid_body_problem": {"rigid_bodies": [{)" + body + "}]}}", "/tmp/a.json");
+    const auto scene = scene_files::parse_scene("{" + top + R"("rigid_body_problem": {"rigid_bodies": [{)" + body + "}]}}", "fixture.json");
     REQUIRE(scene);
     return *scene;
 }

@@ -82,7 +82,7 @@ TEST_CASE("ends draw in along arcs, splines and corners of all kinds") {
     const DrawnPart part = checked(cam, {20e-3, 12e-3, 3e-3, 1e-3});
     CHECK(part.deviation.in > 0);
     for (std::size_t t = 0; t < part.facets.size(); ++t) {
-        const DrawnSurface& surface = part.surfaces[static_cast<std::size_t>(part.facets[t].surface)];
+        const DrawnSurface& surface = part.surfaces[part.facets[t].surface];
         if (surface.kind != SurfaceKind::plane) continue;
         // The three corners are in the plane that the facet stands for.
         for (const int v : part.mesh.triangles[t]) {

@@ -42,12 +42,12 @@ inline DrawnPart checked(const PartFunction& part, const std::vector<double>& di
     const Eigen::Index rows = drawn_part->mesh.vertices.size();
     MatrixX jacobian(rows, n);
     for (Eigen::Index k = 0; k < n; ++k) {
-        const Matrix3X& column = drawn_part->jacobian[static_cast<std::size_t>(k)];
-        jacobian.col(k) = Eigen::Map<const VectorX>(column.data(), rows) * dimensions[static_cast<std::size_t>(k)];
+        const Matrix3X& column = drawn_part->jacobian[k];
+        jacobian.col(k) = Eigen::Map<const VectorX>(column.data(), rows) * dimensions[k];
     }
     const auto vertices = [&](const VectorX& shares) -> VectorX {
         std::vector<double> at = dimensions;
-        for (std::size_t k = 0; k < at.size(); ++k) at[k] *= 1 + shares[static_cast<Eigen::Index>(k)];
+        for (std::size_t k = 0; k < at.size(); ++k) at[k] *= 1 + shares[k];
         const auto other = draw(part, at, facets, drawn_part->structure, {false, false});
         if (!other || other->mesh.vertices.size() != rows) return VectorX::Constant(rows, NAN);
         return Eigen::Map<const VectorX>(other->mesh.vertices.data(), rows);

@@ -94,7 +94,7 @@ TEST_CASE("a cross bore through a shaft with a flat: derivatives through edges i
     CHECK_FALSE(drawn_part.deviation.in_is_proven);
     bool has_bore = false;
     for (std::size_t t = 0; t < drawn_part.facets.size(); ++t) {
-        const DrawnSurface& surface = drawn_part.surfaces[static_cast<std::size_t>(drawn_part.facets[t].surface)];
+        const DrawnSurface& surface = drawn_part.surfaces[drawn_part.facets[t].surface];
         if (surface.feature != "bore" || surface.kind != SurfaceKind::cylinder) continue;
         has_bore = true;
         CHECK(surface.hollow);

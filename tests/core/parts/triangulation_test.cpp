@@ -19,7 +19,7 @@ namespace {
 void add_loop(PlaneRegion& region, const std::vector<Vector2>& points) {
     std::vector<int> loop;
     for (const Vector2& p : points) {
-        loop.push_back(static_cast<int>(region.points.size()));
+        loop.push_back(count_of(region.points));
         region.points.push_back(p);
     }
     region.loops.push_back(loop);
@@ -29,8 +29,7 @@ double area(const PlaneRegion& region) {
     double twice = 0;
     for (const auto& loop : region.loops) {
         for (std::size_t k = 0; k < loop.size(); ++k) {
-            const Vector2 &p = region.points[static_cast<std::size_t>(loop[k])],
-                          &q = region.points[static_cast<std::size_t>(loop[(k + 1) % loop.size()])];
+            const Vector2 &p = region.points[loop[k]], &q = region.points[loop[(k + 1) % loop.size()]];
             twice += p.x() * q.y() - p.y() * q.x();
         }
     }
@@ -46,8 +45,7 @@ void check(const PlaneRegion& region) {
     double sum = 0;
     for (const auto& t : made.triangles) {
         for (std::size_t k = 0; k < 3; ++k) ++sides[{t[k], t[(k + 1) % 3]}];
-        const Vector2 &a = region.points[static_cast<std::size_t>(t[0])], &b = region.points[static_cast<std::size_t>(t[1])],
-                      &c = region.points[static_cast<std::size_t>(t[2])];
+        const Vector2 &a = region.points[t[0]], &b = region.points[t[1]], &c = region.points[t[2]];
         sum += ((b - a).x() * (c - a).y() - (b - a).y() * (c - a).x()) / 2;
     }
     for (const auto& loop : region.loops)

@@ -9,6 +9,7 @@
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/stepper/simulate.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/test_models.hpp"
 
 namespace fettle::core::records::continuation_test {
@@ -71,7 +72,8 @@ TEST_CASE("a simulation taken up again ends as one run would", "[continuation]")
         REQUIRE(joined.outputs.size() == 80);
         CHECK(joined.outputs.back().kinetic_energy == whole.outputs.back().kinetic_energy);
 
-        const std::string path = "/tmp/fettle_continuation_test.trajectory.json";
+        const TemporaryFolder folder;
+        const std::string path = folder.file("trajectory.json");
         REQUIRE(write_trajectory(path, part.trajectory, model, "", &part.checkpoint).empty());
         const auto stored = read_trajectory(path);
         for (const auto& e : stored.errors()) UNSCOPED_INFO(e.where << ": " << e.message);
@@ -80,7 +82,6 @@ TEST_CASE("a simulation taken up again ends as one run would", "[continuation]")
         REQUIRE(resumed.has_value());
         options.resume = &*resumed;
         check_same(whole, simulate(model, options));
-        std::remove(path.c_str());
     }
 }
 

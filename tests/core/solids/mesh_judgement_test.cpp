@@ -57,7 +57,7 @@ TEST_CASE("copies of triangles are left out") {
     const geometry::Mesh sound = tests::torus_mesh(1, 0.3, 12);
     geometry::Mesh mesh = sound;
     for (int k = 0; k < 5; ++k) {
-        geometry::Triangle copy = sound.triangles[static_cast<std::size_t>(7 * k)];
+        geometry::Triangle copy = sound.triangles[7 * k];
         std::rotate(copy.begin(), copy.begin() + k % 3, copy.end());
         mesh.triangles.push_back(copy);
     }

@@ -19,13 +19,13 @@ namespace {
 bool cross(const geometry::Mesh& mesh, int t, int u) {
     geometry::Mesh two;
     two.vertices = mesh.vertices;
-    two.triangles = {mesh.triangles[static_cast<std::size_t>(t)], mesh.triangles[static_cast<std::size_t>(u)]};
+    two.triangles = {mesh.triangles[t], mesh.triangles[u]};
     return !self_intersections(two, 2).empty();
 }
 
 std::vector<std::pair<int, int>> by_brute_force(const geometry::Mesh& mesh) {
     std::vector<std::pair<int, int>> pairs;
-    const int count = static_cast<int>(mesh.triangles.size());
+    const int count = count_of(mesh.triangles);
     for (int t = 0; t < count; ++t)
         for (int u = t + 1; u < count; ++u)
             if (cross(mesh, t, u)) pairs.emplace_back(t, u);
@@ -82,10 +82,10 @@ TEST_CASE("a list of self-intersections that is cut is the same for any number o
     const geometry::Mesh mesh = shaken(tests::torus_mesh(1, 0.4, 40), 0.05, 0, random);
     const auto all = self_intersections(mesh, 1'000'000);
     REQUIRE(all.size() > 100);
-    const auto count = static_cast<int>(all.size());
+    const auto count = count_of(all);
     for (const int most : {1, 7, count - 1, count, count + 1}) {
         const auto some = self_intersections(mesh, most);
-        CHECK(static_cast<int>(some.size()) == std::min(most, count));
+        CHECK(count_of(some) == std::min(most, count));
         CHECK(std::includes(all.begin(), all.end(), some.begin(), some.end()));
         const base::ThreadLimit one(1);
         CHECK(self_intersections(mesh, most) == some);

@@ -111,7 +111,7 @@ TEST_CASE("Newmark gives an elastic bounce back to the height it fell from", "[p
     double highest_after = 0;
     bool touched = false;
     for (int n = 1; n <= 900; ++n) {
-        touched |= bounce.report.steps[static_cast<std::size_t>(n - 1)].contacts > 0;
+        touched |= bounce.report.steps[n - 1].contacts > 0;
         if (touched && velocity(bounce, n).z() > 0) highest_after = std::max(highest_after, position(bounce, n).z());
     }
     REQUIRE(touched);

@@ -34,8 +34,8 @@ double gap_after(const core::stepper::Simulation& run, int step) { return positi
 double rebound(const core::stepper::Simulation& run) {
     bool touched = false;
     double highest = 0;
-    for (int n = 1; n <= static_cast<int>(run.outputs.size()); ++n) {
-        touched |= run.report.steps[static_cast<std::size_t>(n - 1)].contacts > 0 && velocity(run, n).z() > 0;
+    for (int n = 1; n <= count_of(run.outputs); ++n) {
+        touched |= run.report.steps[n - 1].contacts > 0 && velocity(run, n).z() > 0;
         if (touched) highest = std::max(highest, gap_after(run, n));
     }
     return highest;

@@ -97,7 +97,7 @@ TEST_CASE("A free body tumbles with the integrator's order") {
     const Matrix3 expected = Eigen::Quaterniond(end[0], end[1], end[2], end[3]).toRotationMatrix();
     check_order(all, 4e-3, [&](Integrator integrator, double h) {
         const Simulation out = run_for(mechanisms::built(tumbling(integrator, h)), time);
-        return angle_between(physics::rotation(out, static_cast<int>(out.trajectory.steps.size())), expected);
+        return angle_between(physics::rotation(out, count_of(out.trajectory.steps)), expected);
     });
 }
 
@@ -131,7 +131,7 @@ TEST_CASE("A pendulum swings with the integrator's order") {
         scene.mechanism.joints = {joint("hinge", JointKind::revolute, {"", Vector3::Zero(), y_axis}, {"bar", Vector3::Zero(), y_axis})};
         const model::Model model = mechanisms::built(scene);
         const Simulation out = run_for(model, time);
-        const Vector3 tip = mechanisms::place(model, out, static_cast<int>(out.trajectory.steps.size()), 0, Vector3(length, 0, 0));
+        const Vector3 tip = mechanisms::place(model, out, count_of(out.trajectory.steps), 0, Vector3(length, 0, 0));
         return std::abs(std::atan2(tip.x(), -tip.z()) - expected);
     });
 }
@@ -164,7 +164,7 @@ TEST_CASE("A double pendulum swings with the integrator's order") {
             joint("elbow", JointKind::revolute, {"upper", Vector3(length, 0, 0), y_axis}, {"lower", Vector3::Zero(), y_axis})};
         const model::Model model = mechanisms::built(scene);
         const Simulation out = run_for(model, time);
-        const int last = static_cast<int>(out.trajectory.steps.size());
+        const int last = count_of(out.trajectory.steps);
         const Vector3 tip = mechanisms::place(model, out, last, 1, Vector3(length, 0, 0));
         const Vector3 expected = length * Vector3(std::sin(end[0]) + std::sin(end[1]), 0, -std::cos(end[0]) - std::cos(end[1]));
         return (tip - expected).norm();
@@ -185,7 +185,7 @@ TEST_CASE("A mass on a spring swings with the integrator's order") {
         const model::Model model = mechanisms::built(scene);
         const double mass = model.bodies[0].moments(3, 3);
         const Simulation out = run_for(model, time);
-        const int last = static_cast<int>(out.trajectory.steps.size());
+        const int last = count_of(out.trajectory.steps);
         const double x = mechanisms::place(model, out, last, 0, Vector3::Zero()).x();
         return std::abs(x - stretch * (std::cos(std::sqrt(stiffness / mass) * time) - 1));
     });
@@ -218,7 +218,7 @@ TEST_CASE("A block bounces on soft contact with the integrator's order") {
         scene.dhat = dhat;
         const model::Model model = mechanisms::built(scene);
         const Simulation out = run_for(model, time);
-        const int last = static_cast<int>(out.trajectory.steps.size());
+        const int last = count_of(out.trajectory.steps);
         return std::abs(mechanisms::place(model, out, last, 0, Vector3::Zero()).z() - end[0]);
     });
 }

@@ -148,8 +148,7 @@ TEST_CASE("spin about a principal axis follows each integrator's recursion", "[p
         const auto spinning = run(model, 200, true);
         const std::vector<double> angles = planar_angles(integrator, spin, h, 200);
         for (const int step : {1, 2, 50, 200})
-            CHECK((rotation(spinning, step) - core::kinematics::rotation(Vector3(0, 0, angles[static_cast<std::size_t>(step)]))).norm() <
-                  1e-9);
+            CHECK((rotation(spinning, step) - core::kinematics::rotation(Vector3(0, 0, angles[step]))).norm() < 1e-9);
     }
 }
 

@@ -134,7 +134,7 @@ TEST_CASE("what slides need not get going in each step: three iterations at most
     for (int t = 5; t < 80; ++t) {
         if (t % checkpoint_interval < 2) continue;  // a step begins where it starts until the one before it is known
         INFO("step " << t);
-        CHECK(slide.report.steps[static_cast<std::size_t>(t)].newton_iterations <= 3);
+        CHECK(slide.report.steps[t].newton_iterations <= 3);
     }
 }
 

@@ -148,7 +148,7 @@ TEST_CASE("a slider-crank's stroke is trigonometry's, and its torque that of the
     for (int t = 1; t <= 100; ++t) {
         const double angle = 2 * pi * t / 100;
         worst = std::max(worst, std::abs(place(model, out, t, 2, Vector3::Zero()).x() - crank.slide(angle)));
-        const JointForce& drive = out.outputs[static_cast<std::size_t>(t - 1)].joints.back();
+        const JointForce& drive = out.outputs[t - 1].joints.back();
         worst_torque = std::max(worst_torque, std::abs(drive.effort - load * crank.slope(angle)));
     }
     CAPTURE(worst, worst_torque);
@@ -351,8 +351,8 @@ TEST_CASE("what a gear transmits is told: the torque that turns its second wheel
     const model::Model model = built(scene);
     const Simulation out = run(model, 50);
     const auto inertia = [&](int body) {  // about its hinge, along z
-        const Matrix4& m = model.bodies[static_cast<std::size_t>(body)].moments;
-        const Vector3 c = model.bodies[static_cast<std::size_t>(body)].reference_point;
+        const Matrix4& m = model.bodies[body].moments;
+        const Vector3 c = model.bodies[body].reference_point;
         return m(0, 0) + m(1, 1) + 2 * c.head<2>().dot(m.topRightCorner<2, 1>()) + c.head<2>().squaredNorm() * m(3, 3);
     };
     // torque + ratio effort' = I1 a1,  -effort' = I2 a2 with a2 = ratio a1: the second wheel gets I2 ratio torque/(I1 + ratio^2 I2).

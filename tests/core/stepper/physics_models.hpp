@@ -40,13 +40,9 @@ inline void set_friction(core::model::Model& model, double mu, double eps_v, int
 
 using mechanisms::run;
 
-inline Vector3 position(const core::stepper::Simulation& run, int step, int body = 0) {
-    return run.trajectory.poses[static_cast<std::size_t>(step)][static_cast<std::size_t>(body)].position;
-}
+inline Vector3 position(const core::stepper::Simulation& run, int step, int body = 0) { return run.trajectory.poses[step][body].position; }
 
-inline Matrix3 rotation(const core::stepper::Simulation& run, int step, int body = 0) {
-    return run.trajectory.poses[static_cast<std::size_t>(step)][static_cast<std::size_t>(body)].rotation;
-}
+inline Matrix3 rotation(const core::stepper::Simulation& run, int step, int body = 0) { return run.trajectory.poses[step][body].rotation; }
 
 /// Of the reference point during step `step` (1, 2, ...): implicit Euler's velocity at its end.
 inline Vector3 velocity(const core::stepper::Simulation& run, int step, int body = 0) {

@@ -159,7 +159,7 @@ TEST_CASE("A simulation drives scripts through their entries and pushes what is 
         CHECK(step.fractions.back() == 1);
         const auto corner_node = std::find(step.fractions.begin(), step.fractions.end(), 0.025 / 0.1) - step.fractions.begin();
         REQUIRE(corner_node < static_cast<std::ptrdiff_t>(step.nodes.size()));
-        CHECK((step.nodes[static_cast<std::size_t>(corner_node)][0].position - Vector3(1, 0, 0)).norm() < 1e-8);
+        CHECK((step.nodes[corner_node][0].position - Vector3(1, 0, 0)).norm() < 1e-8);
         CHECK((run.trajectory.poses[1][0].position - Vector3(1, 1, 0)).norm() < 1e-8);
         // Only what stands on the way moves; what is no longer pushed at the end goes where an implicit step has it, back.
         double moved = 0;

@@ -27,7 +27,7 @@ model::Model double_pendulum(bool driven) {
 // The largest distance of B's two points, between nodes too.
 double sampled_gap(const model::Model& model, const Trajectory& trajectory) {
     double worst = 0;
-    for (int t = 0; t < static_cast<int>(trajectory.steps.size()); ++t)
+    for (int t = 0; t < count_of(trajectory.steps); ++t)
         for (int k = 0; k < segment_count(trajectory, t); ++k)
             for (double s = 0; s <= 1; s += 0.125) {
                 const kinematics::Pose a = pose_at(trajectory, t, k, s, 0), b = pose_at(trajectory, t, k, s, 1);

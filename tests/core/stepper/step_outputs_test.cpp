@@ -34,7 +34,7 @@ Simulation run(const model::Model& model, int steps) {
     Simulation simulation = simulate(model, options);
     INFO(simulation.report.message);
     REQUIRE(simulation.report.status == SimulationStatus::ok);
-    REQUIRE(static_cast<int>(simulation.outputs.size()) == steps);
+    REQUIRE(count_of(simulation.outputs) == steps);
     return simulation;
 }
 

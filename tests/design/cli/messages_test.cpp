@@ -291,7 +291,7 @@ TEST_CASE("what a requirement costs is said of the limit that holds") {
     outcome.report.best.objective = 1;
     optimisers::Optimality& optimality = outcome.report.optimality;
     optimality.step = VectorX::Zero(outcome.start.size());
-    optimality.multipliers = VectorX::Zero(static_cast<Eigen::Index>(design.constraints.size()));
+    optimality.multipliers = VectorX::Zero(design.constraints.size());
     const Eigen::Index clearance = 0, stroke = 3;
     REQUIRE(design.constraints[stroke].name.find("stroke") == 0);
     optimality.multipliers[clearance] = 2e3;

@@ -58,7 +58,7 @@ TEST_CASE("example follower: the rise is twice the eccentricity, and the tip kee
         const core::stepper::Trajectory& trajectory = evaluation.simulation.trajectory;
         const Simulated simulated{*evaluation.model, trajectory};
         double least = 1, largest = 0;
-        for (int t = 4; t < static_cast<int>(trajectory.poses.size()); ++t) {
+        for (int t = 4; t < count_of(trajectory.poses); ++t) {
             const double angle = 2 * std::numbers::pi * core::stepper::time_at(trajectory, t);
             const Vector3 centre = quantities::marker_position(simulated, t, 1, Vector3(0, 0, tip));
             const double gap = std::hypot(centre.y() - e * std::sin(angle), centre.z() + e * std::cos(angle)) - disc - tip;

@@ -97,7 +97,7 @@ TEST_CASE("example four-bar: every pin stays in its bore, and the coupler's poin
 
     const Linkage linkage = linkage_at(example, example.start);
     const double journal_play = furthest(4.5e-3, 4.4e-3), pin_play = furthest(3.4e-3, 3.3e-3);
-    const int last = static_cast<int>(evaluation.simulation.trajectory.poses.size()) - 1;
+    const int last = count_of(evaluation.simulation.trajectory.poses) - 1;
     CHECK(last == 100);
     double deviation = 0;
     for (int t = 0; t <= last; ++t) {

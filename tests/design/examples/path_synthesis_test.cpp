@@ -91,7 +91,7 @@ Values values_of(const Example& example, const VectorX& p) {
     Values out;
     for (size_t k = 0; k < example.design.parameters.size(); ++k) {
         const auto& parameter = example.design.parameters[k];
-        const double si = p[static_cast<Eigen::Index>(k)];
+        const double si = p[k];
         out[parameter.name] = parameter.unit.dimension == Dimension::length ? 1e3 * si : si;
     }
     return out;
@@ -99,10 +99,10 @@ Values values_of(const Example& example, const VectorX& p) {
 
 // Of result.json: in the parameters' own units.
 Values values_of(const Example& example, const nlohmann::json& parameters) {
-    VectorX p(static_cast<Eigen::Index>(example.design.parameters.size()));
+    VectorX p(example.design.parameters.size());
     for (size_t k = 0; k < example.design.parameters.size(); ++k) {
         const auto& parameter = example.design.parameters[k];
-        p[static_cast<Eigen::Index>(k)] = to_si(parameters.at(parameter.name).get<double>(), parameter.unit);
+        p[k] = to_si(parameters.at(parameter.name).get<double>(), parameter.unit);
     }
     return values_of(example, p);
 }

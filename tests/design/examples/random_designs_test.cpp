@@ -44,7 +44,7 @@ TEST_CASE("gradients are finite at random designs, and agree with differences al
     const auto& parameters = problem.design().parameters;
     VectorX ranges(problem.parameter_count());
     for (Eigen::Index i = 0; i < ranges.size(); ++i) {
-        const auto& parameter = parameters[static_cast<std::size_t>(i)];
+        const auto& parameter = parameters[i];
         ranges[i] = parameter.upper - parameter.lower;
     }
     constexpr int wanted = 1000, audits = 30;

@@ -115,13 +115,13 @@ TEST_CASE("GLB: assimp reads names, meshes, colours, and the root turns Z up to 
     const std::vector<Colour> colours = part_colours(moving.model);
     CHECK(colours[0] != colours[1]);
     for (int b = 0; b < 2; ++b) {
-        const aiNode* node = find_node(read.scene->mRootNode, moving.model.bodies[static_cast<std::size_t>(b)].name);
+        const aiNode* node = find_node(read.scene->mRootNode, moving.model.bodies[b].name);
         REQUIRE(node != nullptr);
         CHECK(node->mParent == root);
         REQUIRE(node->mNumMeshes == 1);
         const aiMesh& mesh = *read.scene->mMeshes[node->mMeshes[0]];
         CHECK(mesh.mNumFaces == 12);
-        const auto& own = moving.model.bodies[static_cast<std::size_t>(b)].mesh;
+        const auto& own = moving.model.bodies[b].mesh;
         double largest = 0;
         for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
             for (unsigned k = 0; k < 3; ++k) {
@@ -131,7 +131,7 @@ TEST_CASE("GLB: assimp reads names, meshes, colours, and the root turns Z up to 
             }
         }
         CHECK(largest < 1e-8);
-        const double shade = colours[static_cast<std::size_t>(b)][2] / 255.0;
+        const double shade = colours[b][2] / 255.0;
         const double light = shade <= 0.04045 ? shade / 12.92 : std::pow((shade + 0.055) / 1.055, 2.4);  // sRGB to linear
         CHECK(blue(*read.scene->mMaterials[mesh.mMaterialIndex]) == Approx(light).margin(1e-3));
     }

@@ -45,7 +45,7 @@ Cut read_dxf(const std::string& text) {
                 ++out.arcs;
             }
             out.area += twice / 2;
-            out.points += static_cast<int>(knots.size());
+            out.points += count_of(knots);
             ++out.loops;
             knots.clear();
         }
@@ -87,7 +87,7 @@ TEST_CASE("a DXF encloses the area of the figure: arcs are arcs, whole circles c
             const Cut cut = read_dxf(profile_dxf(figure, 1e-6));
             CAPTURE(cut.area, cut.loops, cut.arcs);
             CHECK(cut.area == Approx(1e6 * core::parts::area(figure).value).epsilon(1e-4));
-            CHECK(cut.circles + cut.loops == static_cast<int>(figure.loops.size()));
+            CHECK(cut.circles + cut.loops == count_of(figure.loops));
             CHECK(cut.circles >= 1);  // the bore
         });
     }

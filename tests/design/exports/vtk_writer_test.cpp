@@ -94,8 +94,8 @@ TEST_CASE("VTU: points of all parts in the world, triangles, loose edges and poi
     for (int i = 0; i < 8; ++i) {
         const Vector3 X = box.mesh.vertices.col(i), now = moved.rotation * X + moved.position;
         for (int k = 0; k < 3; ++k) {
-            CHECK(points[static_cast<std::size_t>(3 * i + k)] == now[k]);
-            CHECK(displacement[static_cast<std::size_t>(3 * i + k)] == now[k] - X[k]);
+            CHECK(points[3 * i + k] == now[k]);
+            CHECK(displacement[3 * i + k] == now[k] - X[k]);
         }
     }
     const auto corners = numbers<std::int64_t>(read.arrays.at("connectivity")), ends = numbers<std::int64_t>(read.arrays.at("offsets"));

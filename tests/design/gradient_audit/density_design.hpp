@@ -45,7 +45,7 @@ public:
 
 private:
     static VectorX shares(const design::description::Simulated& s) {
-        VectorX u(static_cast<Eigen::Index>(s.model.bodies.size()));
+        VectorX u(s.model.bodies.size());
         for (Eigen::Index k = 0; k < u.size(); ++k) u[k] = (s.model.bodies[static_cast<size_t>(k)].density - 1000) / 1000;
         return u;
     }

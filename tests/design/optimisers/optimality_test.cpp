@@ -115,7 +115,7 @@ struct Room {
     // As rows, the least first.
     Branches at(const Vector2& x) const {
         Branches rows;
-        rows.values.resize(static_cast<Eigen::Index>(normals.size()));
+        rows.values.resize(normals.size());
         rows.jacobian.resize(rows.values.size(), 2);
         std::vector<Vector2> order = normals;
         std::stable_sort(order.begin(), order.end(), [&](const Vector2& a, const Vector2& b) { return a.dot(x) > b.dot(x); });

@@ -207,7 +207,7 @@ TEST_CASE("each point is evaluated once, and a run repeated has the same bits") 
             OptimiserOptions options = tight(60);
             options.on_evaluation = [&](int, const VectorX& x, const Evaluation&, bool) { points.push_back(x); };
             const OptimiserReport report = run(hock_schittkowski_71(false), name, options);
-            CHECK(report.evaluations == static_cast<int>(points.size()));
+            CHECK(report.evaluations == count_of(points));
             return points;
         };
         const auto first = sequence(), second = sequence();

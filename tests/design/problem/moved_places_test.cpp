@@ -222,7 +222,7 @@ std::vector<double> numbers_of(const Model& model) {
     }
     v(model.gravity);
     v(model.dmin);
-    for (int a = 0; a < static_cast<int>(model.bodies.size()); ++a)
+    for (int a = 0; a < count_of(model.bodies); ++a)
         for (int b = 0; b < a; ++b) v(friction_coefficient(model, b, a));
     for (const core::measure::Frame& f : model.mechanism.set.frames) {
         v(f.point);
@@ -259,11 +259,11 @@ adjoint::ModelGradient gradient_of(const Model& model, const std::vector<double>
         bar.density_bar = weights[at++];
         fill(bar.force_bar);
         fill(bar.torque_bar);
-        for (int t = 0; t < steps; ++t) fill(bar.increment_bar[static_cast<std::size_t>(t)]);
+        for (int t = 0; t < steps; ++t) fill(bar.increment_bar[t]);
     }
     fill(g.gravity_bar);
     g.dmin_bar = weights[at++];
-    for (int a = 0; a < static_cast<int>(model.bodies.size()); ++a)
+    for (int a = 0; a < count_of(model.bodies); ++a)
         for (int b = 0; b < a; ++b) {
             const double weight = weights[at++];
             if (friction_coefficient(model, b, a) > 0) g.friction_bar[{b, a}] = weight;
@@ -292,7 +292,7 @@ adjoint::ModelGradient gradient_of(const Model& model, const std::vector<double>
 // Of a, b and c, numbers between 0.3 and 0.8: something of every operation that is smooth there.
 std::string random_text(std::mt19937_64& random, int depth) {
     const auto pick = [&](int count) { return std::uniform_int_distribution<int>(0, count - 1)(random); };
-    if (depth == 0) return std::array<std::string, 4>{"a", "b", "c", "0.7"}[static_cast<std::size_t>(pick(4))];
+    if (depth == 0) return std::array<std::string, 4>{"a", "b", "c", "0.7"}[pick(4)];
     const std::string x = random_text(random, depth - 1), y = random_text(random, depth - 1);
     switch (pick(12)) {
         case 0:
@@ -388,7 +388,7 @@ TEST_CASE("whatever a parameter moves, its derivative goes back through the star
                 error_of_wrong = std::min(error_of_wrong, std::abs(best - wrong[k]));
             }
             const double tolerance = 1e-7 * std::max(1.0, std::abs(gradient[k]));
-            CAPTURE(design.parameters[static_cast<std::size_t>(k)].name, gradient[k], error);
+            CAPTURE(design.parameters[k].name, gradient[k], error);
             CHECK(error < tolerance);
             if (std::abs(gradient[k]) > 1e-3) CHECK(error_of_wrong > tolerance);
             not_zero += gradient[k] != 0;
@@ -475,9 +475,9 @@ TEST_CASE("a trial whose spring, damper or coefficient of friction is 0 is refus
             const core::scene::BoundNumber& number = design.numbers[k];
             const std::string key = number.place.substr(number.place.rfind('/') + 1);
             if (key != "stiffness" && key != "damping" && key != "friction" && key != "mu") continue;
-            VectorX p = VectorX::Zero(static_cast<Eigen::Index>(design.parameters.size()));
+            VectorX p = VectorX::Zero(design.parameters.size());
             const double scale = number.formula.nodes[1].number, offset = number.formula.nodes[3].number;
-            p[static_cast<Eigen::Index>(k)] = -offset / scale;
+            p[k] = -offset / scale;
             const Result<MovedScene> moved = move_scene(design, p);
             REQUIRE_FALSE(moved);
             CHECK(moved.errors()[0].message.find("must be greater than 0") != std::string::npos);

@@ -42,7 +42,7 @@ inline void check_pose_gradient(const design::description::Quantity& quantity, d
     core::stepper::Trajectory trajectory = moving(14);
     const auto count = static_cast<Eigen::Index>(trajectory.poses.size());
     const design::description::Simulated simulated{model, trajectory, 1e-9};
-    adjoint::Seeds seeds = adjoint::zero_seeds(model, static_cast<int>(trajectory.steps.size()));
+    adjoint::Seeds seeds = adjoint::zero_seeds(model, count_of(trajectory.steps));
     quantity.add_seeds(simulated, quantity.value(simulated), 1.7, seeds);
     VectorX gradient(12 * count);
     for (Eigen::Index t = 0; t < count; ++t)
@@ -72,7 +72,7 @@ inline void check_deviations(const design::description::Quantity& quantity) {
     REQUIRE(r.size() > 0);
     CHECK(r.squaredNorm() == Approx(measured.value));
     const auto seeded = [&](const auto& add) {
-        adjoint::Seeds seeds = adjoint::zero_seeds(model, static_cast<int>(trajectory.steps.size()));
+        adjoint::Seeds seeds = adjoint::zero_seeds(model, count_of(trajectory.steps));
         add(seeds);
         return seeds.trajectory_bar.pose_bar;
     };

@@ -239,7 +239,7 @@ void check_derivatives(const DesignProblem& problem, double tolerance) {
         const problem::DesignEvaluation there = problem.evaluate(p, {false, {}, {}});
         INFO(there.reason);
         REQUIRE(there.usable);
-        VectorX out(static_cast<Eigen::Index>(there.constraints.size()));
+        VectorX out(there.constraints.size());
         for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = there.constraints[static_cast<size_t>(i)].value;
         return out;
     };

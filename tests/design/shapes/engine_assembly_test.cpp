@@ -45,7 +45,7 @@ Engine make_engine(const Values& changes) {
         }
         if (info.name == "crank") engine.crank_radius = values.at("crank_radius");
         if (info.name == "rod") engine.rod_length = values.at("rod_length");
-        engine.parts[static_cast<std::size_t>(part - part_names.begin())] = generate(info.name, values).value().mesh;
+        engine.parts[part - part_names.begin()] = generate(info.name, values).value().mesh;
     }
     REQUIRE(used == changes.size());
     return engine;

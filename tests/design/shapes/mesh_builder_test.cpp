@@ -15,7 +15,7 @@ using Builder = MeshBuilder<double>;
 
 Vector3 vector_area(const Builder& builder, std::size_t triangle) {
     const auto at = [&](int k) {
-        const auto& p = builder.vertices()[static_cast<std::size_t>(builder.triangles()[triangle][static_cast<std::size_t>(k)])];
+        const auto& p = builder.vertices()[builder.triangles()[triangle][k]];
         return Vector3(p[0], p[1], p[2]);
     };
     return (at(1) - at(0)).cross(at(2) - at(0)) / 2;
@@ -72,7 +72,7 @@ TEST_CASE("mesh builder: a strip along the axis looks outwards") {
                           builder.add_ring({.axis = axis, .along = 1, .radius = 2}));
         const Vector3 along = axis == Axis::x ? Vector3::UnitX() : Vector3::UnitZ();
         for (std::size_t i = 0; i < builder.triangles().size(); ++i) {
-            const auto& p = builder.vertices()[static_cast<std::size_t>(builder.triangles()[i][0])];
+            const auto& p = builder.vertices()[builder.triangles()[i][0]];
             const Vector3 position(p[0], p[1], p[2]);
             CHECK(vector_area(builder, i).dot(position - along * along.dot(position)) > 0);
         }

@@ -44,7 +44,7 @@ TEST_CASE("unit circle: points, exact symmetry") {
         const auto circle = unit_circle(n);
         REQUIRE(circle.size() == static_cast<std::size_t>(n));
         for (int i = 0; i < n; ++i) {
-            const auto at = [&](int k) { return circle[static_cast<std::size_t>(((k % n) + n) % n)]; };
+            const auto at = [&](int k) { return circle[((k % n) + n) % n]; };
             const long double angle = 2 * std::numbers::pi_v<long double> * i / n;  // the reference's angle must not be rounded to double
             CHECK(std::abs(static_cast<double>(at(i)[0] - std::cos(angle))) < 2.3e-16);
             CHECK(std::abs(static_cast<double>(at(i)[1] - std::sin(angle))) < 2.3e-16);
@@ -53,7 +53,7 @@ TEST_CASE("unit circle: points, exact symmetry") {
             CHECK(at(n / 4 - i)[0] == at(i)[1]);
             CHECK(at(i + n / 2)[0] == -at(i)[0]);
         }
-        CHECK(circle[static_cast<std::size_t>(n / 4)][0] == 0.0);
+        CHECK(circle[n / 4][0] == 0.0);
     }
     CHECK_THROWS_AS(unit_circle(6), core::base::ContractError);
     CHECK_THROWS_AS(unit_circle(0), core::base::ContractError);
