@@ -21,10 +21,10 @@ public:
         for (const expression::Node& node : number.formula.nodes) {
             Step step{node.operation, {}};
             const auto count = static_cast<std::size_t>(expression::operand_count(node.operation));
-            const int input = node.operation == Operation::input ? number.positions[static_cast<std::size_t>(node.operands[0])] : 0;
+            const int input = node.operation == Operation::input ? number.positions[node.operands[0]] : 0;
             bool varies = node.operation == Operation::input && input < 0;
             for (std::size_t i = 0; i < count; ++i) {
-                step.operands[i] = places[static_cast<std::size_t>(node.operands[i])];
+                step.operands[i] = places[node.operands[i]];
                 varies = varies || step.operands[i].varies;
             }
             places.push_back({varies, varies ? steps_.size() : fixed_.size()});
@@ -33,7 +33,7 @@ public:
             else if (node.operation == Operation::constant)
                 fixed_.emplace_back(node.number);
             else if (node.operation == Operation::input)
-                fixed_.push_back(values[static_cast<std::size_t>(input)]);
+                fixed_.push_back(values[input]);
             else
                 fixed_.push_back(expression::applied<Number>(node.operation, fixed(step, 0), fixed(step, 1), fixed(step, 2)));
         }

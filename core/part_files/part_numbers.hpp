@@ -40,7 +40,7 @@ struct PartNumber {
     T at(const std::vector<Value>& values, const T& parameter) const {
         std::vector<T> inputs;
         inputs.reserve(positions.size());
-        for (const int k : positions) inputs.push_back(k < 0 ? parameter : T(values[static_cast<std::size_t>(k)]));
+        for (const int k : positions) inputs.push_back(k < 0 ? parameter : T(values[k]));
         return expression::value_of<T>(formula, inputs);
     }
     Number at(const Sheet& sheet) const { return at<Number>(sheet.values, Number(0)); }

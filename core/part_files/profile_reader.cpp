@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/part_files/profile_reader.hpp"
 
-#include <algorithm>
 #include <memory>
 
-#include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/part_files/curve_reader.hpp"
 #include "fettle/core/part_files/path_reader.hpp"
 #include "fettle/core/parts/profile_booleans.hpp"
@@ -17,12 +15,6 @@ using files::JsonNode;
 using parts::Loop;
 using parts::Point2;
 using parts::Profile;
-
-struct ProfileReader::Verb {
-    std::string_view name;
-    std::vector<std::string_view> keys;
-    ReadProfile read;
-};
 
 namespace {
 
@@ -59,37 +51,13 @@ std::vector<Loop> loops_of(const std::vector<Profile>& profiles) {
 
 }  // namespace
 
-std::optional<std::string> verb_of(const JsonNode& node, const std::vector<std::string_view>& known, std::string_view what) {
-    std::vector<std::string> found;
-    for (const std::string_view verb : known)
-        if (node[verb].exists()) found.emplace_back(verb);
-    if (found.size() == 1) return found.front();
-    if (found.size() > 1) {
-        node.fail(ErrorCode::inconsistent,
-                  "one thing at a time: this has `" + found[0] + "` and `" + found[1] + "`; put one into the other");
-        return std::nullopt;
-    }
-    std::string near;
-    for (const auto& [key, value] : node.members()) {
-        const auto nearest = key.starts_with('#') ? std::nullopt : files::nearest_word(key, known);
-        if (nearest) near = "; did you mean `" + *nearest + "`, where `" + key + "` stands?";
-    }
-    std::string all;
-    for (const std::string_view verb : known) all += (all.empty() ? "" : ", ") + std::string(verb);
-    node.fail(ErrorCode::missing_key, std::string(what) + " has one of the keys " + all + near);
-    return std::nullopt;
-}
-
-Result<Profile> profile_of(const std::string& name, const ProfileMaker& maker, Sheet& sheet) {
+Result<Profile> ProfileReader::drawn_once(const std::string& name, const ProfileMaker& maker, Sheet& sheet) {
     const auto known = sheet.profiles.find(name);
     if (known != sheet.profiles.end()) return known->second;
     Result<Profile> made = maker(sheet);
     sheet.profiles.emplace(name, made);
     return made;
 }
-
-ProfileReader::ProfileReader(PartNumbers& numbers, const JsonNode& named)
-    : numbers_(numbers), named_(named), makers_(std::make_shared<std::map<std::string, ProfileMaker>>()) {}
 
 const std::vector<ProfileReader::Verb>& ProfileReader::verbs() {
     using P = ProfileReader;
@@ -115,65 +83,11 @@ const std::vector<ProfileReader::Verb>& ProfileReader::verbs() {
     return all;
 }
 
-void ProfileReader::read_named() {
-    for (const auto& [name, node] : named_.members())
-        if (!name.starts_with('#')) (*makers_)[name] = {};  // known before any is read: they stand in any order
-    for (auto& [name, maker] : *makers_) maker = read(named_[name], name);
+std::optional<Error> ProfileReader::size_fault(const Profile& profile, const std::string& where) {
+    return size_of(profile) > most_segments ? std::optional(too_many(where, size_of(profile), most_segments)) : std::nullopt;
 }
 
-ProfileMaker ProfileReader::read(const JsonNode& node, const std::string& name) {
-    ProfileMaker maker = node.is_string() ? reference(node) : read_object(node, name);
-    return [maker = std::move(maker), where = node.where()](Sheet& sheet) -> Result<Profile> {
-        if (!maker || sheet.depth >= deepest_shape)
-            return Error{ErrorCode::inconsistent, where,
-                         "shapes stand within one another more than " + std::to_string(deepest_shape) + " deep; is one made of itself?"};
-        ++sheet.depth;
-        Result<Profile> made = maker(sheet);
-        --sheet.depth;
-        if (made && size_of(*made) > most_segments) return too_many(where, size_of(*made), most_segments);
-        return located(std::move(made), where);
-    };
-}
-
-ProfileMaker ProfileReader::reference(const JsonNode& node) {
-    const std::string name = *node.string();
-    if (makers_->count(name) == 0) {
-        std::vector<std::string_view> known;
-        for (const auto& [each, maker] : *makers_) known.emplace_back(each);
-        node.fail(ErrorCode::out_of_range, "there is no profile `" + name + "`; " + files::did_you_mean(name, known, '`'));
-        return {};
-    }
-    return [name, makers = makers_.get()](Sheet& sheet) { return profile_of(name, makers->at(name), sheet); };
-}
-
-ProfileMaker ProfileReader::read_object(const JsonNode& node, const std::string& name) {
-    if (!node.is_object()) {
-        if (node.exists())
-            node.fail(ErrorCode::wrong_type,
-                      "expected a profile, which is an object or the name of one of `profiles`; found " + node.shown());
-        return {};
-    }
-    std::vector<std::string_view> known;
-    for (const Verb& verb : verbs()) known.push_back(verb.name);
-    const auto found = verb_of(node, known, "a profile");
-    if (!found) return {};
-    const Verb& verb = *std::find_if(verbs().begin(), verbs().end(), [&](const Verb& each) { return each.name == *found; });
-    std::vector<std::string_view> keys{verb.name, "name"};
-    keys.insert(keys.end(), verb.keys.begin(), verb.keys.end());
-    node.allow_keys(keys);
-    return (this->*verb.read)(node, node["name"].string().value_or(name));
-}
-
-// A repeat as its copies, anything else as itself.
-ProfilesMaker ProfileReader::read_copies(const JsonNode& node, const std::string& name) {
-    if (!node.is_object() || !node["repeat"].exists()) {
-        const ProfileMaker one = read(node, name);
-        return [one](Sheet& sheet) -> Result<std::vector<Profile>> {
-            Result<Profile> made = one(sheet);
-            if (!made) return made.errors();
-            return std::vector<Profile>{std::move(*made)};
-        };
-    }
+ProfilesMaker ProfileReader::repeated(const JsonNode& node, const std::string& name) {
     node.allow_keys({"repeat", "count", "about", "every", "step", "name"});
     const std::string own = node["name"].string().value_or(name);
     const ProfileMaker what = read(node["repeat"], own);
@@ -190,30 +104,12 @@ ProfilesMaker ProfileReader::read_copies(const JsonNode& node, const std::string
         if (!made) return made.errors();
         const std::size_t size = size_of(*made) * static_cast<std::size_t>(count);
         if (size > most_segments) return too_many(where, size, most_segments);
-        std::vector<Profile> out(static_cast<std::size_t>(count));
+        std::vector<Profile> out(count);
         for (const Loop& loop : made->loops) {
             const std::vector<Loop> loops = is_linear ? parts::linear_copies(loop, count, step.at(sheet))
                                             : every   ? parts::polar_copies(loop, count, every->at(sheet), about.at(sheet))
                                                       : parts::polar_copies(loop, count, about.at(sheet));
             for (std::size_t k = 0; k < loops.size(); ++k) out[k].loops.push_back(loops[k]);
-        }
-        return out;
-    };
-}
-
-ProfilesMaker ProfileReader::read_list(const JsonNode& node, const std::string& name) {
-    std::vector<ProfilesMaker> makers;
-    if (node.is_array()) {
-        for (const JsonNode& element : node.elements()) makers.push_back(read_copies(element, name));
-    } else if (node.exists()) {
-        makers.push_back(read_copies(node, name));
-    }
-    return [makers](Sheet& sheet) -> Result<std::vector<Profile>> {
-        std::vector<Profile> out;
-        for (const ProfilesMaker& maker : makers) {
-            Result<std::vector<Profile>> made = maker(sheet);
-            if (!made) return made.errors();
-            out.insert(out.end(), made->begin(), made->end());
         }
         return out;
     };
@@ -434,7 +330,7 @@ ProfileMaker ProfileReader::mirror(const JsonNode& node, const std::string& name
 }
 
 ProfileMaker ProfileReader::repeat(const JsonNode& node, const std::string& name) {
-    const ProfilesMaker copies = read_copies(node, name);
+    const ProfilesMaker copies = repeated(node, name);
     return [=, where = node.where()](Sheet& sheet) -> Result<Profile> {
         const Result<std::vector<Profile>> made = copies(sheet);
         if (!made) return made.errors();

@@ -18,45 +18,33 @@
 /// "name" says what messages call an outline; else it is called as the profile that it is drawn for. Part of part_file.hpp.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "fettle/core/part_files/part_numbers.hpp"
+#include "fettle/core/part_files/shape_reader.hpp"
 #include "fettle/core/parts/path.hpp"
 
 namespace fettle::core::part_files {
 
-using ProfileMaker = std::function<Result<parts::Profile>(Sheet&)>;
-using ProfilesMaker = std::function<Result<std::vector<parts::Profile>>(Sheet&)>;
+class ProfileReader;
+using ProfileMaker = ShapeReader<ProfileReader, parts::Profile>::Maker;
+using ProfilesMaker = ShapeReader<ProfileReader, parts::Profile>::ListMaker;
 
-/// Shapes within one another, names looked through, that are drawn; more are a fault.
-inline constexpr int deepest_shape = 200;
-inline constexpr int most_copies = 10'000;
-
-class ProfileReader {
+class ProfileReader : public ShapeReader<ProfileReader, parts::Profile> {
 public:
     /// Both outlive this object. @param named  `profiles` of the file.
-    ProfileReader(PartNumbers& numbers, const files::JsonNode& named);
+    ProfileReader(PartNumbers& numbers, const files::JsonNode& named) : ShapeReader(numbers, named, "profile") {}
 
-    /// Reads all that have a name. Then read() may be called.
-    void read_named();
-    ProfileMaker read(const files::JsonNode& node, const std::string& name);
-    /// What has been read must not outlive this.
-    std::shared_ptr<const std::map<std::string, ProfileMaker>> named_makers() const { return makers_; }
+    /// The profile of that name, drawn once on a sheet.
+    static Result<parts::Profile> drawn_once(const std::string& name, const ProfileMaker& maker, Sheet& sheet);
 
 private:
-    struct Verb;
-    using ReadProfile = ProfileMaker (ProfileReader::*)(const files::JsonNode&, const std::string&);
+    friend ShapeReader;
 
     static const std::vector<Verb>& verbs();
-    ProfileMaker read_object(const files::JsonNode& node, const std::string& name);
-    ProfilesMaker read_copies(const files::JsonNode& node, const std::string& name);
-    ProfilesMaker read_list(const files::JsonNode& node, const std::string& name);
-    ProfileMaker reference(const files::JsonNode& node);
+    static std::optional<Error> size_fault(const parts::Profile& profile, const std::string& where);
+    ProfilesMaker repeated(const files::JsonNode& node, const std::string& name);
 
     ProfileMaker circle(const files::JsonNode& node, const std::string& name);
     ProfileMaker rectangle(const files::JsonNode& node, const std::string& name);
@@ -77,16 +65,6 @@ private:
     ProfileMaker turn(const files::JsonNode& node, const std::string& name);
     ProfileMaker mirror(const files::JsonNode& node, const std::string& name);
     ProfileMaker repeat(const files::JsonNode& node, const std::string& name);
-
-    PartNumbers& numbers_;
-    files::JsonNode named_;
-    std::shared_ptr<std::map<std::string, ProfileMaker>> makers_;
 };
-
-/// The verb of a shape: which of `known` its object has as a key. Fault, and nothing: none, with what was probably meant; several.
-std::optional<std::string> verb_of(const files::JsonNode& node, const std::vector<std::string_view>& known, std::string_view what);
-
-/// The profile of that name, drawn once on a sheet.
-Result<parts::Profile> profile_of(const std::string& name, const ProfileMaker& maker, Sheet& sheet);
 
 }  // namespace fettle::core::part_files

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/parts/helix.hpp"
 #include "fettle/core/parts/revolve.hpp"
 #include "fettle/core/parts/solid_booleans.hpp"
@@ -17,12 +16,6 @@ using base::ErrorCode;
 using files::JsonNode;
 using parts::Profile;
 using parts::Solid;
-
-struct SolidReader::Verb {
-    std::string_view name;
-    std::vector<std::string_view> keys;
-    ReadSolid read;
-};
 
 struct SolidReader::Ends {
     PartNumber below, above;
@@ -88,9 +81,6 @@ std::vector<JsonNode> repeated_layers(const JsonNode& stack, const PartNumbers& 
 
 }  // namespace
 
-SolidReader::SolidReader(PartNumbers& numbers, ProfileReader& profiles, const JsonNode& named)
-    : numbers_(numbers), profiles_(profiles), named_(named), makers_(std::make_shared<std::map<std::string, SolidMaker>>()) {}
-
 const std::vector<SolidReader::Verb>& SolidReader::verbs() {
     using S = SolidReader;
     static const std::vector<Verb> all{{"extrude", {"from", "to", "chamfer", "chamfer_below", "chamfer_above"}, &S::extrude},
@@ -111,58 +101,13 @@ const std::vector<SolidReader::Verb>& SolidReader::verbs() {
     return all;
 }
 
-void SolidReader::read_named() {
-    for (const auto& [name, node] : named_.members())
-        if (!name.starts_with('#')) (*makers_)[name] = {};
-    for (auto& [name, maker] : *makers_) maker = read(named_[name], name);
-}
-
-SolidMaker SolidReader::read(const JsonNode& node, const std::string& name) {
-    SolidMaker maker = node.is_string() ? reference(node) : read_object(node, name);
-    return [maker = std::move(maker), where = node.where()](Sheet& sheet) -> Result<Solid> {
-        if (!maker || sheet.depth >= deepest_shape)
-            return Error{ErrorCode::inconsistent, where,
-                         "shapes stand within one another more than " + std::to_string(deepest_shape) + " deep; is one made of itself?"};
-        ++sheet.depth;
-        Result<Solid> made = maker(sheet);
-        --sheet.depth;
-        return located(std::move(made), where);
-    };
-}
-
-SolidMaker SolidReader::reference(const JsonNode& node) {
-    const std::string name = *node.string();
-    if (makers_->count(name) == 0) {
-        std::vector<std::string_view> known;
-        for (const auto& [each, maker] : *makers_) known.emplace_back(each);
-        node.fail(ErrorCode::out_of_range, "there is no solid `" + name + "`; " + files::did_you_mean(name, known, '`'));
-        return {};
-    }
-    return [name, makers = makers_.get()](Sheet& sheet) -> Result<Solid> {
-        const std::pair key(name, sheet.drawing.facets.lean);
-        const auto known = sheet.solids.find(key);
-        if (known != sheet.solids.end()) return known->second;
-        Result<Solid> made = makers->at(name)(sheet);
-        sheet.solids.emplace(key, made);
-        return made;
-    };
-}
-
-SolidMaker SolidReader::read_object(const JsonNode& node, const std::string& name) {
-    if (!node.is_object()) {
-        if (node.exists())
-            node.fail(ErrorCode::wrong_type, "expected a solid, which is an object or the name of one of `solids`; found " + node.shown());
-        return {};
-    }
-    std::vector<std::string_view> known;
-    for (const Verb& verb : verbs()) known.push_back(verb.name);
-    const auto found = verb_of(node, known, "a solid");
-    if (!found) return {};
-    const Verb& verb = *std::find_if(verbs().begin(), verbs().end(), [&](const Verb& each) { return each.name == *found; });
-    std::vector<std::string_view> keys{verb.name, "name"};
-    keys.insert(keys.end(), verb.keys.begin(), verb.keys.end());
-    node.allow_keys(keys);
-    return (this->*verb.read)(node, node["name"].string().value_or(name));
+Result<Solid> SolidReader::drawn_once(const std::string& name, const SolidMaker& maker, Sheet& sheet) {
+    const std::pair key(name, sheet.drawing.facets.lean);
+    const auto known = sheet.solids.find(key);
+    if (known != sheet.solids.end()) return known->second;
+    Result<Solid> made = maker(sheet);
+    sheet.solids.emplace(key, made);
+    return made;
 }
 
 SolidReader::Ends SolidReader::read_ends(const JsonNode& node) {
@@ -280,15 +225,7 @@ SolidMaker SolidReader::torus(const JsonNode& node, const std::string& name) {
     };
 }
 
-SolidsMaker SolidReader::read_copies(const JsonNode& node, const std::string& name) {
-    if (!node.is_object() || !node["repeat"].exists()) {
-        const SolidMaker one = read(node, name);
-        return [one](Sheet& sheet) -> Result<std::vector<Solid>> {
-            Result<Solid> made = one(sheet);
-            if (!made) return made.errors();
-            return std::vector<Solid>{std::move(*made)};
-        };
-    }
+SolidsMaker SolidReader::repeated(const JsonNode& node, const std::string& name) {
     node.allow_keys({"repeat", "count", "axis", "about", "every", "step", "name"});
     const SolidMaker what = read(node["repeat"], node["name"].string().value_or(name));
     const int count = numbers_.count(node.require("count"), 0, most_copies).value_or(0);
@@ -309,24 +246,6 @@ SolidsMaker SolidReader::read_copies(const JsonNode& node, const std::string& na
         if (is_linear) return parts::linear_copies(*made, count, step.at(sheet));
         if (every) return parts::polar_copies(*made, count, every->at(sheet), axis.at(sheet), about.at(sheet));
         return parts::polar_copies(*made, count, axis.at(sheet), about.at(sheet));
-    };
-}
-
-SolidsMaker SolidReader::read_list(const JsonNode& node, const std::string& name) {
-    std::vector<SolidsMaker> makers;
-    if (node.is_array()) {
-        for (const JsonNode& element : node.elements()) makers.push_back(read_copies(element, name));
-    } else if (node.exists()) {
-        makers.push_back(read_copies(node, name));
-    }
-    return [makers](Sheet& sheet) -> Result<std::vector<Solid>> {
-        std::vector<Solid> out;
-        for (const SolidsMaker& maker : makers) {
-            Result<std::vector<Solid>> made = maker(sheet);
-            if (!made) return made.errors();
-            out.insert(out.end(), made->begin(), made->end());
-        }
-        return out;
     };
 }
 
@@ -406,7 +325,7 @@ SolidMaker SolidReader::mirror(const JsonNode& node, const std::string& name) {
 }
 
 SolidMaker SolidReader::repeat(const JsonNode& node, const std::string& name) {
-    const SolidsMaker copies = read_copies(node, name);
+    const SolidsMaker copies = repeated(node, name);
     return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
         const Result<std::vector<Solid>> made = copies(sheet);
         if (!made) return made.errors();

@@ -14,9 +14,7 @@
 /// Part of part_file.hpp.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,29 +23,24 @@
 
 namespace fettle::core::part_files {
 
-using SolidMaker = std::function<Result<parts::Solid>(Sheet&)>;
-using SolidsMaker = std::function<Result<std::vector<parts::Solid>>(Sheet&)>;
+class SolidReader;
+using SolidMaker = ShapeReader<SolidReader, parts::Solid>::Maker;
+using SolidsMaker = ShapeReader<SolidReader, parts::Solid>::ListMaker;
 
-class SolidReader {
+class SolidReader : public ShapeReader<SolidReader, parts::Solid> {
 public:
     /// All outlive this object. @param named  `solids` of the file.
-    SolidReader(PartNumbers& numbers, ProfileReader& profiles, const files::JsonNode& named);
-
-    void read_named();
-    SolidMaker read(const files::JsonNode& node, const std::string& name);
-    /// What has been read must not outlive this.
-    std::shared_ptr<const void> named_makers() const { return makers_; }
+    SolidReader(PartNumbers& numbers, ProfileReader& profiles, const files::JsonNode& named)
+        : ShapeReader(numbers, named, "solid"), profiles_(profiles) {}
 
 private:
-    struct Verb;
+    friend ShapeReader;
     struct Ends;
-    using ReadSolid = SolidMaker (SolidReader::*)(const files::JsonNode&, const std::string&);
 
     static const std::vector<Verb>& verbs();
-    SolidMaker read_object(const files::JsonNode& node, const std::string& name);
-    SolidMaker reference(const files::JsonNode& node);
-    SolidsMaker read_copies(const files::JsonNode& node, const std::string& name);
-    SolidsMaker read_list(const files::JsonNode& node, const std::string& name);
+    static Result<parts::Solid> drawn_once(const std::string& name, const SolidMaker& maker, Sheet& sheet);
+    static std::optional<Error> size_fault(const parts::Solid&, const std::string&) { return std::nullopt; }  // each verb looks beforehand
+    SolidsMaker repeated(const files::JsonNode& node, const std::string& name);
     Ends read_ends(const files::JsonNode& node);
 
     SolidMaker extrude(const files::JsonNode& node, const std::string& name);
@@ -66,10 +59,7 @@ private:
     SolidMaker mirror(const files::JsonNode& node, const std::string& name);
     SolidMaker repeat(const files::JsonNode& node, const std::string& name);
 
-    PartNumbers& numbers_;
     ProfileReader& profiles_;
-    files::JsonNode named_;
-    std::shared_ptr<std::map<std::string, SolidMaker>> makers_;
 };
 
 }  // namespace fettle::core::part_files

@@ -5,8 +5,6 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-
 namespace fettle::core::part_files::part_file_test {
 
 namespace {
