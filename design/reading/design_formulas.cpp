@@ -2,6 +2,7 @@
 #include "fettle/design/reading/design_formulas.hpp"
 
 #include "fettle/core/base/limits.hpp"
+#include "fettle/design/reading/read_context.hpp"
 
 namespace fettle::design::reading {
 
@@ -12,7 +13,6 @@ using core::files::JsonNode;
 DesignFormulas::DesignFormulas(core::files::JsonDocument& document, double length_unit, std::vector<core::scene::Variable> scene_variables)
     : document_(document), scene_variables_(std::move(scene_variables)) {
     scope_.what = "parameter or variable";
-    constexpr double grams = 1e-3;
     scope_.plain_unit = core::expression::plain_units(length_unit, grams);
     take_scene_variables();
     document_.read_formulas([this](const JsonNode& node, const std::string& text, Dimension dimension, double si_per_number) {

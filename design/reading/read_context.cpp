@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/reading/read_context.hpp"
 
+#include "fettle/core/expression/parse_formula.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 
 namespace fettle::design::reading {
@@ -29,19 +30,7 @@ std::optional<Vector3> ReadContext::axis(const JsonNode& node) const {
     return vector->normalized();
 }
 
-double ReadContext::unit(Dimension dimension) const {
-    switch (dimension) {
-        case Dimension::length:
-        case Dimension::speed:
-            return length_unit;
-        case Dimension::area:
-            return length_unit * length_unit;
-        case Dimension::mass:
-            return 1e-3;
-        default:
-            return 1;
-    }
-}
+double ReadContext::unit(Dimension dimension) const { return core::expression::plain_units(length_unit, grams)(dimension); }
 
 std::string unique_name(const std::string& wanted, std::set<std::string>& taken) {
     std::string name = wanted;

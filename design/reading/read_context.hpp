@@ -12,6 +12,8 @@
 
 namespace fettle::design::reading {
 
+inline constexpr double grams = 1e-3;  ///< the unit of masses without a unit in designs [kg]
+
 struct ReadContext {
     const core::scene::Scene& scene;
     double length_unit = 1;  ///< of the file [m]
@@ -21,7 +23,8 @@ struct ReadContext {
     std::optional<int> body(const core::files::JsonNode& node) const;
     /// A direction, normalised. Errors: zero.
     std::optional<Vector3> axis(const core::files::JsonNode& node) const;
-    /// SI value of the unit that plain numbers of this dimension are in: lengths and areas by the file's unit, masses in grams, else SI.
+    /// SI value of the unit that plain numbers of this dimension are in: lengths, areas and speeds by the file's unit, masses
+    /// in grams, angles in degrees, else SI.
     double unit(Dimension dimension) const;
 };
 

@@ -33,7 +33,7 @@ class RelationReader {
 public:
     RelationReader(const ReadContext& context, const std::vector<description::Parameter>& parameters, std::set<std::string> names)
         : context_(context), parameters_(parameters), scope_(description::scope_of(parameters)), names_(std::move(names)) {
-        scope_.plain_unit = core::expression::plain_units(context.length_unit, context.unit(Dimension::mass));
+        scope_.plain_unit = core::expression::plain_units(context.length_unit, grams);
     }
 
     std::optional<Relation> read(const JsonNode& node) {
@@ -75,8 +75,7 @@ private:
     // What it changes by, to first order, when every parameter goes from one bound to the other.
     double change(const RelationValue& start) const {
         double sum = 0;
-        for (size_t k = 0; k < parameters_.size(); ++k)
-            sum += std::abs(start.gradient[static_cast<Eigen::Index>(k)]) * (parameters_[k].upper - parameters_[k].lower);
+        for (size_t k = 0; k < parameters_.size(); ++k) sum += std::abs(start.gradient[k]) * (parameters_[k].upper - parameters_[k].lower);
         return sum;
     }
 
