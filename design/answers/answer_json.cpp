@@ -60,7 +60,7 @@ Json clearance_json(const std::vector<PairClearance>& pairs, const std::vector<s
 Json parameters_json(const description::Design& design, const VectorX& values) {
     Json json = Json::object();
     for (size_t k = 0; k < design.parameters.size(); ++k) {
-        json[design.parameters[k].name] = description::from_si(values[static_cast<Eigen::Index>(k)], design.parameters[k].unit);
+        json[design.parameters[k].name] = description::from_si(values[k], design.parameters[k].unit);
     }
     return json;
 }
@@ -74,7 +74,7 @@ Json units_json(const description::Design& design) {
 Json gradient_json(const description::Design& design, const VectorX& gradient) {
     Json json = Json::object();
     for (size_t k = 0; k < design.parameters.size(); ++k) {
-        json[design.parameters[k].name] = gradient[static_cast<Eigen::Index>(k)] * to_si(1, design.parameters[k].unit);
+        json[design.parameters[k].name] = gradient[k] * to_si(1, design.parameters[k].unit);
     }
     return json;
 }

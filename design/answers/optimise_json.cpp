@@ -70,7 +70,7 @@ Json stages_json(const optimisers::OptimiserReport& report) {
 Json optimality_json(const Design& design, const optimisers::Optimality& o) {
     Json residual = Json::object(), held = Json::object(), improvable = Json::array();
     for (size_t k = 0; k < design.parameters.size(); ++k) {
-        residual[design.parameters[k].name] = o.residual[static_cast<Eigen::Index>(k)];
+        residual[design.parameters[k].name] = o.residual[k];
         held[design.parameters[k].name] = optimisers::to_string(o.held[k]);
     }
     for (const int k : o.improvable) {
@@ -79,7 +79,7 @@ Json optimality_json(const Design& design, const optimisers::Optimality& o) {
     }
     Json multipliers = Json::object();
     for (size_t i = 0; i < design.constraints.size(); ++i)
-        multipliers[design.constraints[i].name] = o.multipliers[static_cast<Eigen::Index>(i)] * design.constraints[i].bounds.unit;
+        multipliers[design.constraints[i].name] = o.multipliers[i] * design.constraints[i].bounds.unit;
     Json json{{"multipliers", multipliers}, {"predicted_gain", o.predicted_gain},
               {"worth", o.worth},           {"radius", o.radius},
               {"residual", residual},       {"held_by", held},
@@ -112,7 +112,7 @@ Json repair_json(const Design& design, const optimisers::OptimiserReport& report
     Json changes = Json::object();
     for (size_t k = 0; k < design.parameters.size(); ++k) {
         const description::Parameter& p = design.parameters[k];
-        changes[p.name] = description::from_si(report.point[static_cast<Eigen::Index>(k)], p.unit) - description::from_si(p.value, p.unit);
+        changes[p.name] = description::from_si(report.point[k], p.unit) - description::from_si(p.value, p.unit);
     }
     return {{"changes", changes}, {"distance", std::sqrt(report.best.objective)}};
 }
@@ -122,7 +122,7 @@ Json repair_json(const Design& design, const optimisers::OptimiserReport& report
 std::vector<Cost> costs_of(const Design& design, const optimisers::Optimality& o) {
     std::vector<Cost> costs;
     for (size_t i = 0; i < design.constraints.size() && o.step.size() > 0; ++i) {
-        const double y = o.multipliers[static_cast<Eigen::Index>(i)] * design.constraints[i].bounds.unit;
+        const double y = o.multipliers[i] * design.constraints[i].bounds.unit;
         if (y != 0 && std::abs(y) * 0.01 >= o.worth * 0.1) costs.push_back({i, design.constraints[i].name, y});
     }
     std::stable_sort(costs.begin(), costs.end(), [](const Cost& a, const Cost& b) { return std::abs(a.per_unit) > std::abs(b.per_unit); });

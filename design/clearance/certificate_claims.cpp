@@ -157,7 +157,7 @@ CheckedCertificate check_certificate_file(const std::string& path, const core::r
     checked.faults = std::move(report.faults);
     checked.leaves = report.leaves;
     checked.claims = claims_of(certificate);
-    checked.uncovered = core::certificate::uncovered_pairs(certificate, static_cast<int>(stored.model.bodies.size()));
+    checked.uncovered = core::certificate::uncovered_pairs(certificate, count_of(stored.model.bodies));
     bool stale = report.stale;
     const auto add_stale = [&](const char* where, const std::string& message) {
         stale = true;

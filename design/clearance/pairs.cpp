@@ -358,7 +358,7 @@ std::vector<std::string> uncovered_pairs(const Model& model, const PairSelection
     for (const PairSpec& pair : selection.pairs)
         for (const auto& [a, b] : pair.body_pairs) covered.insert(std::minmax(a, b));
     std::vector<std::string> list;
-    const auto count = static_cast<int>(model.bodies.size());
+    const auto count = count_of(model.bodies);
     for (int a = 0; a < count; ++a)
         for (int b = a + 1; b < count; ++b)
             if (covered.count({a, b}) == 0)

@@ -24,7 +24,7 @@ constexpr int most_reaches = 60;  // looked at one after another, each some time
 constexpr double share = 1e-2;    // of the least distance: how well it is told
 
 bool any_may_collide(const core::model::Model& model) {
-    const int count = static_cast<int>(model.bodies.size());
+    const int count = count_of(model.bodies);
     for (int a = 0; a < count; ++a) {
         for (int b = a + 1; b < count; ++b) {
             if (core::model::may_collide(model, a, b)) return true;
@@ -164,7 +164,7 @@ bool PathProver::prove_steps(const core::stepper::Simulation& simulation, int la
 void PathProver::follow(const core::stepper::Simulation& so_far) {
     if (!any_pair_ || should_stop_()) return;
     const Stopwatch watch(seconds_);
-    const auto steps = static_cast<int>(so_far.trajectory.steps.size());
+    const auto steps = count_of(so_far.trajectory.steps);
     for (int last = (stretches_.empty() ? 0 : stretches_.back().last) + stretch_; last <= steps; last += stretch_)
         if (!prove_steps(so_far, last)) return;
 }
@@ -208,7 +208,7 @@ PathProof PathProver::look_closer(const core::stepper::Simulation& simulation) {
         const auto options = proof_options(tolerance, should_stop_);
         judged = judge(model_, core::clearance::certify_clearance(model_, simulation.trajectory, judged.open, options), judged.settled);
         if (!judged.whole && should_stop_()) return stopped();
-        if (judged.open.empty()) return {ProofState::proven, judged.settled, {}, static_cast<int>(simulation.trajectory.steps.size())};
+        if (judged.open.empty()) return {ProofState::proven, judged.settled, {}, count_of(simulation.trajectory.steps)};
     }
     PathProof proof = stopped();  // as far as it goes
     return {ProofState::not_certified, judged.lower, judged.reason, proof.steps};
@@ -221,7 +221,7 @@ PathProof PathProver::finish(const core::stepper::Simulation& simulation) {
 }
 
 PathProof PathProver::finished(const core::stepper::Simulation& simulation) {
-    const auto steps = static_cast<int>(simulation.trajectory.steps.size());
+    const auto steps = count_of(simulation.trajectory.steps);
     const int done = stretches_.empty() ? 0 : stretches_.back().last;
     if ((steps > done || stretches_.empty()) && !prove_steps(simulation, steps)) return stopped();
     double reach = first_reach(simulation);

@@ -88,7 +88,7 @@ Json coordinates_json(const core::clearance::JointRanges& ranges, const PairClea
 // Of all bodies that the pair's joints move to where it is worst.
 Json moved_poses(const Subject& subject, const PairClearance& pair) {
     Json json = Json::object();
-    for (int body = 0; body < static_cast<int>(subject.model.bodies.size()); ++body) {
+    for (int body = 0; body < count_of(subject.model.bodies); ++body) {
         const core::kinematics::Pose at = core::clearance::pose_at_witness(subject.model, *subject.ranges, pair, body);
         const core::kinematics::Pose& start = subject.model.bodies[static_cast<size_t>(body)].pose_start;
         if (at.position == start.position && at.rotation == start.rotation) continue;
@@ -188,6 +188,19 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
                             {"existing", before->existing()},
                             {"resolved", before->resolved()},
                             {"missing", before->missing()}};
+    return json;
+}
+
+Json proof_json(const PathProof& proof, double seconds) {
+    const bool stopped = proof.state == ProofState::stopped;
+    const Json lower = proof.lower ? Json(*proof.lower) : Json();
+    Json json;
+    json["certify_seconds"] = seconds;
+    json["minimum_distance"] = stopped ? Json() : lower;
+    json["certification"] = to_string(proof.state);
+    if (!stopped) return json;
+    json["certified_steps"] = proof.steps;
+    json["certified_distance"] = lower;
     return json;
 }
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/answers/gradient_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/description/requirement_text.hpp"
@@ -36,27 +36,6 @@ struct GradientArguments {
     int check_parameters = 0;
 };
 
-Json failure_json(const DesignEvaluation& evaluation) {
-    Json json;
-    json["status"] = evaluation.interrupted ? "interrupted" : "not_evaluated";
-    json["message"] = evaluation.reason;
-    return json;
-}
-
-// Of a term of the objective or of a constraint; null where one branch alone attains its value.
-const problem::Tie* tie_of(const DesignEvaluation& evaluation, bool of_objective, size_t index) {
-    for (const problem::Tie& tie : evaluation.ties)
-        if (tie.of_objective == of_objective && tie.index == static_cast<int>(index)) return &tie;
-    return nullptr;
-}
-
-void add_tie(const Design& design, const problem::Tie* tie, Json& entry) {
-    if (tie == nullptr) return;
-    entry["ties"] = {{"witnesses", tie->branches},
-                     {"gradient_least", answers::gradient_json(design, tie->least)},
-                     {"gradient_greatest", answers::gradient_json(design, tie->greatest)}};
-}
-
 // @param unit  That the quantity is counted in.
 std::string tie_text(const Design& design, const problem::Tie* tie, double unit) {
     if (tie == nullptr) return {};
@@ -70,46 +49,6 @@ std::string tie_text(const Design& design, const problem::Tie* tie, double unit)
                           std::string(p.unit.name).c_str());
     }
     return text + "\n";
-}
-
-Json values_json(const Design& design, const DesignEvaluation& evaluation) {
-    Json json;
-    json["status"] = "ok";
-    json["objective"] = evaluation.objective;
-    json["gradient"] = answers::gradient_json(design, evaluation.gradient);
-    json["units"] = answers::units_json(design);
-    Json terms = Json::array();
-    for (size_t k = 0; k < design.objective.size(); ++k) {
-        terms.push_back({{"name", design.objective[k].name}, {"weight", design.objective[k].weight}, {"value", evaluation.terms[k].value}});
-        add_tie(design, tie_of(evaluation, true, k), terms.back());
-    }
-    json["terms"] = terms;
-    Json list = Json::array();
-    for (size_t i = 0; i < design.constraints.size(); ++i) {
-        const description::Constraint& constraint = design.constraints[i];
-        const description::Measurement& measured = evaluation.constraints[i];
-        Json entry;
-        entry["name"] = constraint.name;
-        entry["value"] = measured.value;
-        entry["certified_lower"] = measured.lower;
-        entry["met"] = description::violation(constraint.bounds, measured) <= 0;
-        if (!measured.fault.empty()) entry["fault"] = measured.fault;
-        entry["gradient"] = answers::gradient_json(design, evaluation.jacobian.row(static_cast<Eigen::Index>(i)).transpose());
-        add_tie(design, tie_of(evaluation, false, i), entry);
-        list.push_back(std::move(entry));
-    }
-    json["constraints"] = list;
-    json["relations"] = answers::relations_json(design, evaluation.relations);
-    json["forward_seconds"] = evaluation.forward_seconds;
-    json["backward_seconds"] = evaluation.backward_seconds;
-    return json;
-}
-
-double factor_of(const Design& design, const std::string& parameter) {
-    for (const Parameter& p : design.parameters) {
-        if (p.name == parameter) return to_si(1, p.unit);
-    }
-    return 1;
 }
 
 std::string unit_of(const Design& design, const std::string& parameter) {
@@ -130,97 +69,6 @@ CountedIn counted_in(const Design& design, const std::string& quantity) {
         return {constraint.bounds.unit, unit.empty() ? quantity : quantity + " [" + unit + "]"};
     }
     return {1, quantity};
-}
-
-Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
-Json direction_json(const Design& design, const VectorX& direction) {
-    Json json = Json::object();
-    for (size_t k = 0; k < design.parameters.size(); ++k) json[design.parameters[k].name] = direction[static_cast<Eigen::Index>(k)];
-    return json;
-}
-
-Json roughness_json(const Design& design, const RoughnessReport& report) {
-    Json json;
-    json["measured"] = report.measured;
-    if (!report.failures.empty()) json["failures"] = report.failures;
-    if (!report.measured) return json;
-    json["direction"] = direction_json(design, report.direction);
-    json["spacing"] = report.spacing;
-    Json list = Json::array();
-    for (const QuantityRoughness& quantity : report.quantities) {
-        list.push_back({{"quantity", quantity.name},
-                        {"noise", quantity.noise.noise},
-                        {"noise_status", to_string(quantity.noise.status)},
-                        {"rounding", quantity.rounding},
-                        {"holds", quantity.holds},
-                        {"breaks", finite_or_null(quantity.breaks)},
-                        {"tolerance", quantity.tolerance},
-                        {"rough", quantity.rough}});
-    }
-    json["quantities"] = list;
-    json["remedies"] = gradient_audit::roughness_remedies(design, report);
-    return json;
-}
-
-Json contact_changes_json(const Design& design, const CheckReport& report) {
-    Json list = Json::array();
-    for (const gradient_audit::ContactChange& change : report.contact_changes) {
-        const double unit = factor_of(design, change.parameter);
-        const gradient_audit::ContactState &was = change.at.was, &is = change.at.is;
-        list.push_back({{"parameter", change.parameter},
-                        {"from", change.from / unit},
-                        {"to", change.to / unit},
-                        {"event", to_string(change.at.event)},
-                        {"a", change.body_a},
-                        {"b", change.body_b},
-                        {"features", {to_string(is.on_a.kind), to_string(is.on_b.kind)}},
-                        {"features_before", {to_string(was.on_a.kind), to_string(was.on_b.kind)}},
-                        {"time", change.time},
-                        {"place", {is.place.x(), is.place.y(), is.place.z()}},
-                        {"contacts", change.count},
-                        {"others", change.at.others},
-                        {"gradient_jumps", is_kink(change.at.event)}});
-    }
-    return list;
-}
-
-void add_check(const Design& design, const CheckReport& report, Json& json) {
-    Json rows = Json::array();
-    for (const CheckRow& row : report.rows) {
-        const double factor = factor_of(design, row.parameter);
-        rows.push_back({{"parameter", row.parameter},
-                        {"quantity", row.quantity},
-                        {"adjoint", row.adjoint * factor},
-                        {"difference", row.difference * factor},
-                        {"relative_error", row.relative_error},
-                        {"difference_error", finite_or_null(row.difference_error)},
-                        {"kink", row.kink * factor},
-                        {"resolved", row.resolved}});
-    }
-    json["check"] = rows;
-    Json along = Json::array();
-    for (const gradient_audit::LineRow& row : report.along)
-        along.push_back({{"quantity", row.quantity},
-                         {"adjoint", row.adjoint},
-                         {"difference", row.difference},
-                         {"relative_error", row.relative_error},
-                         {"difference_error", finite_or_null(row.difference_error)},
-                         {"resolved", row.resolved},
-                         {"remainder_slope", finite_or_null(row.slope)}});
-    json["along_gradient"] = along;
-    json["sweeps_disagreement"] = finite_or_null(report.sweeps.disagreement);
-    if (!report.sweeps.failure.empty()) json["sweeps_failure"] = report.sweeps.failure;
-    json["left_out"] = report.left_out;
-    json["largest_relative_error"] = report.largest_relative_error;
-    json["check_simulations"] = report.simulations;
-    json["first_step"] = report.first_step;
-    json["not_checked"] = report.failures;
-    json["contact_changes"] = contact_changes_json(design, report);
-    json["contacts_reach"] = Json::object();
-    for (Eigen::Index k = 0; k < report.contacts_reach.rows(); ++k)
-        json["contacts_reach"][design.parameters[static_cast<size_t>(k)].name] = {report.contacts_reach(k, 0), report.contacts_reach(k, 1)};
-    json["roughness"] = roughness_json(design, report.roughness);
 }
 
 // The parameter that moves most along the line, and by how much.
@@ -256,7 +104,7 @@ std::string roughness_text(const Design& design, const RoughnessReport& report) 
 
 // "width grows by 0.01 to 0.1 mm"
 std::string move_text(const Design& design, const gradient_audit::ContactChange& change) {
-    const double unit = factor_of(design, change.parameter);
+    const double unit = answers::parameter_unit(design, change.parameter);
     std::string_view unit_name;
     for (const Parameter& p : design.parameters)
         if (p.name == change.parameter) unit_name = p.unit.name;
@@ -293,7 +141,7 @@ std::string contact_changes_text(const Design& design, const CheckReport& report
         const std::string& name = design.parameters[k].name;
         if (std::find(report.left_out.begin(), report.left_out.end(), name) != report.left_out.end()) continue;
         for (const int side : {0, 1}) {
-            const double looked = report.contacts_reach(static_cast<Eigen::Index>(k), side);
+            const double looked = report.contacts_reach(k, side);
             if (looked >= reach) continue;
             text += "  not examined: " + name + (side == 0 ? " falling" : " growing");
             text += looked > 0 ? formatted(" by more than %.3g %%\n", 100 * looked) : "\n";
@@ -323,7 +171,7 @@ std::string check_text(const Design& design, const CheckReport& report) {
         formatted("%-40s %-28s %14s %14s %10s %10s\n", "quantity", "per unit of", "adjoint", "difference", "error", "(diff.)");
     for (const CheckRow& row : report.rows) {
         const auto [unit, name] = counted_in(design, row.quantity);
-        const double factor = factor_of(design, row.parameter) / unit;
+        const double factor = answers::parameter_unit(design, row.parameter) / unit;
         const std::string parameter = row.parameter + " [" + unit_of(design, row.parameter) + "]";
         text += formatted("%-40s %-28s %14.7g %14.7g %10.2e %10.2e%s\n", name.c_str(), parameter.c_str(), row.adjoint * factor,
                           row.difference * factor, row.relative_error, row.difference_error, row.resolved ? "" : "  hidden by noise");
@@ -351,11 +199,11 @@ std::string values_text(const Design& design, const DesignEvaluation& e, const C
     std::string text = formatted("objective %.10g\n", e.objective);
     for (size_t k = 0; k < design.parameters.size(); ++k) {
         const Parameter& p = design.parameters[k];
-        text += formatted("  d/d %-24s %14.7g per %s\n", p.name.c_str(), e.gradient[static_cast<Eigen::Index>(k)] * to_si(1, p.unit),
-                          std::string(p.unit.name).c_str());
+        text +=
+            formatted("  d/d %-24s %14.7g per %s\n", p.name.c_str(), e.gradient[k] * to_si(1, p.unit), std::string(p.unit.name).c_str());
     }
     for (size_t k = 0; k < design.objective.size(); ++k) {
-        const problem::Tie* tie = tie_of(e, true, k);
+        const problem::Tie* tie = answers::tie_of(e, true, k);
         if (tie != nullptr) text += design.objective[k].name + ", of the objective:\n" + tie_text(design, tie, design.objective[k].unit);
     }
     for (size_t i = 0; i < design.constraints.size(); ++i) {
@@ -367,7 +215,7 @@ std::string values_text(const Design& design, const DesignEvaluation& e, const C
                           description::proven_bound_text(measured.lower, description::Towards::down, bounds.unit, unit).c_str(),
                           description::required_text(bounds, unit).c_str());
         if (!measured.fault.empty()) text += "  " + measured.fault + "\n";
-        text += tie_text(design, tie_of(e, false, i), bounds.unit);
+        text += tie_text(design, answers::tie_of(e, false, i), bounds.unit);
     }
     text += relations_text(design, e.relations, console);
     return text + formatted("forward %.3g s, backward %.3g s\n", e.forward_seconds, e.backward_seconds);
@@ -403,15 +251,15 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
     evaluate.branches = problem::BranchReach::tied;
     const DesignEvaluation evaluation = problem->evaluate(values, evaluate);
     if (!evaluation.usable) {
-        console.result(failure_json(evaluation), "the design cannot be evaluated: " + evaluation.reason + "\n");
+        console.result(answers::not_evaluated_json(evaluation), "the design cannot be evaluated: " + evaluation.reason + "\n");
         return exit_undecided;
     }
-    Json json = values_json(design, evaluation);
+    Json json = answers::values_json(design, evaluation);
     std::string text = values_text(design, evaluation, console);
     int code = exit_done;
     if (options.check) {
         const CheckReport report = run_check(*problem, values, evaluation, options, console);
-        add_check(design, report, json);
+        json.update(answers::check_json(design, report));
         text += check_text(design, report);
         const bool resolved =
             std::all_of(report.rows.begin(), report.rows.end(), [](const CheckRow& row) { return row.resolved && row.kink == 0; });

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/rounded_lengths.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
@@ -22,7 +21,9 @@
 #include "fettle/design/answers/growing_trajectory.hpp"
 #include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/answers/run_folder.hpp"
+#include "fettle/design/answers/simulate_json.hpp"
 #include "fettle/design/clearance/path_proof.hpp"
+#include "fettle/design/clearance/report_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/report_made.hpp"
@@ -44,64 +45,9 @@ struct SimulateArguments {
     bool no_report = false;
 };
 
-// Of the file's frame: its origin is at -c in the body's frame.
-Json bodies_at_end(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
-    constexpr int bodies_at_once = 32;
-    Json::array_t list(model.bodies.size());
-    core::base::parallel_for(static_cast<int>(list.size()), bodies_at_once, [&](int k) {
-        const auto i = static_cast<size_t>(k);
-        const core::kinematics::Pose& pose = trajectory.poses.back()[i];
-        Json& body = list[i] = Json::object();  // a list of pairs would be copied, twice
-        body["name"] = model.bodies[i].name;
-        body["position"] = answers::vector_json(core::kinematics::world_position(pose, -model.bodies[i].reference_point));
-        Json& rotation = body["rotation"] = Json::array();
-        for (int row = 0; row < 3; ++row) rotation.push_back(answers::vector_json(pose.rotation.row(row).transpose()));
-    });
-    return Json(std::move(list));
-}
-
-// Forces at the end, and how well the joints are met over the whole run.
-Json joints_at_end(const core::model::Model& model, const Simulation& simulation) {
-    Json list = Json::array();
-    if (simulation.outputs.empty()) return list;
-    for (const core::stepper::JointForce& f : simulation.outputs.back().joints) {
-        const core::model::Joint& joint = model.mechanism.joints[static_cast<size_t>(f.joint)];
-        Json entry{{"name", joint.name}, {"force", answers::vector_json(f.force)}, {"torque", answers::vector_json(f.torque)}};
-        if (joint.is_motor || couples_joints(joint.kind)) entry["effort"] = f.effort;
-        if (!joint.is_motor && joint.coordinate >= 0)
-            entry["own"] = Json{{"spring", f.spring}, {"damping", f.damping}, {"friction", f.friction}, {"stop", f.stop}};
-        list.push_back(entry);
-    }
-    return list;
-}
-
-void add_joints(const core::model::Model& model, const Simulation& simulation, Json& json) {
-    if (model.mechanism.joints.empty()) return;
-    double gap = 0, path_gap = 0;
-    for (const core::stepper::StepReport& step : simulation.report.steps) {
-        gap = std::max(gap, step.joint_gap);
-        path_gap = std::max(path_gap, step.path_joint_gap);
-    }
-    json["joints"] = joints_at_end(model, simulation);
-    json["joint_gap"] = gap;
-    json["path_joint_gap"] = path_gap;
-}
-
-Json balance_json(const core::stepper::Balance& b) {
-    return Json{{"energy_start", b.energy_start},
-                {"energy_end", b.energy_end},
-                {"work", b.work},
-                {"dissipated", b.dissipated},
-                {"energy_error", b.energy_error},
-                {"energy_scale", b.energy_scale},
-                {"momentum_error", b.momentum_error},
-                {"angular_momentum_error", b.angular_momentum_error},
-                {"angular_momentum_scale", b.angular_momentum_scale}};
-}
-
 void add_balance(const core::model::Model& model, const core::stepper::Balance& balance, const std::string& file, Json& json,
                  Console& console) {
-    json["balance"] = balance_json(balance);
+    json["balance"] = answers::balance_json(balance);
     const std::string warning = balance_warning(model, balance);
     if (warning.empty()) return;
     tell_warnings(console, {warning}, file);
@@ -239,7 +185,6 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     Simulation& simulation = run.simulation;
     const Simulation& earlier = run.earlier;
     const core::model::Model& model = run.loaded.model;
-    const auto& report = simulation.report;
     const std::string loose = hold_joints(options.joint_gap, model, simulation, json);
     // Stopped before it got as far as the run that it goes on with: that run stays.
     const bool writes_out = !options.out.empty() && simulation.trajectory.steps.size() >= earlier.trajectory.steps.size();
@@ -247,21 +192,13 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
         console.narrate("warning: nothing is written to " + options.out + ": " + options.earlier + " has more steps");
     console.narrate("certifying the path");
     const clearance::PathProof proof = run.prover.finish(simulation);
-    Outcome outcome = outcome_of(report, proof);
+    Outcome outcome = outcome_of(simulation.report, proof);
     if (outcome.status == "ok" && !loose.empty()) outcome = {"joints_part", loose, exit_undecided};
     json["status"] = outcome.status;
     if (!outcome.message.empty()) json["message"] = outcome.message;
-    json["steps"] = simulation.trajectory.steps.size();
-    json["newton_iterations"] = report.newton_iterations;
-    json["wall_seconds"] = report.wall_seconds;
-    json["certify_seconds"] = run.prover.seconds();
-    const bool stopped = proof.state == clearance::ProofState::stopped;
-    json["minimum_distance"] = proof.lower && !stopped ? Json(*proof.lower) : Json();
-    json["certification"] = to_string(proof.state);
-    if (stopped) json["certified_steps"] = proof.steps;
-    if (stopped) json["certified_distance"] = proof.lower ? Json(*proof.lower) : Json();
-    json["bodies"] = bodies_at_end(model, simulation.trajectory);
-    add_joints(model, simulation, json);
+    json.update(answers::run_json(simulation));
+    json.update(clearance::proof_json(proof, run.prover.seconds()));
+    answers::add_end(model, simulation, json);
     json["peak_memory_bytes"] = peak_memory_bytes();
     if (!options.poses.empty())
         console.unwritten(core::records::write_poses(options.poses, simulation.trajectory, model, answers::unit_name(model.length_unit)));

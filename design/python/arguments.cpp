@@ -60,7 +60,7 @@ double unit_from(py::handle given, core::base::Dimension dimension, const std::s
 }
 
 int body_from(const std::vector<std::string>& names, py::handle given, const std::string& where) {
-    const auto count = static_cast<int>(names.size());
+    const auto count = count_of(names);
     if (py::isinstance<py::str>(given)) {
         const auto name = given.cast<std::string>();
         const auto found = std::find(names.begin(), names.end(), name);

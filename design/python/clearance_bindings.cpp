@@ -33,7 +33,7 @@ namespace {
 
 std::vector<PairRequest> pairs_that_may_collide(const Model& model, double minimum) {
     std::vector<PairRequest> pairs;
-    const int bodies = static_cast<int>(model.bodies.size());
+    const int bodies = count_of(model.bodies);
     for (int a = 0; a < bodies; ++a)
         for (int b = a + 1; b < bodies; ++b)
             if (core::model::may_collide(model, a, b)) pairs.push_back({.a = a, .b = b, .minimum = minimum});
@@ -165,7 +165,7 @@ void bind_ranges(py::module_& module) {
         [](const Model& model, const JointRanges& ranges, const PairClearance& pair, const py::object& body) {
             check_ranges(ranges, model);
             const std::vector<std::string> names = body_names(model);
-            const auto coordinates = static_cast<int>(ranges.linkage.coordinates.size());
+            const auto coordinates = count_of(ranges.linkage.coordinates);
             const bool known = pair.coordinates.size() == pair.at.size() && std::all_of(pair.coordinates.begin(), pair.coordinates.end(),
                                                                                         [&](int c) { return c >= 0 && c < coordinates; });
             if (!known) refuse(ErrorCode::inconsistent, "pair", "it is not of these ranges");

@@ -57,14 +57,14 @@ VectorX point_from(const std::vector<description::Parameter>& parameters, py::ha
                 refuse(ErrorCode::unknown_key, "p/" + name,
                        "there is no such parameter; " + core::files::did_you_mean(name, {names.begin(), names.end()}));
             const auto k = static_cast<std::size_t>(found - names.begin());
-            p[static_cast<Eigen::Index>(k)] = value_of(k, value);
+            p[k] = value_of(k, value);
         }
         return p;
     }
     const bool listed = py::isinstance<py::list>(given) || py::isinstance<py::tuple>(given);
     if (listed && py::len(given) == parameters.size()) {
-        VectorX p(static_cast<Eigen::Index>(parameters.size()));
-        for (std::size_t k = 0; k < parameters.size(); ++k) p[static_cast<Eigen::Index>(k)] = value_of(k, given[py::int_(k)]);
+        VectorX p(parameters.size());
+        for (std::size_t k = 0; k < parameters.size(); ++k) p[k] = value_of(k, given[py::int_(k)]);
         return p;
     }
     py::detail::make_caster<VectorX> numbers;

@@ -75,7 +75,7 @@ struct PictureArguments {
 
 std::string picture(const Model& model, const Trajectory* trajectory, const PictureArguments& arguments) {
     const exports::Assembly assembly = assembly_of(model, trajectory);
-    const int count = trajectory == nullptr ? 1 : static_cast<int>(trajectory->poses.size());
+    const int count = trajectory == nullptr ? 1 : count_of(trajectory->poses);
     const int t = arguments.t < 0 ? arguments.t + count : arguments.t;
     if (t < 0 || t >= count)
         throw py::index_error("there is no instant " + std::to_string(arguments.t) + "; there are " + std::to_string(count) +
@@ -90,7 +90,7 @@ std::string picture(const Model& model, const Trajectory* trajectory, const Pict
     options.width = width;
     options.height = height;
     options.title = arguments.title;
-    const auto& poses = trajectory == nullptr ? assembly.keyframes.front().poses : trajectory->poses[static_cast<std::size_t>(t)];
+    const auto& poses = trajectory == nullptr ? assembly.keyframes.front().poses : trajectory->poses[t];
     const exports::Picture drawn = exports::draw_picture(assembly, poses, options);
     return arguments.svg ? exports::svg_text(drawn) : exports::png_bytes(drawn);
 }

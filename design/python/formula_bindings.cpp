@@ -42,7 +42,7 @@ Formula combined(const std::string& pattern, const std::vector<Formula>& operand
     std::string text;
     for (const char c : pattern) {
         const bool is_operand = c >= 'A' && c < 'A' + static_cast<char>(operands.size());
-        const std::string& own = is_operand ? operands[static_cast<std::size_t>(c - 'A')].text : text;
+        const std::string& own = is_operand ? operands[c - 'A'].text : text;
         const bool is_plain = own.find_first_of(" +-*/^<") == std::string::npos;
         text += !is_operand ? std::string(1, c) : is_plain ? own : "(" + own + ")";
     }
@@ -82,10 +82,10 @@ Formula from_state(const py::tuple& state) {
     const auto is_sound = [&](std::size_t k) {
         const Node& node = out.nodes[k];
         if (node.operation > Operation::choose) return false;
-        const int limit = node.operation == Operation::input ? static_cast<int>(out.inputs.size()) : static_cast<int>(k);
+        const int limit = node.operation == Operation::input ? count_of(out.inputs) : static_cast<int>(k);
         const int count = node.operation == Operation::input ? 1 : operand_count(node.operation);
         for (int i = 0; i < count; ++i)
-            if (node.operands[static_cast<std::size_t>(i)] < 0 || node.operands[static_cast<std::size_t>(i)] >= limit) return false;
+            if (node.operands[i] < 0 || node.operands[i] >= limit) return false;
         return true;
     };
     bool sound = !out.nodes.empty();
@@ -124,7 +124,7 @@ void bind_formula(py::module_& module) {
             [](const Formula& self, const py::dict& values) {
                 const auto at = core::expression::differentiated(self, inputs_of(self, values));
                 std::map<std::string, double> out;
-                for (std::size_t k = 0; k < self.inputs.size(); ++k) out[self.inputs[k]] = at.gradient[static_cast<Eigen::Index>(k)];
+                for (std::size_t k = 0; k < self.inputs.size(); ++k) out[self.inputs[k]] = at.gradient[k];
                 return out;
             },
             py::arg("values"), "Its derivative in each input there, by name.")

@@ -43,7 +43,7 @@ const Body& body_at(const Model& model, int body) {
     if (body < 0 || static_cast<std::size_t>(body) >= model.bodies.size())
         throw py::index_error("there is no body " + std::to_string(body) + "; there are " + std::to_string(model.bodies.size()) +
                               ", counted from 0");
-    return model.bodies[static_cast<std::size_t>(body)];
+    return model.bodies[body];
 }
 
 py::array read_only(py::array array) {

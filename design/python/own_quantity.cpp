@@ -102,7 +102,7 @@ void add_model_gradient(const FoundGradient& found, double scale, Seeds& seeds) 
         if (body < 0 || static_cast<std::size_t>(body) >= bodies.size())
             refuse(ErrorCode::out_of_range, found.where + "/" + member,
                    "there is no body " + std::to_string(body) + "; there are " + std::to_string(bodies.size()) + ", counted from 0");
-        return bodies[static_cast<std::size_t>(body)];
+        return bodies[body];
     };
     for (const auto& [body, rows] : member_of<std::map<int, py::object>>(found.gradient, "QuantityGradient", "vertices")) {
         Matrix3X& bar = bar_of("vertices", body).vertices_bar;

@@ -66,7 +66,7 @@ DesignEvaluation usable(DesignEvaluation evaluation) {
 
 VectorX each(const DesignProblem& self, double description::Parameter::*member) {
     VectorX values(self.parameter_count());
-    for (Eigen::Index k = 0; k < values.size(); ++k) values[k] = self.design().parameters[static_cast<std::size_t>(k)].*member;
+    for (Eigen::Index k = 0; k < values.size(); ++k) values[k] = self.design().parameters[k].*member;
     return values;
 }
 
@@ -77,8 +77,8 @@ std::vector<std::string> parameter_names(const DesignProblem& self) {
 }
 
 VectorX values_of(const std::vector<description::Measurement>& measured) {
-    VectorX values(static_cast<Eigen::Index>(measured.size()));
-    for (std::size_t i = 0; i < measured.size(); ++i) values[static_cast<Eigen::Index>(i)] = measured[i].value;
+    VectorX values(measured.size());
+    for (std::size_t i = 0; i < measured.size(); ++i) values[i] = measured[i].value;
     return values;
 }
 

@@ -138,6 +138,13 @@ void bind_studies(py::module_& module) {
         "start_of_seed",
         [](const DesignProblem& problem, std::int64_t seed) { return studies::start_of_seed(problem.design(), seed_from(seed)); },
         py::arg("problem"), py::arg("seed"), "(n) SI: where a run of that seed begins.");
+    module.def(
+        "seeds_of_list",
+        [](std::int64_t list, int n) {
+            check_at_least("n", n, 1);
+            return studies::seeds_of_list(seed_from(list), n);
+        },
+        py::arg("list"), py::arg("n"), "The seeds of a list of n starts: 0, then 1000 list + 1, 1000 list + 2, ...");
 }
 
 }  // namespace fettle::design::python

@@ -52,7 +52,7 @@ void write_trajectory(const Path& path, const Trajectory& trajectory, const Mode
 }
 
 std::size_t time_index(const Trajectory& trajectory, int t) {
-    const int count = static_cast<int>(trajectory.poses.size());
+    const int count = count_of(trajectory.poses);
     if (t < -count || t >= count)
         throw py::index_error("the trajectory has no instant " + std::to_string(t) + "; it has " + std::to_string(count) +
                               ", counted from 0");
@@ -83,7 +83,7 @@ py::tuple packed(const Trajectory& trajectory) {
         }
     }
     for (const auto& step : trajectory.steps) {
-        nodes.push_back(static_cast<int>(step.nodes.size()));
+        nodes.push_back(count_of(step.nodes));
         fractions.push_back(step.fractions);
         for (const auto& node : step.nodes) {
             for (const auto& point : node) {
@@ -125,7 +125,7 @@ Trajectory unpacked(const py::tuple& state) {
     for (std::size_t t = 0; t < nodes.size(); ++t) {
         core::stepper::TrajectoryStep& step = trajectory.steps.emplace_back();
         step.fractions = fractions[t];
-        step.nodes.assign(static_cast<std::size_t>(nodes[t]), std::vector<core::kinematics::ChartPoint>(bodies));
+        step.nodes.assign(nodes[t], std::vector<core::kinematics::ChartPoint>(bodies));
         for (auto& node : step.nodes) {
             for (auto& point : node) {
                 take(point.position.data(), 3);

@@ -34,7 +34,7 @@ Json to_json(const VectorX& v) { return std::vector<double>(v.data(), v.data() +
 
 VectorX to_vector(const Json& json) {
     const auto values = json.get<std::vector<double>>();
-    return Eigen::Map<const VectorX>(values.data(), static_cast<Eigen::Index>(values.size()));
+    return Eigen::Map<const VectorX>(values.data(), values.size());
 }
 
 Json rows_json(const MatrixX& matrix) {
@@ -45,7 +45,7 @@ Json rows_json(const MatrixX& matrix) {
 
 // Throws if a row has another length.
 MatrixX to_matrix(const Json& rows, Eigen::Index columns) {
-    MatrixX matrix(static_cast<Eigen::Index>(rows.size()), columns);
+    MatrixX matrix(rows.size(), columns);
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
         const VectorX row = to_vector(rows[static_cast<size_t>(i)]);
         if (row.size() != columns) throw std::runtime_error("sizes do not match the header");
@@ -103,7 +103,7 @@ std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, i
     if (!entry.model.empty()) json["model"] = entry.model;
     if (!e.usable) json["reason"] = e.reason;
     Json parameters = Json::object();
-    for (size_t k = 0; k < header.parameters.size(); ++k) parameters[header.parameters[k]] = entry.point[static_cast<Eigen::Index>(k)];
+    for (size_t k = 0; k < header.parameters.size(); ++k) parameters[header.parameters[k]] = entry.point[k];
     json["parameters"] = parameters;
     if (e.usable) {
         json["objective"] = e.objective;
@@ -154,7 +154,7 @@ HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) 
         e.residuals = to_vector(json.at("residuals"));
         e.residual_jacobian = to_matrix(json.at("residual_jacobian"), n);
     }
-    e.constraint_branches = to_branches(json, "constraint_branches", n, static_cast<int>(header.constraints.size()));
+    e.constraint_branches = to_branches(json, "constraint_branches", n, count_of(header.constraints));
     e.objective_branches = to_branches(json, "objective_branches", n, std::numeric_limits<int>::max());
     e.violation = json.at("violation").get<double>();
     entry.terms = named_values(json.at("terms"));
@@ -284,7 +284,7 @@ Errors History::read_existing(const std::string& path) {
         }
         begin = end + 1;
     }
-    entries_ = static_cast<int>(replayed_.size());
+    entries_ = count_of(replayed_);
     if (begin < text->size() && ::ftruncate(file_, static_cast<off_t>(begin)) != 0) {
         return {{ErrorCode::file_unwritable, path, "cannot be cut back to its last whole line: " + system_message()}};
     }

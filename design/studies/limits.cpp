@@ -74,7 +74,7 @@ private:
             const Parameter& p = design_.parameters[k];
             for (const int up : {0, 1}) {
                 if (!wanted[k][static_cast<size_t>(up)]) continue;
-                const double bound = up == 1 ? p.upper : p.lower, value = point_[static_cast<Eigen::Index>(k)];
+                const double bound = up == 1 ? p.upper : p.lower, value = point_[k];
                 if (std::abs(bound - value) <= 1e-3 * (p.upper - p.lower)) {
                     lines_.push_back("parameter " + p.name + " is at its " + (up == 1 ? "upper" : "lower") + " bound " +
                                      amount(bound, p.unit));
@@ -121,7 +121,7 @@ private:
         }
         for (size_t i = 0; i < design_.relations.size(); ++i) {
             const description::Relation& relation = design_.relations[i];
-            const double value = final_.relations.values[static_cast<Eigen::Index>(i)];
+            const double value = final_.relations.values[i];
             if (description::violation(relation, value) <= 0) continue;
             lines_.push_back(relation.name + " is " + description::amount_text(value, relation.bounds.unit, "", 6) + ", required is " +
                              description::required_text(relation.bounds, ""));

@@ -33,7 +33,7 @@ std::string shortfall(const Design& design, const VectorX& p, const optimisers::
     };
     for (size_t i = 0; i < design.constraints.size(); ++i) {
         const description::Constraint& constraint = design.constraints[i];
-        const description::Measurement value = description::exact(e.constraints[static_cast<Eigen::Index>(i)]);
+        const description::Measurement value = description::exact(e.constraints[i]);
         look_at(constraint.name, description::violation(constraint.bounds, value), description::unit_name(constraint));
     }
     for (const description::Relation& relation : design.relations)

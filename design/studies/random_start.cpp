@@ -33,7 +33,7 @@ VectorX start_of_seed(const description::Design& design, std::uint64_t seed) {
 }
 
 std::vector<std::uint64_t> seeds_of_list(std::uint64_t list, int n) {
-    FETTLE_ASSERT(n >= 1 && n <= 1000, "a list has 1 to 1000 starts");
+    FETTLE_ASSERT(n >= 1, "a list has a start");
     std::vector<std::uint64_t> seeds{0};
     for (int k = 1; k < n; ++k) seeds.push_back(1000 * list + static_cast<std::uint64_t>(k));
     return seeds;

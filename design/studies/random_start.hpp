@@ -13,8 +13,8 @@ namespace fettle::design::studies {
 /// seed gives the same start, on any machine.
 VectorX start_of_seed(const description::Design& design, std::uint64_t seed);
 
-/// The seeds of a list of n starts: 0, then 1000 list + k for k = 1, ..., n - 1. Lists of different numbers share seed 0 alone.
-/// Contract: 1 <= n <= 1000.
+/// The seeds of a list of n starts: 0, then 1000 list + k for k = 1, ..., n - 1. Lists of different numbers that have at most 1000 starts
+/// share seed 0 alone. Contract: n >= 1.
 std::vector<std::uint64_t> seeds_of_list(std::uint64_t list, int n);
 
 }  // namespace fettle::design::studies

@@ -74,6 +74,7 @@ from ._fettle import (
     read_trajectory as read_trajectory,
     shape_at as shape_at,
     shape_remarks as shape_remarks,
+    seeds_of_list as seeds_of_list,
     simulate as simulate,
     sin as sin,
     sqrt as sqrt,

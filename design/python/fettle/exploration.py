@@ -443,8 +443,9 @@ def _jobs(
     problem: _fettle.DesignProblem, sweep: Mapping[str, Union[int, Sequence[float]]], samples: int, starts: int, seed: int
 ) -> List[Job]:
     jobs = grid(problem, sweep) if sweep else []
-    jobs += [Job("evaluate", tuple(_fettle.start_of_seed(problem, 1000 * seed + k))) for k in range(1, samples + 1)]
-    jobs += [Job("optimise", seed=0 if k == 0 else 1000 * seed + k) for k in range(starts)]
+    seeds = _fettle.seeds_of_list(seed, 1 + max(samples, starts))  # as `fettle optimise --starts` has them
+    jobs += [Job("evaluate", tuple(_fettle.start_of_seed(problem, drawn))) for drawn in seeds[1 : samples + 1]]
+    jobs += [Job("optimise", seed=start) for start in seeds[:starts]]
     return list({job.key: job for job in jobs}.values())
 
 

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// What `gradient` answers: objective, constraints and their gradients, and with --check the audit of them. Keys: docs/interface.md.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "fettle/design/gradient_audit/difference_check.hpp"
+#include "fettle/design/problem/design_problem.hpp"
+
+namespace fettle::design::answers {
+
+/// Of a term of the objective or of a constraint; null where one branch alone attains its value.
+const problem::Tie* tie_of(const problem::DesignEvaluation& evaluation, bool of_objective, std::size_t index);
+
+/// One unit of a parameter, as the design has it, in SI. Contract: the design has a parameter of this name.
+double parameter_unit(const description::Design& design, const std::string& parameter);
+
+/// {status, message} of a design that cannot be evaluated.
+nlohmann::ordered_json not_evaluated_json(const problem::DesignEvaluation& evaluation);
+
+/// Of one that can: values and gradients.
+nlohmann::ordered_json values_json(const description::Design& design, const problem::DesignEvaluation& evaluation);
+
+/// What --check adds.
+nlohmann::ordered_json check_json(const description::Design& design, const gradient_audit::CheckReport& report);
+
+}  // namespace fettle::design::answers
