@@ -153,8 +153,8 @@ private:
             const std::size_t at = number.place.find("/shape/dimensions/");
             if (at == std::string::npos) continue;
             const core::scene::Place place = core::scene::find_place(design_.scene, number.place).value();
-            if (design_.shapes[static_cast<std::size_t>(place.item)]) continue;
-            scene_errors_.push_back({ErrorCode::unsupported, design_.scene.bodies[static_cast<std::size_t>(place.item)].where,
+            if (design_.shapes[place.item]) continue;
+            scene_errors_.push_back({ErrorCode::unsupported, design_.scene.bodies[place.item].where,
                                      "it has a `scale`; a part that parameters move has none: give its dimensions their full size"});
         }
     }

@@ -31,7 +31,7 @@ std::string design_text(const DesignFile& file, const VectorX& values, const std
     for (size_t k = 0; k < file.design.parameters.size(); ++k) {
         const description::Parameter& parameter = file.design.parameters[k];
         auto& entry = json["parameters"][k];
-        const double value = values[static_cast<Eigen::Index>(k)];
+        const double value = values[k];
         // A value at a bound is written as the bound is: a neighbour with the same SI value could lie outside.
         entry["value"] = value == parameter.lower   ? entry["lower"]
                          : value == parameter.upper ? entry["upper"]

@@ -107,7 +107,7 @@ FileKind file_kind(const std::string& path) {
                                       FileKind::certificate};
     if (core::mesh_files::has_mesh_extension(path)) return FileKind::mesh;
     const auto key = std::find(keys.begin(), keys.end(), core::files::top_level_key(path, keys));
-    return key == keys.end() ? FileKind::scene : kinds[static_cast<std::size_t>(key - keys.begin())];
+    return key == keys.end() ? FileKind::scene : kinds[key - keys.begin()];
 }
 
 Errors not_wanted(const std::string& path, FileKind kind, const std::string& wanted) {
