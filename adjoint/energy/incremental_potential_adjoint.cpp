@@ -3,12 +3,8 @@
 
 #include <array>
 
-#include "fettle/adjoint/energy/barrier_adjoint.hpp"
-#include "fettle/adjoint/energy/contact_damping_adjoint.hpp"
-#include "fettle/adjoint/energy/damping_adjoint.hpp"
-#include "fettle/adjoint/energy/friction_adjoint.hpp"
-#include "fettle/adjoint/energy/inertia_adjoint.hpp"
-#include "fettle/adjoint/energy/loads_adjoint.hpp"
+#include "fettle/adjoint/energy/body_terms_adjoint.hpp"
+#include "fettle/adjoint/energy/contact_terms_adjoint.hpp"
 #include "fettle/adjoint/energy/measure_terms_adjoint.hpp"
 
 namespace fettle::adjoint::energy {

@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "fettle/adjoint/measure/measure_tangent.hpp"
-#include "fettle/core/energy/measure_law.hpp"
+#include "fettle/core/energy/measure_terms.hpp"
 
 namespace fettle::adjoint::energy {
 namespace {

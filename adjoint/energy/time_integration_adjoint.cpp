@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include "fettle/adjoint/energy/damping_adjoint.hpp"
+#include "fettle/adjoint/energy/body_terms_adjoint.hpp"
 #include "fettle/core/energy/damping_moments.hpp"
-#include "fettle/core/energy/mass_matrix.hpp"
+#include "fettle/core/kinematics/mass_matrix.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
 #include "fettle/core/linear/factorisations.hpp"
 
@@ -81,7 +81,7 @@ public:
 private:
     // Of the mass matrix; where nothing is free that of the identity.
     static Matrix6 free_part(const Body& body, const Matrix3& R) {
-        Matrix6 h = core::energy::mass_matrix(R, body.moments);
+        Matrix6 h = core::kinematics::mass_matrix(R, body.moments);
         for (int k = 0; k < 6; ++k) {
             if (is_free(body, k)) continue;
             h.row(k).setZero();

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "fettle/adjoint/energy/friction_adjoint.hpp"
+#include "fettle/adjoint/energy/contact_terms_adjoint.hpp"
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
 #include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"

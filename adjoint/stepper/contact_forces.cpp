@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "fettle/adjoint/contact/contact_damping_adjoint.hpp"
-#include "fettle/adjoint/energy/friction_adjoint.hpp"
+#include "fettle/adjoint/energy/contact_terms_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
 #include "fettle/adjoint/stepper/velocities.hpp"
 #include "fettle/core/base/contract.hpp"

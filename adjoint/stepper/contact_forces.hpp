@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The resultant force of contact on a body at each step's end (core/energy/term_report.hpp), friction included, and its derivatives:
+/// The resultant force of contact on a body at each step's end (core/energy/term.hpp), friction included, and its derivatives:
 ///   F = - sum_i (f_i + a g_i + t_i) / weight   over the body's vertices in contact,
 /// f_i = d(barrier)/dx_i, a g_i the damping's, t_i the friction's of the step's last round. For a direction n, F . n is minus the contacts'
 /// part of the step's residual along the translation n of the body, over the weight, so that its derivative in poses is the contacts'

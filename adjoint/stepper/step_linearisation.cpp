@@ -5,7 +5,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "fettle/adjoint/energy/friction_adjoint.hpp"
+#include "fettle/adjoint/energy/contact_terms_adjoint.hpp"
 #include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
 #include "fettle/core/energy/start_history.hpp"
 #include "fettle/core/kinematics/mass_matrix.hpp"

@@ -6,12 +6,8 @@
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/energy/barrier.hpp"
-#include "fettle/core/energy/contact_damping.hpp"
-#include "fettle/core/energy/damping.hpp"
-#include "fettle/core/energy/friction.hpp"
-#include "fettle/core/energy/inertia.hpp"
-#include "fettle/core/energy/loads.hpp"
+#include "fettle/core/energy/body_terms.hpp"
+#include "fettle/core/energy/contact_terms.hpp"
 #include "fettle/core/energy/measure_terms.hpp"
 #include "fettle/core/linear/factorisations.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// What is constant while a step's incremental potential is minimised, and the coordinates that it is minimised over: each body's
-/// (q, theta) in the chart of the step, R = exp([theta]) R_t0.
+/// (q, theta) in the chart of the step, R = exp([theta]) R_t0. Of joints, springs and motors these are the turns counted so far, what
+/// dampers and joint friction measure rates from, and what rows are to come to (docs/method/joints.md#rows).
 #pragma once
 
 #include <vector>
@@ -8,12 +9,27 @@
 #include "fettle/core/contact/barrier.hpp"
 #include "fettle/core/contact/contact_damping.hpp"
 #include "fettle/core/contact/friction.hpp"
-#include "fettle/core/energy/mechanism_step.hpp"
 #include "fettle/core/energy/time_integration.hpp"
 #include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/model/model.hpp"
 
 namespace fettle::core::energy {
+
+struct MechanismStep {
+    std::vector<double> angles;    ///< per measure: at the step's start, with turns; others 0
+    std::vector<double> measures;  ///< per measure: m_slip, so that (m - m_slip)/slip_time is the rate that the integrator means
+    double end_time = 0;           ///< [s]
+    VectorX row_targets;           ///< per row, then
+};
+
+/// m_slip is m at the start; of BDF2 (4 m(P0) - m(P_-1))/3, of Newmark m(P0) + h/2 (dm/dP)(P0) V0.
+MechanismStep mechanism_step(const model::Model& model, const History& history);
+
+/// dm/dt per measure, of bodies at `poses` with velocities Pdot.
+std::vector<double> measure_rates(const measure::MeasureSet& set, const std::vector<kinematics::Pose>& poses,
+                                  const std::vector<Matrix34>& velocities);
+
+void set_end_time(const model::Mechanism& mechanism, double time, MechanismStep& step);
 
 struct StepProblem : IntegrationStep {
     const model::Model* model = nullptr;

@@ -4,7 +4,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/energy/damping_moments.hpp"
-#include "fettle/core/energy/mass_matrix.hpp"
+#include "fettle/core/kinematics/mass_matrix.hpp"
 #include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
 #include "fettle/core/linear/factorisations.hpp"
@@ -34,7 +34,7 @@ Vector6 force_of(const Matrix34& pddot, const Matrix4& moments, const Matrix3& R
 Vector6 rigid_acceleration(const model::Body& body, const Matrix3& R, const Vector3& omega, const Vector6& force, const Vector6& held) {
     Matrix34 bias = Matrix34::Zero();
     bias.leftCols<3>() = cross_matrix(omega) * cross_matrix(omega) * R;
-    Matrix6 h = mass_matrix(R, body.moments);
+    Matrix6 h = kinematics::mass_matrix(R, body.moments);
     Vector6 rhs = force - force_of(bias, body.moments, R);
     for (int k = 0; k < 6; ++k)
         if (!is_free(body, k)) rhs -= held[k] * h.col(k);

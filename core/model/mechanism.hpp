@@ -28,7 +28,7 @@ enum class LawKind {
     friction  ///< Coulomb friction of the force c against dm/dt
 };
 
-/// An energy of one measure. Its value: energy/measure_law.hpp.
+/// An energy of one measure. Its value: energy/measure_terms.hpp.
 struct MeasureTerm {
     LawKind kind = LawKind::spring;
     int measure = 0;

@@ -6,7 +6,7 @@
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/energy/mass_matrix.hpp"
+#include "fettle/core/kinematics/mass_matrix.hpp"
 
 namespace fettle::core::solver {
 namespace {
@@ -47,7 +47,7 @@ VectorX holding_multipliers(const FailedStep& step) {
         left_jacobians.push_back(kinematics::left_jacobian((*step.points)[i].rotation_vector));
         Matrix6 to_tangent = Matrix6::Identity();
         to_tangent.bottomRightCorner<3, 3>() = left_jacobians.back();
-        masses.diagonal.push_back(to_tangent.transpose() * energy::mass_matrix((*step.poses)[i].rotation, model.bodies[i].moments) *
+        masses.diagonal.push_back(to_tangent.transpose() * kinematics::mass_matrix((*step.poses)[i].rotation, model.bodies[i].moments) *
                                   to_tangent);
     }
     constraint::to_chart(left_jacobians, rows);

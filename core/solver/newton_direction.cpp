@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/energy/mass_matrix.hpp"
+#include "fettle/core/kinematics/mass_matrix.hpp"
 
 namespace fettle::core::solver {
 namespace {
@@ -117,7 +117,7 @@ bool is_finite(const ChartDerivatives& d, const linear::FreeDofs& dofs) {
 Matrix6 inertia_in_chart(const StepProblem& problem, const Iterate& at, std::size_t i) {
     Matrix6 to_tangent = Matrix6::Identity();
     to_tangent.bottomRightCorner<3, 3>() = kinematics::left_jacobian(at.points[i].rotation_vector);
-    const Matrix6 inertia = energy::mass_matrix(at.poses[i].rotation, problem.model->bodies[i].moments);
+    const Matrix6 inertia = kinematics::mass_matrix(at.poses[i].rotation, problem.model->bodies[i].moments);
     return to_tangent.transpose() * inertia * to_tangent;
 }
 
@@ -200,7 +200,7 @@ double inertia_along(const StepProblem& problem, const Iterate& at, const std::v
     for (std::size_t i = 0; i < steps.size(); ++i) {
         Vector6 step = steps[i];
         step.tail<3>() = kinematics::left_jacobian(at.points[i].rotation_vector) * step.tail<3>();
-        sum += step.dot(energy::mass_matrix(at.poses[i].rotation, problem.model->bodies[i].moments) * step);
+        sum += step.dot(kinematics::mass_matrix(at.poses[i].rotation, problem.model->bodies[i].moments) * step);
     }
     return sum;
 }

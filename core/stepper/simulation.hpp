@@ -56,7 +56,7 @@ struct StepReport {
     double minimum_distance = 0;  ///< of the active pairs at the end of the step [m]; infinity if there are none
     double residual = 0;  ///< norm of the gradient of the incremental potential over the free DOFs, scaled (see newton.hpp): not of the
                           ///< last point where a short exact step ended the solve
-    double proximal_share = 0;  ///< quasi-static: the largest that the proximal term carries of a body's load (energy/proximal_share.hpp)
+    double proximal_share = 0;  ///< quasi-static: the largest that the proximal term carries of a body's load (energy/body_terms.hpp)
     double shift = 0;           ///< largest that made a Hessian of the step definite (solver/newton_direction.hpp); 0: none was needed
     double joint_gap = 0;       ///< how far joints are from being met at the step's end [m]
     double path_joint_gap = 0;  ///< bound on how far joints part between the nodes of the path (joint_outputs.hpp) [m]

@@ -8,7 +8,7 @@
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/ccd/safe_step.hpp"
-#include "fettle/core/energy/proximal_share.hpp"
+#include "fettle/core/energy/body_terms.hpp"
 #include "fettle/core/energy/start_history.hpp"
 #include "fettle/core/model/choose_proximal_weight.hpp"
 #include "fettle/core/stepper/prescribed_path.hpp"

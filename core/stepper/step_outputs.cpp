@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "fettle/core/energy/inertia.hpp"
-#include "fettle/core/energy/loads.hpp"
+#include "fettle/core/energy/body_terms.hpp"
 #include "fettle/core/solver/newton.hpp"
 
 namespace fettle::core::stepper {

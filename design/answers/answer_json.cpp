@@ -19,8 +19,8 @@ Json vector_json(const Vector3& v) { return Json(Json::array_t(v.begin(), v.end(
 
 Json pair_json(const PairClearance& pair, const std::vector<std::string>& names) {
     Json json;
-    json["a"] = names[static_cast<size_t>(pair.a)];
-    json["b"] = names[static_cast<size_t>(pair.b)];
+    json["a"] = names[pair.a];
+    json["b"] = names[pair.b];
     json["minimum"] = pair.minimum;
     json["lower"] = pair.lower;
     json["upper"] = pair.upper;
@@ -82,7 +82,7 @@ Json gradient_json(const description::Design& design, const VectorX& gradient) {
 Json relations_json(const description::Design& design, const optimisers::Rows& relations) {
     Json list = Json::array();
     for (Eigen::Index i = 0; i < relations.values.size(); ++i) {
-        const description::Relation& relation = design.relations[static_cast<size_t>(i)];
+        const description::Relation& relation = design.relations[i];
         list.push_back({{"name", relation.name},
                         {"value", relations.values[i]},
                         {"lower", relation.bounds.lower},

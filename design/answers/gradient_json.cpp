@@ -174,7 +174,7 @@ Json check_json(const Design& design, const CheckReport& report) {
     json["contact_changes"] = contact_changes_json(design, report);
     json["contacts_reach"] = Json::object();
     for (Eigen::Index k = 0; k < report.contacts_reach.rows(); ++k)
-        json["contacts_reach"][design.parameters[static_cast<size_t>(k)].name] = {report.contacts_reach(k, 0), report.contacts_reach(k, 1)};
+        json["contacts_reach"][design.parameters[k].name] = {report.contacts_reach(k, 0), report.contacts_reach(k, 1)};
     json["roughness"] = roughness_json(design, report.roughness);
     return json;
 }

@@ -74,7 +74,7 @@ Json optimality_json(const Design& design, const optimisers::Optimality& o) {
         held[design.parameters[k].name] = optimisers::to_string(o.held[k]);
     }
     for (const int k : o.improvable) {
-        const description::Parameter& p = design.parameters[static_cast<size_t>(k)];
+        const description::Parameter& p = design.parameters[k];
         improvable.push_back({{"parameter", p.name}, {"step", description::from_si(o.step[k], p.unit)}});
     }
     Json multipliers = Json::object();

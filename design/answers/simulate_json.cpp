@@ -35,7 +35,7 @@ Json joints_at_end(const core::model::Model& model, const core::stepper::Simulat
     Json list = Json::array();
     if (simulation.outputs.empty()) return list;
     for (const core::stepper::JointForce& f : simulation.outputs.back().joints) {
-        const core::model::Joint& joint = model.mechanism.joints[static_cast<size_t>(f.joint)];
+        const core::model::Joint& joint = model.mechanism.joints[f.joint];
         Json entry{{"name", joint.name}, {"force", vector_json(f.force)}, {"torque", vector_json(f.torque)}};
         if (joint.is_motor || couples_joints(joint.kind)) entry["effort"] = f.effort;
         if (!joint.is_motor && joint.coordinate >= 0)

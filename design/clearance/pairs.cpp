@@ -84,7 +84,7 @@ private:
             for (const int body : group.bodies) {
                 if (std::count(other.bodies.begin(), other.bodies.end(), body))
                     fail("--group", ErrorCode::inconsistent,
-                         "\"" + model_.bodies[static_cast<size_t>(body)].name + "\" is in both " + other.name + " and " + group.name);
+                         "\"" + model_.bodies[body].name + "\" is in both " + other.name + " and " + group.name);
             }
         }
         groups_.push_back(group);
@@ -210,7 +210,7 @@ private:
 
     // Of the scene; or joined by a joint that lets the two overlap.
     bool is_one_group(int i, int j) const {
-        const core::model::Body &x = model_.bodies[static_cast<size_t>(i)], &y = model_.bodies[static_cast<size_t>(j)];
+        const core::model::Body &x = model_.bodies[i], &y = model_.bodies[j];
         const auto& joined_bodies = model_.mechanism.not_colliding;
         return (x.group >= 0 && x.group == y.group) ||
                std::binary_search(joined_bodies.begin(), joined_bodies.end(), std::pair<int, int>(std::minmax(i, j)));
@@ -272,7 +272,7 @@ private:
     double size_of(const Unit& unit) const {
         double size = 0;
         for (const int i : unit.bodies) {
-            const Matrix3X& x = model_.bodies[static_cast<size_t>(i)].mesh.vertices;
+            const Matrix3X& x = model_.bodies[i].mesh.vertices;
             size = std::max(size, (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff());
         }
         return size;
@@ -339,7 +339,7 @@ Result<PairSelection> select_pairs(const Model& model, const PairOptions& option
 bool judged_by_default(const core::model::Model& model, int a, int b) {
     const auto dynamic = [](const core::model::Body& body) { return body.type == core::scene::BodyType::dynamic_body; };
     if (std::any_of(model.bodies.begin(), model.bodies.end(), dynamic)) return core::model::may_collide(model, a, b);
-    const core::model::Body &first = model.bodies[static_cast<size_t>(a)], &second = model.bodies[static_cast<size_t>(b)];
+    const core::model::Body &first = model.bodies[a], &second = model.bodies[b];
     if (a == b || (first.group >= 0 && first.group == second.group)) return false;
     const auto& joined_bodies = model.mechanism.not_colliding;
     if (std::binary_search(joined_bodies.begin(), joined_bodies.end(), std::pair<int, int>(std::minmax(a, b)))) return false;
@@ -361,8 +361,7 @@ std::vector<std::string> uncovered_pairs(const Model& model, const PairSelection
     const auto count = count_of(model.bodies);
     for (int a = 0; a < count; ++a)
         for (int b = a + 1; b < count; ++b)
-            if (covered.count({a, b}) == 0)
-                list.push_back(model.bodies[static_cast<size_t>(a)].name + ":" + model.bodies[static_cast<size_t>(b)].name);
+            if (covered.count({a, b}) == 0) list.push_back(model.bodies[a].name + ":" + model.bodies[b].name);
     return list;
 }
 

@@ -34,7 +34,7 @@ bool any_may_collide(const core::model::Model& model) {
 }
 
 std::string open_pair(const core::model::Model& model, const PairClearance& pair) {
-    const auto name = [&](int body) { return "\"" + model.bodies[static_cast<size_t>(body)].name + "\""; };
+    const auto name = [&](int body) { return "\"" + model.bodies[body].name + "\""; };
     const std::string who = name(pair.a) + " and " + name(pair.b);
     if (pair.intersecting) return who + " pass through each other";
     if (pair.lower > model.dmin) return "of " + who + ": " + core::clearance::why_not_apart(pair.solids);

@@ -95,11 +95,11 @@ std::string joints_note(const Subject& subject, const core::stepper::JointedMoti
     const auto& deviations = subject.joints->joints->deviations;
     const auto most = std::max_element(deviations.begin(), deviations.end());
     if (most == deviations.end()) return note;
-    const int body = subject.joints->joints->bodies[static_cast<size_t>(most - deviations.begin())];
+    const int body = subject.joints->joints->bodies[most - deviations.begin()];
     return note + formatted(
                       "; bounds hold for joints met at all times, which keep the bodies within %.2g %s of that path (farthest: %s): each "
                       "bound is wider by the distances of its two bodies from it",
-                      *most / unit, name.c_str(), subject.model.bodies[static_cast<size_t>(body)].name.c_str());
+                      *most / unit, name.c_str(), subject.model.bodies[body].name.c_str());
 }
 
 // Where joints and motors have the bodies.

@@ -88,14 +88,14 @@ core::kinematics::Pose pose_where_nearest(const Subject& subject, const core::cl
     const core::kinematics::Pose pose = subject.ranges
                                             ? core::clearance::pose_at_witness(subject.model, *subject.ranges, pair, body)
                                             : core::stepper::pose_at(subject.trajectory, witness.step, witness.segment, witness.s, body);
-    return {pose.rotation, core::kinematics::world_position(pose, -subject.model.bodies[static_cast<size_t>(body)].reference_point)};
+    return {pose.rotation, core::kinematics::world_position(pose, -subject.model.bodies[body].reference_point)};
 }
 
 void for_joints(
     const core::clearance::JointRanges& ranges, const core::clearance::PairClearance& pair,
     const std::function<void(const core::certificate::JointCoordinate&, double, const core::certificate::LinkageCoordinate&)>& visit) {
     for (size_t k = 0; k < pair.coordinates.size(); ++k) {
-        const core::certificate::LinkageCoordinate& c = ranges.linkage.coordinates[static_cast<size_t>(pair.coordinates[k])];
+        const core::certificate::LinkageCoordinate& c = ranges.linkage.coordinates[pair.coordinates[k]];
         for (const auto& joint : c.joints) visit(joint, joint.scale * pair.at[k] + joint.offset, c);
     }
 }

@@ -10,7 +10,7 @@ namespace fettle::design::cli {
 std::string relations_text(const description::Design& design, const optimisers::Rows& relations, const Console& console) {
     std::string text;
     for (Eigen::Index i = 0; i < relations.values.size(); ++i) {
-        const description::Relation& relation = design.relations[static_cast<size_t>(i)];
+        const description::Relation& relation = design.relations[i];
         const description::Bounds& bounds = relation.bounds;
         const bool met = description::violation(relation, relations.values[i]) <= 0;
         text += formatted("  %-40s is %.9g, required %s: ", relation.name.c_str(), relations.values[i] / bounds.unit,

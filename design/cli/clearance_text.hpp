@@ -14,7 +14,7 @@ namespace fettle::design::cli {
 /// Explains the `explain` worst pairs.
 std::string report_text(const clearance::ClearanceReport& report, const clearance::Subject& subject, int explain, const Console& console);
 
-/// Each pair as a check (check_files.hpp), and that all was judged.
+/// Each pair as a check (finding_files.hpp), and that all was judged.
 std::vector<Check> report_checks(const clearance::ClearanceReport& report, const clearance::Subject& subject, const std::string& file);
 
 /// Over a path the margin curves, one row per pair of bodies and path segment:

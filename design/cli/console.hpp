@@ -15,7 +15,7 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
-#include "fettle/design/cli/check_files.hpp"
+#include "fettle/design/cli/finding_files.hpp"
 
 namespace fettle::design::cli {
 
@@ -71,7 +71,7 @@ public:
     /// Reports that work was asked to stop before it had an answer. @return exit code
     int stopped();
 
-    /// What was looked at, one thing each, for the files of check_files.hpp; errors are added by themselves. `file` is kept if it is one.
+    /// What was looked at, one thing each, for the files of finding_files.hpp; errors are added by themselves. `file` is kept if it is one.
     void found(Check check);
     const std::vector<Check>& checks() const { return checks_; }
     /// The file that the command is about: of checks that have no other.

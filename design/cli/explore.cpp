@@ -42,7 +42,7 @@ std::vector<std::string> python_words(const ExploreOptions& options, const Commo
 
 // Python's side does nothing with them: none is dropped in silence.
 Errors refused_options(const CommonOptions& common) {
-    const CheckFiles& files = common.check_files;
+    const FindingFiles& files = common.finding_files;
     const std::pair<const char*, bool> given[] = {
         {"--threads", common.threads > 0},         {"--log", !common.log.empty()},       {"--strict", common.strict},
         {"--mesh-dir", !common.mesh_dirs.empty()}, {"--junit", !files.junit.empty()},    {"--sarif", !files.sarif.empty()},

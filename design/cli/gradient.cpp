@@ -75,7 +75,7 @@ CountedIn counted_in(const Design& design, const std::string& quantity) {
 std::string length_text(const Design& design, const RoughnessReport& report, double share) {
     Eigen::Index k = 0;
     report.direction.cwiseAbs().maxCoeff(&k);
-    const Parameter& parameter = design.parameters[static_cast<size_t>(k)];
+    const Parameter& parameter = design.parameters[k];
     const double moved = share * gradient_audit::parameter_ranges(design)[k] / to_si(1, parameter.unit);
     return formatted("%.3g %s", moved, std::string(parameter.unit.name).c_str());
 }
@@ -85,8 +85,7 @@ std::string roughness_text(const Design& design, const RoughnessReport& report) 
     Eigen::Index most = 0;
     report.direction.cwiseAbs().maxCoeff(&most);
     std::string text = formatted("how far the gradient holds along the objective's, as %s moves (most):\n%-40s %12s %12s %14s %14s\n",
-                                 design.parameters[static_cast<size_t>(most)].name.c_str(), "quantity", "noise", "tolerance",
-                                 "holds within", "fails beyond");
+                                 design.parameters[most].name.c_str(), "quantity", "noise", "tolerance", "holds within", "fails beyond");
     std::string rough;
     for (const QuantityRoughness& quantity : report.quantities) {
         const bool bound = quantity.noise.status == optimisers::NoiseStatus::spacing_too_large;
@@ -119,7 +118,7 @@ std::vector<std::string> contact_change_lines(const Design& design, const CheckR
         const std::string sentence = sentence_of(change) + (is_kink(change.at.event) ? " (gradients jump there)" : "");
         const auto known = std::find(sentences.begin(), sentences.end(), sentence);
         if (known != sentences.end()) {
-            lines[static_cast<size_t>(known - sentences.begin())] += ", or " + move_text(design, change);
+            lines[known - sentences.begin()] += ", or " + move_text(design, change);
             continue;
         }
         sentences.push_back(sentence);

@@ -35,8 +35,8 @@ bool asks_for_json(int argc, char** argv) {
     return false;
 }
 
-CheckFiles check_files_in(const std::vector<NamedFile>& named) {
-    CheckFiles files;
+FindingFiles finding_files_in(const std::vector<NamedFile>& named) {
+    FindingFiles files;
     for (const auto& [option, file, is_written] : named) {
         if (!is_written) continue;
         (option == "--junit" ? files.junit : option == "--sarif" ? files.sarif : files.markdown) = file;
@@ -84,7 +84,7 @@ void add_common_options(CommandLine program, CommonOptions& common) {
     program.option("--mesh-dir", common.mesh_dirs, "Look for meshes here too (can be given several times)").one_value_each();
 }
 
-void add_check_options(CommandLine program, CheckFiles& files) {
+void add_check_options(CommandLine program, FindingFiles& files) {
     program.option("--junit", files.junit, "Also write the findings as JUnit XML, for the tests of a CI; undecided is a failure");
     program.option("--sarif", files.sarif, "Also write the findings as SARIF 2.1.0, for code scanning");
     program.option("--markdown", files.markdown,
@@ -98,14 +98,14 @@ Checks checks_of(const std::string& command, int exit_code, const Console& conso
 }
 
 // Those that something else is, too, are not written.
-void keep_apart(CheckFiles& files, const Errors& twice) {
+void keep_apart(FindingFiles& files, const Errors& twice) {
     for (std::string* file : {&files.junit, &files.sarif, &files.markdown})
         if (std::any_of(twice.begin(), twice.end(), [&](const Error& error) { return error.where == *file; })) file->clear();
 }
 
 // What was found, where it is wanted, then the answer, which tells what could not be written. Of a command that tells nothing of its own
 // its end is told. @return the exit code
-int finish(const CheckFiles& files, const std::string& command, int verdict, Console& console) {
+int finish(const FindingFiles& files, const std::string& command, int verdict, Console& console) {
     if (!files.wanted()) {
         console.give_answer();
         return console.exit_code(verdict);
@@ -116,10 +116,10 @@ int finish(const CheckFiles& files, const std::string& command, int verdict, Con
     if (only_remarks)
         console.found(
             {command, checks_of(command, before, console).verdict, command, "ended with exit code " + std::to_string(before), ""});
-    console.unwritten(write_check_files(files, checks_of(command, before, console)));
+    console.unwritten(write_finding_files(files, checks_of(command, before, console)));
     console.give_answer();
     const Checks checks = checks_of(command, console.exit_code(verdict), console);
-    if (checks.exit_code != before) static_cast<void>(write_check_files(files, checks));  // no pass; what cannot be written is told
+    if (checks.exit_code != before) static_cast<void>(write_finding_files(files, checks));  // no pass; what cannot be written is told
     if (files.annotations) std::fputs(annotation_lines(checks).c_str(), stderr);
     return checks.exit_code;
 }
@@ -140,7 +140,7 @@ std::string subject_of(const std::vector<NamedFile>& named) {
 int refuse(const CommonOptions& common, const std::string& command, const Errors& errors) {
     Console console({common.json, false, {}, true});
     console.set_about(subject_of(common.given.named));
-    return finish(common.check_files, command, console.input_errors(errors), console);
+    return finish(common.finding_files, command, console.input_errors(errors), console);
 }
 
 // Of a command line that cannot be read: the files that it may mean all the same must not stay as an earlier run left them.
@@ -150,10 +150,10 @@ int refuse_usage(int argc, char** argv, const std::string& command, const std::s
     CommonOptions common;
     common.json = asks_for_json(argc, argv);
     common.given.named = named;
-    common.check_files = check_files_in(named);
-    common.check_files.annotations = std::find(words.begin(), words.end(), "--annotations") != words.end();
-    keep_apart(common.check_files, named_twice(named));
-    static_cast<void>(prepare_check_files(common.check_files));  // the command line is what is wrong
+    common.finding_files = finding_files_in(named);
+    common.finding_files.annotations = std::find(words.begin(), words.end(), "--annotations") != words.end();
+    keep_apart(common.finding_files, named_twice(named));
+    static_cast<void>(prepare_finding_files(common.finding_files));  // the command line is what is wrong
     return refuse(common, command, {{ErrorCode::unsupported, "command line", message}});
 }
 
@@ -176,9 +176,9 @@ std::vector<NamedFile> written_by(const GivenFiles& given) {
 Errors prepare(CommonOptions& common) {
     Errors errors = named_twice(common.given.named);
     if (errors.empty()) errors = replaced_inputs(written_by(common.given), common.given);
-    keep_apart(common.check_files, errors);
+    keep_apart(common.finding_files, errors);
     const auto add = [&](const Errors& found) { errors.insert(errors.end(), found.begin(), found.end()); };
-    add(prepare_check_files(common.check_files));
+    add(prepare_finding_files(common.finding_files));
     if (!common.log.empty() && errors.empty()) add(fettle::design::answers::try_output_file(common.log));
     return errors;
 }
@@ -230,7 +230,7 @@ int run(int argc, char** argv) {
     CommonOptions common;
     common.command = typed(argc, argv);
     add_common_options(program, common);
-    add_check_options(program, common.check_files);
+    add_check_options(program, common.finding_files);
     const std::vector<Command> commands = add_commands(program, common);
     program.closing_words(
         "Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out\n"
@@ -254,13 +254,13 @@ int run(int argc, char** argv) {
     given.insert(given.end(), own.begin(), own.end());
     common.given = {command->line.name(), named_files_of(command->line.name(), given), common.mesh_dirs};
     if (const Errors errors = prepare(common); !errors.empty()) return refuse(common, command->line.name(), errors);
-    Console console({common.json, common.quiet, common.log, common.check_files.wanted()});
+    Console console({common.json, common.quiet, common.log, common.finding_files.wanted()});
     console.set_about(subject_of(common.given.named));
     std::optional<core::base::ThreadLimit> limit;
     if (common.threads > 0) limit.emplace(common.threads);
     catch_interrupts();
     tell_missing_folders(common.mesh_dirs, console);
-    return finish(common.check_files, command->line.name(), run_command(*command, console), console);
+    return finish(common.finding_files, command->line.name(), run_command(*command, console), console);
 }
 
 // For libraries of linear algebra, which are loaded later; what the user has set holds.

@@ -67,7 +67,7 @@ std::string verdict_text(const Design& design, const optimisers::Optimality& o, 
                           share_text(worth, objective).c_str());
     }
     for (const int k : o.improvable) {
-        const description::Parameter& p = design.parameters[static_cast<size_t>(k)];
+        const description::Parameter& p = design.parameters[k];
         text += formatted("could still move: %s by %.4g %s\n", p.name.c_str(), description::from_si(o.step[k], p.unit),
                           std::string(p.unit.name).c_str());
     }
@@ -193,7 +193,7 @@ std::vector<Check> outcome_checks(const Design& design, const OptimiseOutcome& o
         checks.push_back(std::move(check));
     }
     for (Eigen::Index i = 0; i < outcome.final.relations.values.size(); ++i) {
-        const description::Relation& relation = design.relations[static_cast<size_t>(i)];
+        const description::Relation& relation = design.relations[i];
         const bool met = description::violation(relation, outcome.final.relations.values[i]) <= 0;
         checks.push_back({relation.name, met ? CheckOutcome::passed : CheckOutcome::failed, met ? "met" : "violated",
                           "is " + description::amount_text(outcome.final.relations.values[i], relation.bounds.unit, "") + ", required " +

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fettle/design/answers/optimise_json.hpp"
-#include "fettle/design/cli/check_files.hpp"
+#include "fettle/design/cli/finding_files.hpp"
 #include "fettle/design/cli/console.hpp"
 
 namespace fettle::design::cli {

@@ -30,7 +30,7 @@ using core::model::Model;
 
 Json name_of(const Model& model, int body) {
     const bool known = body >= 0 && body < count_of(model.bodies);
-    return known ? Json(model.bodies[static_cast<size_t>(body)].name) : Json(body);
+    return known ? Json(model.bodies[body].name) : Json(body);
 }
 
 // What a certificate claims, by name.

@@ -56,7 +56,7 @@ struct Design {
 
 /// The shape of a body; null if its mesh is fixed.
 inline const Shape* shape_of(const Design& design, int body) {
-    return static_cast<size_t>(body) < design.shapes.size() ? design.shapes[static_cast<size_t>(body)].get() : nullptr;
+    return static_cast<size_t>(body) < design.shapes.size() ? design.shapes[body].get() : nullptr;
 }
 
 /// Puts all dimensions as drawn into the body's description of its shape, those left to their defaults too.

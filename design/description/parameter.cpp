@@ -22,7 +22,7 @@ core::expression::Scope scope_of(const std::vector<Parameter>& parameters) {
 
 VectorX values_of(const std::vector<Parameter>& parameters) {
     VectorX p(parameters.size());
-    for (Eigen::Index k = 0; k < p.size(); ++k) p[k] = parameters[static_cast<size_t>(k)].value;
+    for (Eigen::Index k = 0; k < p.size(); ++k) p[k] = parameters[k].value;
     return p;
 }
 
@@ -43,7 +43,7 @@ Errors check_values(const std::vector<Parameter>& parameters, const VectorX& p) 
                      std::to_string(p.size())}};
     Errors errors;
     for (Eigen::Index k = 0; k < p.size(); ++k) {
-        const Parameter& of = parameters[static_cast<size_t>(k)];
+        const Parameter& of = parameters[k];
         const double range = of.upper - of.lower;
         if (!std::isfinite(p[k])) {
             errors.push_back({ErrorCode::not_finite, "p/" + of.name, "it is not a finite number"});

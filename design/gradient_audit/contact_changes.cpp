@@ -26,7 +26,7 @@ const EventWords& words_at(ContactEvent event) {
                                                       {"crossing", "have edges that cease to be nearly parallel", true},
                                                       {"slide", "begin to slide", false},
                                                       {"stick", "begin to stick", false}}};
-    return table[static_cast<size_t>(event)];
+    return table[static_cast<std::size_t>(event)];
 }
 
 bool are_neighbours(const ContactState& x, const ContactState& y) {
@@ -114,9 +114,8 @@ std::vector<ContactChange> ContactWatch::changes(const std::string& parameter, d
                 ++known->count;
                 continue;
             }
-            of_move.push_back({parameter, side * before * range, side * move.share * range, move.share, d,
-                               model.bodies[static_cast<size_t>(d.is.a)].name, model.bodies[static_cast<size_t>(d.is.b)].name,
-                               time_at(trajectory, d.step + 1)});
+            of_move.push_back({parameter, side * before * range, side * move.share * range, move.share, d, model.bodies[d.is.a].name,
+                               model.bodies[d.is.b].name, time_at(trajectory, d.step + 1)});
         }
         out.insert(out.end(), of_move.begin(), of_move.end());
         before = move.share;

@@ -32,7 +32,7 @@ public:
             for (const Corners& element : flat_elements(body, f))
                 if (const auto [known, is_new] = triangle_at.emplace(element, f); !is_new) join(known->second, f);
         for (int f = 0; f < count_of(parent_); ++f) {
-            const core::geometry::Triangle& corners = body.mesh.triangles[static_cast<size_t>(f)];
+            const core::geometry::Triangle& corners = body.mesh.triangles[f];
             const int face = root(f);
             face_of_[ascending(corners)] = face;
             for (const Corners& element : flat_elements(body, f)) face_of_[element] = face;
@@ -66,9 +66,9 @@ private:
     static std::vector<Corners> flat_elements(const Body& body, int f) {
         std::vector<Corners> out;
         const unsigned bits = body.flat ? body.flat->of_face(f) : 0U;
-        const core::geometry::Triangle& corners = body.mesh.triangles[static_cast<size_t>(f)];
+        const core::geometry::Triangle& corners = body.mesh.triangles[f];
         for (int k = 0; k < 3 && bits != 0; ++k) {
-            const int from = corners[static_cast<size_t>(k)], to = corners[static_cast<size_t>((k + 1) % 3)];
+            const int from = corners[k], to = corners[(k + 1) % 3];
             if ((bits >> k & 1U) != 0) out.push_back({std::min(from, to), std::max(from, to), -1});
             if ((bits >> (3 + k) & 1U) != 0) out.push_back({from, -1, -1});
         }
@@ -76,10 +76,10 @@ private:
     }
 
     int root(int f) {
-        while (parent_[static_cast<size_t>(f)] != f) f = parent_[static_cast<size_t>(f)] = root(parent_[static_cast<size_t>(f)]);
+        while (parent_[f] != f) f = parent_[f] = root(parent_[f]);
         return f;
     }
-    void join(int f, int g) { parent_[static_cast<size_t>(std::max(root(f), root(g)))] = std::min(root(f), root(g)); }
+    void join(int f, int g) { parent_[std::max(root(f), root(g))] = std::min(root(f), root(g)); }
 
     std::vector<int> parent_;
     std::map<Corners, int> face_of_;
@@ -91,8 +91,7 @@ Corners edge_corners(const ContactPair& pair, int first, bool is_mollified) {
     constexpr double least_weight = 1e-12;  // as closest_feature
     std::vector<int> met;
     for (int k = first; k < first + 2; ++k)
-        if (is_mollified || std::abs(pair.closest.weight[static_cast<size_t>(k)]) > least_weight)
-            met.push_back(pair.vertex[static_cast<size_t>(k)]);
+        if (is_mollified || std::abs(pair.closest.weight[k]) > least_weight) met.push_back(pair.vertex[k]);
     std::sort(met.begin(), met.end());
     met.resize(3, -1);
     return {met[0], met[1], met[2]};
@@ -143,12 +142,12 @@ private:
         const Corners on_second = by_edges ? edge_corners(pair, 2, s.is_mollified) : closest_feature(pair);
         s.a = list.first;
         s.b = list.second;
-        s.on_a = faces_[static_cast<size_t>(s.a)].feature_of(on_first);
-        s.on_b = faces_[static_cast<size_t>(s.b)].feature_of(on_second);
+        s.on_a = faces_[s.a].feature_of(on_first);
+        s.on_b = faces_[s.b].feature_of(on_second);
         Vector3 x_first = Vector3::Zero(), x_second = Vector3::Zero();
         for (int i = 0; i < 4; ++i) {
-            const double weight = pair.closest.weight[static_cast<size_t>(i)];
-            (i < first_count(pair.type) ? x_first : x_second) += std::abs(weight) * pair.x[static_cast<size_t>(i)];
+            const double weight = pair.closest.weight[i];
+            (i < first_count(pair.type) ? x_first : x_second) += std::abs(weight) * pair.x[i];
         }
         s.place = 0.5 * (x_first + x_second);
         s.slides = is_sliding(list, pair, x_first, x_second);
@@ -163,8 +162,8 @@ private:
                     const Vector3& x_second) const {
         if (model_.friction.rounds == 0 || !(friction_coefficient(model_, list.first, list.second) > 0)) return false;
         const auto reference = [&](int body, const Vector3& x) {
-            const core::kinematics::Pose& pose = poses_[static_cast<size_t>(body)];
-            const Matrix34& slip = problem_.slip_reference[static_cast<size_t>(body)];
+            const core::kinematics::Pose& pose = poses_[body];
+            const Matrix34& slip = problem_.slip_reference[body];
             return Vector3(slip.leftCols<3>() * (pose.rotation.transpose() * (x - pose.position)) + slip.col(3));
         };
         const Vector3 moved = (x_first - reference(list.first, x_first)) - (x_second - reference(list.second, x_second));

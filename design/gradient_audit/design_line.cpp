@@ -33,7 +33,7 @@ MatrixX quantity_gradients(const problem::DesignEvaluation& evaluation) {
 VectorX parameter_ranges(const description::Design& design) {
     VectorX ranges(design.parameters.size());
     for (Eigen::Index k = 0; k < ranges.size(); ++k) {
-        const description::Parameter& parameter = design.parameters[static_cast<size_t>(k)];
+        const description::Parameter& parameter = design.parameters[k];
         ranges[k] = parameter.upper > parameter.lower ? parameter.upper - parameter.lower : std::max(std::abs(parameter.value), 1e-6);
     }
     return ranges;
@@ -45,7 +45,7 @@ DesignLine::DesignLine(const problem::DesignProblem& problem, const VectorX& p, 
     step_ = direction.cwiseProduct(parameter_ranges(problem.design()));
     for (Eigen::Index k = 0; k < step_.size(); ++k) {
         if (step_[k] == 0) continue;
-        const description::Parameter& parameter = problem.design().parameters[static_cast<size_t>(k)];
+        const description::Parameter& parameter = problem.design().parameters[k];
         const double a = (parameter.lower - p[k]) / step_[k], b = (parameter.upper - p[k]) / step_[k];
         least_ = std::max(least_, std::min({a, b, 0.0}));
         most_ = std::min(most_, std::max({a, b, 0.0}));
@@ -57,8 +57,8 @@ std::vector<LinePoint> DesignLine::evaluate(const std::vector<double>& ts, const
     std::vector<LinePoint> points(ts.size());
     std::mutex progress;
     core::base::parallel_for(count_of(ts), 1, [&](int i) {
-        LinePoint& point = points[static_cast<size_t>(i)];
-        point.t = ts[static_cast<size_t>(i)];
+        LinePoint& point = points[i];
+        point.t = ts[i];
         problem::EvaluateOptions options;
         options.gradients = false;
         options.should_stop = should_stop;

@@ -39,7 +39,7 @@ DifferenceSteps difference_steps(const RoughnessReport& roughness, const VectorX
                           VectorX::Zero(values.size())};
     double least = 0;
     for (Eigen::Index q = 0; q < values.size() && roughness.measured; ++q) {
-        const QuantityRoughness& quantity = roughness.quantities[static_cast<size_t>(q)];
+        const QuantityRoughness& quantity = roughness.quantities[q];
         steps.noise[q] = quantity.rounding;
         steps.size[q] = quantity.size;
         steps.tolerance[q] = quantity.tolerance;
@@ -99,7 +99,7 @@ public:
     }
 
 private:
-    const std::string& name() const { return problem_.design().parameters[static_cast<size_t>(parameter_)].name; }
+    const std::string& name() const { return problem_.design().parameters[parameter_].name; }
 
     struct Trial {
         problem::DesignEvaluation evaluation;
@@ -214,12 +214,12 @@ void compare(const problem::DesignProblem& problem, const MatrixX& adjoint, cons
         const double norm = adjoint.row(q).transpose().cwiseProduct(ranges).norm();
         const double floor = std::max({options.scale_fraction * norm, options.size_fraction * steps.size[q], steps.tolerance[q]});
         for (Eigen::Index k = 0; k < adjoint.cols(); ++k) {
-            const ParameterDifferences& differences = found[static_cast<size_t>(k)];
+            const ParameterDifferences& differences = found[k];
             if (differences.estimates.empty()) continue;
-            const DifferenceEstimate& estimate = differences.estimates[static_cast<size_t>(q)];
+            const DifferenceEstimate& estimate = differences.estimates[q];
             CheckRow row = compared(adjoint(q, k) * ranges[k], estimate, floor, options.limit);
-            row.quantity = names[static_cast<size_t>(q)];
-            row.parameter = problem.design().parameters[static_cast<size_t>(k)].name;
+            row.quantity = names[q];
+            row.parameter = problem.design().parameters[k].name;
             row.adjoint = adjoint(q, k);
             row.difference = estimate.value / ranges[k];
             row.kink = differences.kinks[q] / ranges[k];
@@ -245,9 +245,9 @@ public:
     /// @param slopes  of the quantities along the direction, by the adjoint. @return empty if the line cannot be simulated
     std::vector<LineRow> run(const VectorX& slopes, const std::function<void()>& on_simulation) {
         const int count = options_.line_sizes;
-        std::vector<double> t(static_cast<size_t>(count), steps_.first);
+        std::vector<double> t(count, steps_.first);
         for (size_t k = 1; k < t.size(); ++k) t[k] = t[k - 1] / ratio;
-        std::vector<VectorX> above(static_cast<size_t>(count)), below = above;
+        std::vector<VectorX> above(count), below = above;
         core::base::parallel_for(2 * count, 1, [&](int k) {
             const size_t at = static_cast<size_t>(k % count);
             (k < count ? above : below)[at] = change(k < count ? t[at] : -t[at]);
@@ -282,7 +282,7 @@ private:
     LineRow row(Eigen::Index q, double slope, const std::vector<double>& differences) const {
         const DifferenceEstimate d = ridders_estimate(differences, ratio, steps_.noise_error(q, steps_.first));
         const CheckRow c = compared(slope, d, std::max(options_.size_fraction * steps_.size[q], steps_.tolerance[q]), options_.limit);
-        return {names_[static_cast<size_t>(q)], slope, d.value, c.difference_error, c.relative_error, c.resolved, 0};
+        return {names_[q], slope, d.value, c.difference_error, c.relative_error, c.resolved, 0};
     }
 
     // NaN: too few remainders stand clear of noise.
@@ -311,12 +311,12 @@ private:
 
 // In the order of the design; those that the objective depends on most, if not all.
 std::vector<int> parameters_to_check(const problem::DesignProblem& problem, const VectorX& gradient, int most) {
-    std::vector<int> order(static_cast<size_t>(gradient.size()));
+    std::vector<int> order(gradient.size());
     std::iota(order.begin(), order.end(), 0);
     if (most <= 0 || most >= count_of(order)) return order;
     const VectorX share = gradient.cwiseProduct(parameter_ranges(problem.design())).cwiseAbs();
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share[a] > share[b]; });
-    order.resize(static_cast<size_t>(most));
+    order.resize(most);
     std::sort(order.begin(), order.end());
     return order;
 }
@@ -377,25 +377,24 @@ CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX
                 std::max(report.largest_relative_error, told_error(row.resolved, row.relative_error, row.difference_error));
     }
     const std::vector<int> chosen = parameters_to_check(problem, at.gradient, options.most_parameters);
-    std::vector<ParameterDifferences> found(static_cast<size_t>(n));
+    std::vector<ParameterDifferences> found(n);
     const CheckedDesign checked{at, contact_states(*at.model, at.simulation.trajectory)};
     core::base::parallel_for(count_of(chosen), 1, [&](int i) {
-        const int k = chosen[static_cast<size_t>(i)];
-        found[static_cast<size_t>(k)] = ParameterCheck(problem, p, k, steps, options, checked).run(count);
+        const int k = chosen[i];
+        found[k] = ParameterCheck(problem, p, k, steps, options, checked).run(count);
     });
     compare(problem, quantity_gradients(at), found, steps, options, report);
     report.contacts_reach = MatrixX::Zero(n, 2);
     for (int k = 0; k < n; ++k) {
         if (!std::binary_search(chosen.begin(), chosen.end(), k)) {
-            report.left_out.push_back(problem.design().parameters[static_cast<size_t>(k)].name);
+            report.left_out.push_back(problem.design().parameters[k].name);
             continue;
         }
-        ParameterDifferences& differences = found[static_cast<size_t>(k)];
+        ParameterDifferences& differences = found[k];
         report.contacts_reach.row(k) = differences.contacts_reach.transpose();
         std::move(differences.contact_changes.begin(), differences.contact_changes.end(), std::back_inserter(report.contact_changes));
         report.interrupted = report.interrupted || differences.interrupted;
-        if (differences.estimates.empty())
-            report.failures.push_back(problem.design().parameters[static_cast<size_t>(k)].name + ": " + differences.failure);
+        if (differences.estimates.empty()) report.failures.push_back(problem.design().parameters[k].name + ": " + differences.failure);
     }
     std::stable_sort(report.contact_changes.begin(), report.contact_changes.end(),
                      [](const ContactChange& a, const ContactChange& b) { return a.share < b.share; });

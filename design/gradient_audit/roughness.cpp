@@ -39,7 +39,7 @@ public:
         const std::vector<std::string> names = quantity_names(problem.design());
         for (Eigen::Index q = 0; q < values.size(); ++q) {
             QuantityRoughness quantity;
-            quantity.name = names[static_cast<size_t>(q)];
+            quantity.name = names[q];
             quantity.slope = slopes[q];
             quantity.tolerance = tolerances[q];
             report_.quantities.push_back(std::move(quantity));
@@ -236,7 +236,7 @@ RoughnessReport measure_roughness(const problem::DesignProblem& problem, const V
 
 VectorX downhill_direction(const description::Design& design, const VectorX& p, const VectorX& gradient) {
     const auto room = [&](Eigen::Index k, double sign) {
-        const description::Parameter& parameter = design.parameters[static_cast<size_t>(k)];
+        const description::Parameter& parameter = design.parameters[k];
         return sign > 0 ? parameter.upper - p[k] : p[k] - parameter.lower;
     };
     VectorX direction = -gradient.cwiseProduct(parameter_ranges(design));

@@ -153,7 +153,7 @@ const Evaluator::Record& Evaluator::asked(const VectorX& point, Wanted wanted) {
     const VectorX clamped = point.cwiseMax(0).cwiseMin(1);
     const auto found = index_.find(bits_of(clamped));
     if (found == index_.end()) return evaluate_new(clamped, wanted);
-    const Record& known = records_[static_cast<size_t>(found->second)];
+    const Record& known = records_[found->second];
     if (wanted != Wanted::derivatives || !known.evaluation.usable || known.evaluation.has_derivatives) return known;
     const bool was_best = best_index_ == found->second;
     const Record& complete = evaluate_new(clamped, wanted);
@@ -218,7 +218,7 @@ void Evaluator::keep_best() {
         best_index_ = evaluations() - 1;
         return;
     }
-    const Evaluation& best = records_[static_cast<size_t>(best_index_)].evaluation;
+    const Evaluation& best = records_[best_index_].evaluation;
     const bool feasible = now.violation <= 0, best_feasible = best.violation <= 0;
     const bool better = feasible != best_feasible ? feasible : feasible ? now.objective < best.objective : now.violation < best.violation;
     if (better) best_index_ = evaluations() - 1;
@@ -235,22 +235,22 @@ void Evaluator::rethrow() const {
 
 const VectorX& Evaluator::best_point() const {
     FETTLE_ASSERT(has_best(), "no point could be evaluated");
-    return records_[static_cast<size_t>(best_index_)].point;
+    return records_[best_index_].point;
 }
 
 const VectorX& Evaluator::best_scaled_point() const {
     FETTLE_ASSERT(has_best(), "no point could be evaluated");
-    return records_[static_cast<size_t>(best_index_)].scaled_point;
+    return records_[best_index_].scaled_point;
 }
 
 const Evaluation& Evaluator::best_evaluation() const {
     FETTLE_ASSERT(has_best(), "no point could be evaluated");
-    return records_[static_cast<size_t>(best_index_)].evaluation;
+    return records_[best_index_].evaluation;
 }
 
 Evaluation Evaluator::best_scaled_evaluation() const {
     FETTLE_ASSERT(has_best(), "no point could be evaluated");
-    return records_[static_cast<size_t>(best_index_)].scaled_evaluation;
+    return records_[best_index_].scaled_evaluation;
 }
 
 }  // namespace fettle::design::optimisers

@@ -82,8 +82,8 @@ public:
     Evaluation best_scaled_evaluation() const;  ///< Contract: has_best
 
     /// What has been evaluated, in that order; scaled.
-    const VectorX& scaled_point(int evaluation) const { return records_[static_cast<size_t>(evaluation)].scaled_point; }
-    const Evaluation& scaled_evaluation(int evaluation) const { return records_[static_cast<size_t>(evaluation)].scaled_evaluation; }
+    const VectorX& scaled_point(int evaluation) const { return records_[evaluation].scaled_point; }
+    const Evaluation& scaled_evaluation(int evaluation) const { return records_[evaluation].scaled_evaluation; }
 
     int evaluations() const { return count_of(records_); }
     int failures() const { return failures_; }

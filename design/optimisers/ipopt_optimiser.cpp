@@ -72,7 +72,7 @@ public:
 private:
     int n() const { return evaluator_.variables(); }
     int m() const { return count_of(rows_); }
-    int row(int i) const { return rows_[static_cast<size_t>(i)]; }
+    int row(int i) const { return rows_[i]; }
 
     // Null: there is no value there, or the run is over.
     const Evaluation* at(const double* x) {

@@ -99,7 +99,7 @@ Evaluation with_telling_derivatives(const Evaluator& evaluator, const VectorX& p
     const auto count = static_cast<Eigen::Index>(others.size());
     MatrixX steps(count, point.size()), constraints(count, e.constraints.size()), residuals(count, e.residuals.size());
     for (Eigen::Index k = 0; k < count; ++k) {
-        const int other = others[static_cast<size_t>(k)];
+        const int other = others[k];
         const VectorX step = evaluator.scaled_point(other) - point;
         const double length = step.norm();  // near ones count as much as far ones
         steps.row(k) = step.transpose() / length;

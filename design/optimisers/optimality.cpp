@@ -124,7 +124,7 @@ private:
         const std::vector<NoiseLevel> levels = estimate_noise_by_column(values, noise_spacing);
         for (int q = 0; q <= m; ++q) {
             const double scale = q == 0 ? evaluator_.objective_scale() : evaluator_.constraint_scale()[q - 1];
-            const NoiseLevel& level = levels[static_cast<size_t>(q)];
+            const NoiseLevel& level = levels[q];
             result_.noise[q] = level.noise / scale;
             const double weight = q == 0 ? 1 : now_.solution.solved ? std::abs(multipliers[q - 1]) : 0;
             const double effect = weight * level.noise;
@@ -145,7 +145,7 @@ private:
         if (std::abs(d) >= now_.radius * (1 - 1e-6) && now_.gain > worth_) return Held::free;
         for (Eigen::Index i = 0; i < now_.solution.multipliers.size(); ++i)
             if (std::abs(now_.solution.multipliers[i] * at_.jacobian(i, k)) > telling_share * size) return Held::constraints;
-        for (Eigen::Index j = 0; j < now_.solution.cut_multipliers.size() && now_.solution.cut_of[static_cast<size_t>(j)] >= 0; ++j)
+        for (Eigen::Index j = 0; j < now_.solution.cut_multipliers.size() && now_.solution.cut_of[j] >= 0; ++j)
             if (std::abs(now_.solution.cut_multipliers[j] * at_.constraint_branches.jacobian(j, k)) > telling_share * size)
                 return Held::constraints;
         return Held::stationary;
@@ -161,15 +161,15 @@ private:
         result_.step = now_.solution.step.cwiseProduct(evaluator_.range());
         result_.multipliers = whole_multipliers(now_.solution).cwiseProduct(evaluator_.constraint_scale()) / f;
         result_.residual = VectorX::Zero(n);
-        result_.held.resize(static_cast<size_t>(n));
+        result_.held.resize(n);
         for (Eigen::Index k = 0; k < n; ++k) {
-            result_.held[static_cast<size_t>(k)] = what_holds(k);
-            const Held held = result_.held[static_cast<size_t>(k)];
+            result_.held[k] = what_holds(k);
+            const Held held = result_.held[k];
             if (held != Held::lower_bound && held != Held::upper_bound) result_.residual[k] = now_.solution.box_multipliers[k] / f;
         }
         if (now_.gain <= worth_) return;
         const VectorX share = (now_.solution.box_multipliers.cwiseProduct(now_.solution.step)).cwiseAbs();
-        std::vector<int> order(static_cast<size_t>(n));
+        std::vector<int> order(n);
         std::iota(order.begin(), order.end(), 0);
         std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share[a] > share[b]; });
         for (const int k : order)

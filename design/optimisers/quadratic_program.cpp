@@ -55,7 +55,7 @@ public:
     }
 
     bool gradient(const double* x, double* out) override {
-        for (int k = n(); k < unknowns(); ++k) out[k] = slacks_[static_cast<size_t>(k - n())].price;
+        for (int k = n(); k < unknowns(); ++k) out[k] = slacks_[k - n()].price;
         Eigen::Map<VectorX>(out, n()) = program_.gradient + program_.hessian * step(x);
         return true;
     }
@@ -80,7 +80,7 @@ public:
             }
         }
         for (int k = 0; k < count_of(places_); ++k) {
-            const SlackPlace& place = places_[static_cast<size_t>(k)];
+            const SlackPlace& place = places_[k];
             if (values == nullptr) {
                 row[dense + k] = place.row;
                 column[dense + k] = n() + place.slack;
@@ -139,7 +139,7 @@ private:
         const double missing = program_.cuts.lower[j];
         if (shared == places_.end()) return add_slack(m() + j, 1, 1, missing);
         const int slack = shared->slack;
-        slacks_[static_cast<size_t>(slack)].start = std::max(slacks_[static_cast<size_t>(slack)].start, missing);
+        slacks_[slack].start = std::max(slacks_[slack].start, missing);
         places_.push_back({m() + j, slack, 1});
     }
 

@@ -107,9 +107,9 @@ BoundsReport try_bounds(const DesignProblem& problem) {
     if (!problem.obstacles(start).empty()) return report;
     std::vector<UnreachableBound> ends(2 * static_cast<size_t>(n));
     core::base::parallel_for(2 * n, 1, [&](int i) {
-        const Parameter& parameter = parameters[static_cast<size_t>(i / 2)];
+        const Parameter& parameter = parameters[i / 2];
         const double bound = i % 2 == 0 ? parameter.lower : parameter.upper;
-        ends[static_cast<size_t>(i)] = {i / 2, bound, reach(problem, start, i / 2, bound)};
+        ends[i] = {i / 2, bound, reach(problem, start, i / 2, bound)};
     });
     for (UnreachableBound& end : ends) {
         if (!end.reach.obstacles.empty()) report.unreachable.push_back(std::move(end));
@@ -119,14 +119,13 @@ BoundsReport try_bounds(const DesignProblem& problem) {
     for (int index = 1; index <= std::min(64, samples); ++index) {
         VectorX p = spread(index, n);
         for (int k = 0; k < n; ++k) {
-            const Parameter& parameter = parameters[static_cast<size_t>(k)];
+            const Parameter& parameter = parameters[k];
             p[k] = parameter.lower + p[k] * (parameter.upper - parameter.lower);
         }
         if (!any(broken_inequalities(problem, p))) points.push_back(std::move(p));
     }
     std::vector<Errors> found(points.size());
-    core::base::parallel_for(count_of(points), 1,
-                             [&](int i) { found[static_cast<size_t>(i)] = problem.obstacles(points[static_cast<size_t>(i)]); });
+    core::base::parallel_for(count_of(points), 1, [&](int i) { found[i] = problem.obstacles(points[i]); });
     report.samples = count_of(points);
     report.obstacles = tally(found);
     for (const Obstacle& obstacle : report.obstacles) report.refused += obstacle.designs;
@@ -141,7 +140,7 @@ std::string described(const Error& error) {
 std::vector<std::string> described(const Design& design, const BoundsReport& report) {
     std::vector<std::string> lines;
     for (const UnreachableBound& end : report.unreachable) {
-        const Parameter& parameter = design.parameters[static_cast<size_t>(end.parameter)];
+        const Parameter& parameter = design.parameters[end.parameter];
         const bool lower = end.bound == parameter.lower;
         lines.push_back("`" + parameter.name + "` " + (lower ? "below " : "above ") + amount(end.reach.value, parameter.unit) +
                         ", the others as at the start, makes no design, yet its bound is " + amount(end.bound, parameter.unit) + ": " +

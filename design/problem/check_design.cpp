@@ -82,7 +82,7 @@ private:
         const Shape* shape = description::shape_of(design_, body);
         if (shape == nullptr) return;
         if (!has_body(body)) return add(ErrorCode::out_of_range, "shapes", "there are more shapes than bodies");
-        const core::scene::Body& of = design_.scene.bodies[static_cast<size_t>(body)];
+        const core::scene::Body& of = design_.scene.bodies[body];
         const std::string where = "shape of body `" + of.name + "`";
         const Result<description::ShapeInstance> drawn = description::as_drawn(*shape);
         if (!drawn) {

@@ -117,7 +117,7 @@ optimisers::Rows DesignProblem::relations(const VectorX& p) const {
     const auto k = static_cast<Eigen::Index>(design_.relations.size());
     optimisers::Rows all{VectorX(k), MatrixX(k, parameter_count())};
     for (Eigen::Index i = 0; i < k; ++i) {
-        const description::RelationValue at = design_.relations[static_cast<size_t>(i)].at(p);
+        const description::RelationValue at = design_.relations[i].at(p);
         FETTLE_ASSERT(at.gradient.size() == p.size(), "a relation's gradient has one entry per parameter");
         all.values[i] = at.value;
         all.jacobian.row(i) = at.gradient.transpose();
@@ -130,7 +130,7 @@ Errors DesignProblem::undefined(const optimisers::Rows& relations) const {
     Errors errors;
     for (Eigen::Index i = 0; i < relations.values.size(); ++i) {
         if (std::isfinite(relations.values[i]) && relations.jacobian.row(i).allFinite()) continue;
-        errors.push_back({ErrorCode::not_finite, "relation `" + design_.relations[static_cast<size_t>(i)].name + "`",
+        errors.push_back({ErrorCode::not_finite, "relation `" + design_.relations[i].name + "`",
                           "its value or its derivative is not a finite number here"});
     }
     return errors;
@@ -207,7 +207,7 @@ std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const
     const std::vector<int> indices = rest_constraints();
     rows.values.resize(indices.size());
     for (const int i : indices) {
-        const description::Quantity& quantity = *design_.constraints[static_cast<size_t>(i)].quantity;
+        const description::Quantity& quantity = *design_.constraints[i].quantity;
         const description::Measurement measured = quantity.value(simulated);
         rows.values[seeds.size()] = measured.value;
         seeds.push_back(adjoint::zero_seeds(*model, 0));
@@ -217,7 +217,7 @@ std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const
     if (!gradients) return std::nullopt;
     rows.jacobian.resize(rows.values.size(), parameter_count());
     for (Eigen::Index i = 0; i < rows.jacobian.rows(); ++i)
-        rows.jacobian.row(i) = pull_back(*moved, *model, (*gradients)[static_cast<size_t>(i)], parameter_count()).transpose();
+        rows.jacobian.row(i) = pull_back(*moved, *model, (*gradients)[i], parameter_count()).transpose();
     if (!rows.values.allFinite() || !rows.jacobian.allFinite()) return std::nullopt;
     return rows;
 }
@@ -303,9 +303,9 @@ void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, De
     if (!gradients) return refuse(first_reason(gradients.errors()));
     MatrixX rows(gradients->size(), parameter_count());
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
-        rows.row(i) = pull_back(moved, *evaluation.model, (*gradients)[static_cast<size_t>(i)], parameter_count()).transpose();
+        rows.row(i) = pull_back(moved, *evaluation.model, (*gradients)[i], parameter_count()).transpose();
     for (int k = 0; k < parameter_count(); ++k) {
-        const std::string by = ": its derivative by `" + design_.parameters[static_cast<size_t>(k)].name + "` is not a finite number";
+        const std::string by = ": its derivative by `" + design_.parameters[k].name + "` is not a finite number";
         if (!std::isfinite(rows(0, k))) return refuse("objective" + by);
         for (size_t i = 0; i < design_.constraints.size(); ++i)
             if (!std::isfinite(rows(static_cast<Eigen::Index>(i) + 1, k))) return refuse(name_of(design_.constraints[i]) + by);

@@ -36,27 +36,27 @@ optimisers::Problem optimiser_problem(const DesignProblem& design_problem, const
     problem.lower.resize(n);
     problem.upper.resize(n);
     for (Eigen::Index k = 0; k < n; ++k) {
-        problem.lower[k] = design.parameters[static_cast<size_t>(k)].lower;
-        problem.upper[k] = design.parameters[static_cast<size_t>(k)].upper;
+        problem.lower[k] = design.parameters[k].lower;
+        problem.upper[k] = design.parameters[k].upper;
     }
     problem.representable = [&design](const VectorX& p) {
         VectorX q = p;
-        for (Eigen::Index k = 0; k < q.size(); ++k) q[k] = description::representable(p[k], design.parameters[static_cast<size_t>(k)].unit);
+        for (Eigen::Index k = 0; k < q.size(); ++k) q[k] = description::representable(p[k], design.parameters[k].unit);
         return q;
     };
     problem.constraint_lower.resize(m);
     problem.constraint_upper.resize(m);
     for (Eigen::Index i = 0; i < m; ++i) {
-        problem.constraint_lower[i] = description::target_lower(design.constraints[static_cast<size_t>(i)].bounds);
-        problem.constraint_upper[i] = description::target_upper(design.constraints[static_cast<size_t>(i)].bounds);
+        problem.constraint_lower[i] = description::target_lower(design.constraints[i].bounds);
+        problem.constraint_upper[i] = description::target_upper(design.constraints[i].bounds);
     }
     if (!design_problem.rest_constraints().empty()) problem.prepared = prepared(design_problem, problem);
     const auto k = static_cast<Eigen::Index>(design.relations.size());
     problem.relation_lower.resize(k);
     problem.relation_upper.resize(k);
     for (Eigen::Index i = 0; i < k; ++i) {
-        problem.relation_lower[i] = description::target_lower(design.relations[static_cast<size_t>(i)].bounds);
-        problem.relation_upper[i] = description::target_upper(design.relations[static_cast<size_t>(i)].bounds);
+        problem.relation_lower[i] = description::target_lower(design.relations[i].bounds);
+        problem.relation_upper[i] = description::target_upper(design.relations[i].bounds);
     }
     if (k > 0) problem.relations = [&design_problem](const VectorX& p) { return design_problem.relations(p); };
     problem.refusal = [&design_problem](const VectorX& p) { return design_problem.refusal(p); };

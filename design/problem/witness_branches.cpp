@@ -13,14 +13,13 @@ using description::Design;
 
 VectorX ranges_of(const Design& design) {
     VectorX ranges(design.parameters.size());
-    for (Eigen::Index k = 0; k < ranges.size(); ++k)
-        ranges[k] = design.parameters[static_cast<size_t>(k)].upper - design.parameters[static_cast<size_t>(k)].lower;
+    for (Eigen::Index k = 0; k < ranges.size(); ++k) ranges[k] = design.parameters[k].upper - design.parameters[k].lower;
     return ranges;
 }
 
 VectorX values_of(const QuantityBranches& quantity) {
     VectorX values(quantity.branches.size());
-    for (Eigen::Index k = 0; k < values.size(); ++k) values[k] = quantity.branches[static_cast<size_t>(k)].value;
+    for (Eigen::Index k = 0; k < values.size(); ++k) values[k] = quantity.branches[k].value;
     return values;
 }
 
@@ -122,7 +121,7 @@ optimisers::Branches objective_rows(const Design& design, const std::vector<Quan
     std::vector<Row> rows;
     for (const QuantityBranches& quantity : all) {
         if (!quantity.of_objective) continue;
-        const description::ObjectiveTerm& term = design.objective[static_cast<size_t>(quantity.index)];
+        const description::ObjectiveTerm& term = design.objective[quantity.index];
         const double scale = term.weight / term.unit;
         const VectorX values = values_of(quantity);
         std::vector<int> kept = telling_branches(values, quantity.jacobian, ranges);

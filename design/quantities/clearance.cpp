@@ -63,8 +63,7 @@ PairClearance Clearance::certify(const Simulated& s) const {
 
 Measurement Clearance::value(const Simulated& s) const {
     const PairClearance pair = certify(s);
-    const std::string names =
-        "`" + s.model.bodies[static_cast<size_t>(range_.a)].name + "` and `" + s.model.bodies[static_cast<size_t>(range_.b)].name + "`";
+    const std::string names = "`" + s.model.bodies[range_.a].name + "` and `" + s.model.bodies[range_.b].name + "`";
     if (one_lies_inside(pair)) {
         const double inside = -pair.witness.distance;
         return {inside, inside, inside, pair, "of " + names + " one lies inside the other's material"};

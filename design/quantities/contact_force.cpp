@@ -12,7 +12,7 @@ namespace {
 
 adjoint::stepper::ContactForceOf asked_of(const core::model::Model& model, const ContactForce::Of& of) {
     adjoint::stepper::ContactForceOf out{of.body, of.other};
-    if (of.about) out.about = *of.about - model.bodies[static_cast<size_t>(of.body)].reference_point;
+    if (of.about) out.about = *of.about - model.bodies[of.body].reference_point;
     return out;
 }
 
@@ -47,10 +47,10 @@ Errors ContactForce::check(const core::model::Model& model, int steps) const {
     for (int other = 0; other < count_of(model.bodies); ++other)
         touches = touches || ((!of_.other || other == *of_.other) && may_collide(model, of_.body, other));
     if (!touches)
-        errors.push_back({ErrorCode::inconsistent, "",
-                          "\"" + model.bodies[static_cast<size_t>(of_.body)].name +
-                              (of_.other ? "\" and \"" + model.bodies[static_cast<size_t>(*of_.other)].name + "\" never collide"
-                                         : std::string("\" collides with nothing"))});
+        errors.push_back(
+            {ErrorCode::inconsistent, "",
+             "\"" + model.bodies[of_.body].name +
+                 (of_.other ? "\" and \"" + model.bodies[*of_.other].name + "\" never collide" : std::string("\" collides with nothing"))});
     return errors;
 }
 

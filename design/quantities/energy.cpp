@@ -4,7 +4,7 @@
 #include "fettle/adjoint/model/body_mass_adjoint.hpp"
 #include "fettle/adjoint/stepper/step_linearisation.hpp"
 #include "fettle/adjoint/stepper/velocities.hpp"
-#include "fettle/core/energy/measure_law.hpp"
+#include "fettle/core/energy/measure_terms.hpp"
 
 namespace fettle::design::quantities {
 
@@ -100,13 +100,12 @@ public:
         const std::vector<core::measure::PlacedFrame> frames = placed(mechanism.set.frames, poses);
         std::vector<Matrix3> rotations;
         for (const core::measure::Frame& f : mechanism.set.frames)
-            rotations.push_back(f.body == core::measure::world ? Matrix3(Matrix3::Identity())
-                                                               : poses[static_cast<size_t>(f.body)].rotation);
+            rotations.push_back(f.body == core::measure::world ? Matrix3(Matrix3::Identity()) : poses[f.body].rotation);
         adjoint::MechanismGradient& bar = seeds_.model_bar.mechanism;
         for (size_t k = 0; k < mechanism.terms.size(); ++k) {
             const MeasureTerm& term = mechanism.terms[k];
             if (!stores(term)) continue;
-            const Measure& m = mechanism.set.measures[static_cast<size_t>(term.measure)];
+            const Measure& m = mechanism.set.measures[term.measure];
             const core::measure::VectorFunction f = vector_function(m, frames);
             const LawValue law =
                 measure_law(unweighted(s_.model), term, core::constraint::value_at(mechanism.set, term.measure, frames, angles));
@@ -126,7 +125,7 @@ public:
 
 private:
     void add_pose(const Mechanism& mechanism, int frame, const Vector6& gradient) {
-        const int body = mechanism.set.frames[static_cast<size_t>(frame)].body;
+        const int body = mechanism.set.frames[frame].body;
         if (body == core::measure::world) return;
         const auto i = static_cast<size_t>(body);
         seeds_.trajectory_bar.pose_bar[t_ + 1][i] += pose_entries(gradient, s_.trajectory.poses[t_ + 1][i].rotation);

@@ -2,7 +2,7 @@
 /// Energies at each step's end, of all bodies with mass, joints and springs [J]:
 ///   kinetic     sum 1/2 tr(V M V^T),   V the integrator's end velocity (adjoint/stepper/velocities.hpp)   (none in quasi-statics)
 ///   potential   - sum a . (P' M e4) + f . q'              gravity a and constant forces f, zero at the world's origin
-///   spring      sum g(m')                                 of springs and stops (core/energy/measure_law.hpp)
+///   spring      sum g(m')                                 of springs and stops (core/energy/measure_terms.hpp)
 ///   total       their sum
 #pragma once
 

@@ -30,7 +30,7 @@ class JointAtStep {
 public:
     JointAtStep(const Simulated& s, int joint, size_t step, const VectorX& multipliers, double weight)
         : mechanism_(s.model.mechanism),
-          joint_(mechanism_.joints[static_cast<size_t>(joint)]),
+          joint_(mechanism_.joints[joint]),
           owner_(joint),
           multipliers_(multipliers),
           weight_(weight),
@@ -39,8 +39,7 @@ public:
           body_(joint_.b != core::measure::world ? joint_.b : joint_.a),
           frame_(joint_.b != core::measure::world ? joint_.frame_b : joint_.frame_a) {
         for (const core::measure::Frame& f : mechanism_.set.frames)
-            rotations_.push_back(f.body == core::measure::world ? Matrix3(Matrix3::Identity())
-                                                                : poses_[static_cast<size_t>(f.body)].rotation);
+            rotations_.push_back(f.body == core::measure::world ? Matrix3(Matrix3::Identity()) : poses_[f.body].rotation);
     }
 
     double effort() const {
@@ -50,7 +49,7 @@ public:
     }
 
     Vector3 force() const { return load(false); }
-    Vector3 torque() const { return load(true) - frames_[static_cast<size_t>(frame_)].arm.cross(force()); }
+    Vector3 torque() const { return load(true) - frames_[frame_].arm.cross(force()); }
 
     // Adds the seeds of scale (effort).
     void add_effort_seeds(double scale, VectorX& multiplier_bar) const {
@@ -59,7 +58,7 @@ public:
 
     // Of scale (force . n), or of the torque.
     void add_load_seeds(bool is_torque, const Vector3& n, double scale, size_t step, Seeds& seeds) const {
-        const Vector3& arm = frames_[static_cast<size_t>(frame_)].arm;
+        const Vector3& arm = frames_[frame_].arm;
         Vector6 motion = Vector6::Zero();
         if (is_torque)
             motion << arm.cross(n), n;
@@ -77,11 +76,10 @@ public:
             const double along = -scale * part.factor / weight_, carried = along * multipliers_[i];
             multiplier_bar[i] += along * change;
             add_placement_gradient_of_change(m, f, carried, {frames_, rotations_}, v, seeds.model_bar.mechanism.frames);
-            seeds.model_bar.mechanism.row_factors[i][static_cast<size_t>(&part - mechanism_.rows[i].parts.data())] +=
-                carried / part.factor * change;
+            seeds.model_bar.mechanism.row_factors[i][&part - mechanism_.rows[i].parts.data()] += carried / part.factor * change;
             const Vector12 of_poses = carried * pose_gradient_of_change(m, f, frames_, v);
-            if (body_of(m.a) != core::measure::world) pose_bar[static_cast<size_t>(body_of(m.a))] += of_poses.head<6>();
-            if (body_of(m.b) != core::measure::world) pose_bar[static_cast<size_t>(body_of(m.b))] += of_poses.tail<6>();
+            if (body_of(m.a) != core::measure::world) pose_bar[body_of(m.a)] += of_poses.head<6>();
+            if (body_of(m.b) != core::measure::world) pose_bar[body_of(m.b)] += of_poses.tail<6>();
         });
         if (is_torque) add_arm(scale * n.cross(force()), pose_bar, seeds);
         for (size_t i = 0; i < poses_.size(); ++i)
@@ -89,7 +87,7 @@ public:
     }
 
 private:
-    int body_of(int frame) const { return mechanism_.set.frames[static_cast<size_t>(frame)].body; }
+    int body_of(int frame) const { return mechanism_.set.frames[frame].body; }
 
     template <class Do>
     void for_each_row(const Do& act) const {
@@ -100,7 +98,7 @@ private:
     template <class Do>
     void for_each_part(const Do& act) const {
         for_each_row([&](size_t i) {
-            for (const RowPart& part : mechanism_.rows[i].parts) act(i, part, mechanism_.set.measures[static_cast<size_t>(part.measure)]);
+            for (const RowPart& part : mechanism_.rows[i].parts) act(i, part, mechanism_.set.measures[part.measure]);
         });
     }
 
@@ -117,8 +115,8 @@ private:
 
     // The turn is about the joint's point: (arm x n) . F has n x F for its gradient in the arm R X.
     void add_arm(const Vector3& bar, std::vector<Vector6>& pose_bar, Seeds& seeds) const {
-        pose_bar[static_cast<size_t>(body_)].tail<3>() += frames_[static_cast<size_t>(frame_)].arm.cross(bar);
-        seeds.model_bar.mechanism.frames[static_cast<size_t>(frame_)].point += rotations_[static_cast<size_t>(frame_)].transpose() * bar;
+        pose_bar[body_].tail<3>() += frames_[frame_].arm.cross(bar);
+        seeds.model_bar.mechanism.frames[frame_].point += rotations_[frame_].transpose() * bar;
     }
 
     const Mechanism& mechanism_;
@@ -187,7 +185,7 @@ Errors JointLoad::check(const core::model::Model& model, int steps) const {
                                          "` of an angle, travel or speed (one of torque or force has what "
                                          "its curve says)"
                                    : "the scene has no joint `" + of_.name + "`"});
-    else if (!is_motor && model.mechanism.joints[static_cast<size_t>(joint)].frame_b < 0)
+    else if (!is_motor && model.mechanism.joints[joint].frame_b < 0)
         errors.push_back({ErrorCode::inconsistent, "", "`" + of_.name + "` couples two joints: it has no point that a force acts at"});
     return errors;
 }

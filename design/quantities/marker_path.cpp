@@ -85,7 +85,7 @@ VectorX MarkerPath::deviations(const Simulated& simulated) const {
 // Where timing is free and the place is inside a piece of the path, the place moves along with the path, so that only the distance across
 // it changes.
 void MarkerPath::add_deviation_seeds(const Simulated& simulated, int i, double scale, Seeds& seeds) const {
-    const Place found = places(simulated)[static_cast<size_t>(i / 3)];
+    const Place found = places(simulated)[i / 3];
     Vector3 direction = Vector3::Unit(i % 3) * scale / std::sqrt(static_cast<double>(targets_.size()));
     if (times_.empty() && found.fraction > 0 && found.fraction < 1) {
         const Vector3 along =

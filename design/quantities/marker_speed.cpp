@@ -9,14 +9,14 @@ using description::Seeds;
 using description::Simulated;
 
 Eigen::Vector4d MarkerSpeed::place(const core::model::Model& model) const {
-    const Vector3 X = of_.point - model.bodies[static_cast<size_t>(of_.body)].reference_point;
+    const Vector3 X = of_.point - model.bodies[of_.body].reference_point;
     return X.homogeneous();
 }
 
 std::vector<Vector3> MarkerSpeed::velocities(const Simulated& s) const {
     std::vector<Vector3> out;
     for (const std::vector<Matrix34>& at : adjoint::stepper::end_velocities(s.model, s.trajectory))
-        out.emplace_back(at[static_cast<size_t>(of_.body)] * place(s.model));
+        out.emplace_back(at[of_.body] * place(s.model));
     return out;
 }
 

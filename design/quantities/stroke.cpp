@@ -27,7 +27,7 @@ Extreme smooth_maximum(const std::vector<double>& y) {
 std::vector<double> Stroke::coordinates(const Simulated& simulated, double sign) const {
     std::vector<double> y;
     y.reserve(simulated.trajectory.poses.size());
-    for (const auto& poses : simulated.trajectory.poses) y.push_back(sign * axis_.dot(poses[static_cast<size_t>(body_)].position));
+    for (const auto& poses : simulated.trajectory.poses) y.push_back(sign * axis_.dot(poses[body_].position));
     return y;
 }
 
@@ -53,7 +53,7 @@ void Stroke::add_deviation_seeds(const Simulated& simulated, int, double scale, 
         const Extreme extreme = smooth_maximum(coordinates(simulated, sign));
         for (size_t k = 0; k < 3; ++k) {
             if (extreme.weights[k] == 0) continue;
-            seeds.trajectory_bar.pose_bar[static_cast<size_t>(extreme.first) + k][static_cast<size_t>(body_)].col(3) +=
+            seeds.trajectory_bar.pose_bar[static_cast<size_t>(extreme.first) + k][body_].col(3) +=
                 scale * extreme.weights[k] * sign * axis_;
         }
     }

@@ -80,7 +80,7 @@ std::shared_ptr<const Quantity> read_mass(const JsonNode& node, const ReadContex
         const auto index = context.body(entry);
         if (!index) continue;
         bodies.push_back(*index);
-        const core::scene::Body& body = context.scene.bodies[static_cast<size_t>(*index)];
+        const core::scene::Body& body = context.scene.bodies[*index];
         if (body.inertial) continue;
         if (!body.density_given) {
             entry.fail(ErrorCode::missing_key,

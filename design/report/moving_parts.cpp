@@ -61,9 +61,8 @@ std::vector<Node> nodes_of(const Trajectory& trajectory, int every) {
 }
 
 Pose pose_of(const Trajectory& trajectory, const Node& node, int body) {
-    if (node.step < 0) return trajectory.poses.front()[static_cast<size_t>(body)];
-    if (node.node == core::stepper::segment_count(trajectory, node.step))
-        return trajectory.poses[static_cast<size_t>(node.step) + 1][static_cast<size_t>(body)];
+    if (node.step < 0) return trajectory.poses.front()[body];
+    if (node.node == core::stepper::segment_count(trajectory, node.step)) return trajectory.poses[static_cast<size_t>(node.step) + 1][body];
     return core::stepper::pose_at(trajectory, node.step, node.node, 0, body);
 }
 

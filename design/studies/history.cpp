@@ -47,7 +47,7 @@ Json rows_json(const MatrixX& matrix) {
 MatrixX to_matrix(const Json& rows, Eigen::Index columns) {
     MatrixX matrix(rows.size(), columns);
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-        const VectorX row = to_vector(rows[static_cast<size_t>(i)]);
+        const VectorX row = to_vector(rows[i]);
         if (row.size() != columns) throw std::runtime_error("sizes do not match the header");
         matrix.row(i) = row.transpose();
     }
@@ -134,7 +134,7 @@ HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) 
     entry.model = json.value("model", std::string());
     const auto n = static_cast<Eigen::Index>(header.parameters.size());
     entry.point.resize(n);
-    for (Eigen::Index k = 0; k < n; ++k) entry.point[k] = json.at("parameters").at(header.parameters[static_cast<size_t>(k)]).get<double>();
+    for (Eigen::Index k = 0; k < n; ++k) entry.point[k] = json.at("parameters").at(header.parameters[k]).get<double>();
     optimisers::Evaluation& e = entry.evaluation;
     e.usable = json.at("usable").get<bool>();
     entry.forward_seconds = json.at("forward_seconds").get<double>();

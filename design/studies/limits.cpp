@@ -22,13 +22,13 @@ using Wanted = std::vector<std::array<bool, 2>>;
 void want(Wanted& wanted, const Design& design, const VectorX& gradient, double sign) {
     VectorX change = sign * gradient;
     for (Eigen::Index k = 0; k < change.size(); ++k) {
-        const Parameter& p = design.parameters[static_cast<size_t>(k)];
+        const Parameter& p = design.parameters[k];
         change[k] *= p.upper - p.lower;
     }
     constexpr double noticeable = 0.1;  // of what the most effective parameter does
     const double threshold = noticeable * change.lpNorm<Eigen::Infinity>();
     for (Eigen::Index k = 0; k < change.size(); ++k) {
-        if (std::abs(change[k]) > threshold) wanted[static_cast<size_t>(k)][change[k] > 0 ? 1 : 0] = true;
+        if (std::abs(change[k]) > threshold) wanted[k][change[k] > 0 ? 1 : 0] = true;
     }
 }
 
@@ -36,13 +36,13 @@ Wanted wanted_directions(const Design& design, const problem::DesignEvaluation& 
     const bool known = jacobian.rows() == static_cast<Eigen::Index>(final.constraints.size());
     Wanted wanted(design.parameters.size(), {!known, !known});
     for (Eigen::Index i = 0; known && i < jacobian.rows(); ++i) {
-        const Bounds& bounds = design.constraints[static_cast<size_t>(i)].bounds;
-        const description::Measurement& measured = final.constraints[static_cast<size_t>(i)];
+        const Bounds& bounds = design.constraints[i].bounds;
+        const description::Measurement& measured = final.constraints[i];
         if (measured.lower < bounds.lower) want(wanted, design, jacobian.row(i).transpose(), 1);
         if (measured.upper > bounds.upper) want(wanted, design, jacobian.row(i).transpose(), -1);
     }
     for (Eigen::Index i = 0; i < final.relations.values.size(); ++i) {
-        const description::Relation& relation = design.relations[static_cast<size_t>(i)];
+        const description::Relation& relation = design.relations[i];
         const double value = final.relations.values[i];
         if (description::violation(relation, value) <= 0) continue;
         want(wanted, design, final.relations.jacobian.row(i).transpose(), value < relation.bounds.lower ? 1 : -1);
@@ -73,7 +73,7 @@ private:
         for (size_t k = 0; k < wanted.size(); ++k) {
             const Parameter& p = design_.parameters[k];
             for (const int up : {0, 1}) {
-                if (!wanted[k][static_cast<size_t>(up)]) continue;
+                if (!wanted[k][up]) continue;
                 const double bound = up == 1 ? p.upper : p.lower, value = point_[k];
                 if (std::abs(bound - value) <= 1e-3 * (p.upper - p.lower)) {
                     lines_.push_back("parameter " + p.name + " is at its " + (up == 1 ? "upper" : "lower") + " bound " +
@@ -86,7 +86,7 @@ private:
     }
 
     void add_reach(int k, double bound) {
-        const Parameter& p = design_.parameters[static_cast<size_t>(k)];
+        const Parameter& p = design_.parameters[k];
         const problem::Reach reach = problem::reach(problem_, point_, k, bound);
         constexpr double near = 0.1;  // of the range: what is further away is not what stopped the optimiser here
         if (reach.obstacles.empty() || std::abs(reach.value - point_[k]) > near * (p.upper - p.lower)) return;

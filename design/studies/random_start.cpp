@@ -26,7 +26,7 @@ VectorX start_of_seed(const description::Design& design, std::uint64_t seed) {
     if (seed == 0) return start;
     std::uint64_t state = seed;
     for (Eigen::Index k = 0; k < start.size(); ++k) {
-        const description::Parameter& p = design.parameters[static_cast<size_t>(k)];
+        const description::Parameter& p = design.parameters[k];
         start[k] = p.lower + next_fraction(state) * (p.upper - p.lower);
     }
     return start;

@@ -2,10 +2,10 @@
 // The sweeps of quasi-static simulations and of damped ones: backwards against forwards, and both against differences of whole simulations.
 #include <catch2/catch.hpp>
 
-#include "fettle/adjoint/energy/damping_adjoint.hpp"
+#include "fettle/adjoint/energy/body_terms_adjoint.hpp"
 #include "fettle/adjoint/stepper/reverse_sweep.hpp"
 #include "fettle/adjoint/stepper/tangent_sweep.hpp"
-#include "fettle/core/energy/damping.hpp"
+#include "fettle/core/energy/body_terms.hpp"
 #include "fettle/core/model/choose_proximal_weight.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"

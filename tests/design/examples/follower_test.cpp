@@ -21,7 +21,7 @@ constexpr double dhat = 0.08e-3;
 double sag(double radius, int segments) { return radius * (1 - std::cos(std::numbers::pi / segments)); }
 
 double rise(const Example& example, const problem::DesignEvaluation& evaluation) {
-    return evaluation.constraints[static_cast<size_t>(example.constraint("stroke"))].value;
+    return evaluation.constraints[example.constraint("stroke")].value;
 }
 
 TEST_CASE("example follower: as written it can be simulated, and rise and play are not what is required") {
@@ -31,7 +31,7 @@ TEST_CASE("example follower: as written it can be simulated, and rise and play a
     INFO(evaluation.reason);
     REQUIRE(evaluation.usable);
     CHECK(rise(example, evaluation) < 7.98e-3);
-    const auto play = evaluation.constraints[static_cast<size_t>(example.constraint("clearance follower:guide"))];
+    const auto play = evaluation.constraints[example.constraint("clearance follower:guide")];
     CHECK(play.upper < 0.2e-3);
     CHECK(play.value == Approx(5e-3 - 4.9e-3 * std::cos(std::numbers::pi / 24)).epsilon(1e-6));  // flat against flat
     CHECK(evaluation.violation > 0.5e-3);

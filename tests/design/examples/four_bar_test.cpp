@@ -71,7 +71,7 @@ TEST_CASE("example four-bar: the points of the file are those of the target link
 TEST_CASE("example four-bar: anywhere within the bounds the crank can turn") {
     const Example example = Example::read("four_bar");
     const auto at = [&](const char* name, int part) {
-        const auto& parameter = example.design.parameters[static_cast<size_t>(example.parameter(name))];
+        const auto& parameter = example.design.parameters[example.parameter(name)];
         return parameter.lower + part * (parameter.upper - parameter.lower) / 10;
     };
     for (int i = 0; i <= 10; ++i) {
@@ -129,7 +129,7 @@ TEST_CASE("example four-bar: with the target's dimensions the path is met but fo
     REQUIRE(evaluation.usable);
     CHECK(evaluation.violation == 0);
     CHECK(std::sqrt(evaluation.terms[0].value) < furthest(4.5e-3, 4.35e-3));
-    CHECK(evaluation.constraints[static_cast<size_t>(example.constraint("crank:base"))].value ==
+    CHECK(evaluation.constraints[example.constraint("crank:base")].value ==
           Approx(4.5e-3 - 4.35e-3 * std::cos(pi / segments)).epsilon(1e-6));
 }
 

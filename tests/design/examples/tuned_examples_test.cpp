@@ -59,7 +59,7 @@ TEST_CASE("where an optimiser stopped short, the design is called feasible, not 
     CHECK(report.start.objective == Approx(16.689).epsilon(1e-3));
     CHECK(report.status == OptimiserStatus::feasible);
     std::vector<std::string> named;  // journal_radius pays more per step, piston_length has farther to go
-    for (const int k : report.optimality.improvable) named.push_back(problem->design().parameters[static_cast<size_t>(k)].name);
+    for (const int k : report.optimality.improvable) named.push_back(problem->design().parameters[k].name);
     REQUIRE(named.size() >= 2);
     CHECK(named[0] == "journal_radius");
     CHECK(std::find(named.begin(), named.end(), "piston_length") != named.end());

@@ -39,14 +39,13 @@ public:
     void add_seeds(const design::description::Simulated& s, const design::description::Measurement&, double scale,
                    design::description::Seeds& seeds) const override {
         const VectorX gradient = gradient_(shares(s));
-        for (Eigen::Index k = 0; k < gradient.size(); ++k)
-            seeds.model_bar.bodies[static_cast<size_t>(k)].density_bar += scale * gradient[k] / 1000;
+        for (Eigen::Index k = 0; k < gradient.size(); ++k) seeds.model_bar.bodies[k].density_bar += scale * gradient[k] / 1000;
     }
 
 private:
     static VectorX shares(const design::description::Simulated& s) {
         VectorX u(s.model.bodies.size());
-        for (Eigen::Index k = 0; k < u.size(); ++k) u[k] = (s.model.bodies[static_cast<size_t>(k)].density - 1000) / 1000;
+        for (Eigen::Index k = 0; k < u.size(); ++k) u[k] = (s.model.bodies[k].density - 1000) / 1000;
         return u;
     }
     Function f_;

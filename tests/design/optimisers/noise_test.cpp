@@ -171,8 +171,8 @@ TEST_CASE("noise: columns are judged one by one") {
     REQUIRE(found.size() == 3);
     for (int q = 0; q < 3; ++q) {
         const NoiseLevel alone = estimate_noise(VectorX(values.col(q)), 0.1);
-        CHECK(found[static_cast<size_t>(q)].noise == alone.noise);
-        CHECK(found[static_cast<size_t>(q)].status == alone.status);
+        CHECK(found[q].noise == alone.noise);
+        CHECK(found[q].status == alone.status);
     }
     CHECK(found[0].status == NoiseStatus::spacing_too_large);
     CHECK(found[1].status == NoiseStatus::detected);

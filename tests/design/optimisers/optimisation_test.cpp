@@ -236,7 +236,7 @@ TEST_CASE("smoother models are gone through first, and only the problem itself i
     std::vector<int> calls(2, 0);
     for (int k = 0; k < 2; ++k) {
         p.smoother.push_back({k == 0 ? "smoothest" : "smoother", [&calls, k, inner = p.evaluate](const VectorX& x) {
-                                  ++calls[static_cast<size_t>(k)];
+                                  ++calls[k];
                                   Evaluation e = inner(x);
                                   e.objective += 5 - k;  // that of another model
                                   return e;

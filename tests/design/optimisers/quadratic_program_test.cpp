@@ -126,7 +126,7 @@ TEST_CASE("cuts share their row's violation, kinks have a price of their own") {
         }
         for (Eigen::Index j = 0; j < cuts; ++j) {
             CHECK(s.cut_multipliers[j] > -1e-6);
-            (p.cuts.of[static_cast<size_t>(j)] < 0 ? kinked : held) += s.cut_multipliers[j] > 1e-3 ? 1 : 0;
+            (p.cuts.of[j] < 0 ? kinked : held) += s.cut_multipliers[j] > 1e-3 ? 1 : 0;
         }
         const VectorX balance = p.gradient + p.hessian * s.step - p.rows.transpose() * s.multipliers -
                                 p.cuts.rows.transpose() * s.cut_multipliers - s.box_multipliers;

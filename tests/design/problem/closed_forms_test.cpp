@@ -222,7 +222,7 @@ TEST_CASE("closed form: two equal bodies exchange their velocities", "[contact]"
         design.scene.integrator = core::scene::Integrator::newmark;
         for (core::scene::Body& body : design.scene.bodies) {
             body.group = -1;
-            for (const int dof : {1, 2, 3, 4, 5}) body.prescribed[static_cast<size_t>(dof)] = core::scene::MotionCurve{};
+            for (const int dof : {1, 2, 3, 4, 5}) body.prescribed[dof] = core::scene::MotionCurve{};
         }
         design.scene.bodies[0].linear_velocity = Vector3(1, 0, 0);
         design.scene.dhat = dhat;
@@ -383,7 +383,7 @@ TEST_CASE("closed form: what a hanging chain's joints carry, in density and grav
     const double volume = 0.2 * 0.02 * 0.02;
     for (int k = 0; k < 3; ++k) {
         CAPTURE(k);
-        CHECK(at.constraints[static_cast<size_t>(k)].value == Approx((3 - k) * 1000 * volume * 9.81).epsilon(1e-8));
+        CHECK(at.constraints[k].value == Approx((3 - k) * 1000 * volume * 9.81).epsilon(1e-8));
         for (int j = 0; j < 3; ++j) CHECK(at.jacobian(k, j) == Approx(j < k ? 0 : volume * 9.81).epsilon(1e-7).margin(1e-10));
         CHECK(at.jacobian(k, 3) == Approx(-(3 - k) * 1000 * volume).epsilon(1e-7));
     }

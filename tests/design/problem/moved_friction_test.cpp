@@ -100,7 +100,7 @@ TEST_CASE("coefficients of friction: of a pair, a material, a body and all other
             const DesignEvaluation there = problem->evaluate(start + s * VectorX::Unit(start.size(), k), plain);
             REQUIRE(there.usable);
             VectorX out(4);
-            for (Eigen::Index i = 0; i < 4; ++i) out[i] = there.constraints[static_cast<size_t>(i)].value;
+            for (Eigen::Index i = 0; i < 4; ++i) out[i] = there.constraints[i].value;
             return out;
         };
         const VectorX wide = (values(e) - values(-e)) / (2 * e), narrow = (values(e / 2) - values(-e / 2)) / e;

@@ -38,12 +38,12 @@ double functional(const core::model::Model& model, const adjoint::ModelGradient&
         sum += w.pose_start_bar.cwiseProduct(core::kinematics::pose_matrix(body.pose_start)).sum();
         sum += w.density_bar * body.density;
         for (int dof = 0; dof < 6; ++dof) {
-            if (!body.prescribed[static_cast<size_t>(dof)]) continue;
+            if (!body.prescribed[dof]) continue;
             for (int t = 0; t < steps; ++t) {
-                const auto& curve = *body.prescribed[static_cast<size_t>(dof)];
+                const auto& curve = *body.prescribed[dof];
                 const double increment =
                     core::scene::motion_value(curve, (t + 1) * model.timestep) - core::scene::motion_value(curve, t * model.timestep);
-                sum += w.increment_bar[static_cast<size_t>(t)][dof] * increment;
+                sum += w.increment_bar[t][dof] * increment;
             }
         }
     }

@@ -32,7 +32,7 @@ inline core::stepper::Trajectory moving(int steps) {
         pose.position = Vector3(std::cos(0.5 * t + 0.2), std::sin(0.5 * t), 0.1 * t);
         trajectory.poses.push_back({pose});
     }
-    trajectory.steps.resize(static_cast<size_t>(steps));
+    trajectory.steps.resize(steps);
     return trajectory;
 }
 
@@ -45,13 +45,12 @@ inline void check_pose_gradient(const design::description::Quantity& quantity, d
     adjoint::Seeds seeds = adjoint::zero_seeds(model, count_of(trajectory.steps));
     quantity.add_seeds(simulated, quantity.value(simulated), 1.7, seeds);
     VectorX gradient(12 * count);
-    for (Eigen::Index t = 0; t < count; ++t)
-        gradient.segment<12>(12 * t) = seeds.trajectory_bar.pose_bar[static_cast<size_t>(t)][0].reshaped();
+    for (Eigen::Index t = 0; t < count; ++t) gradient.segment<12>(12 * t) = seeds.trajectory_bar.pose_bar[t][0].reshaped();
     const auto check = support::check_gradient(
         [&](const VectorX& x) {
             core::stepper::Trajectory moved = trajectory;
             for (Eigen::Index t = 0; t < count; ++t) {
-                core::kinematics::Pose& pose = moved.poses[static_cast<size_t>(t)][0];
+                core::kinematics::Pose& pose = moved.poses[t][0];
                 pose.rotation += x.segment<9>(12 * t).reshaped(3, 3);
                 pose.position += x.segment<3>(12 * t + 9);
             }

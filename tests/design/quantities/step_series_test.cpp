@@ -187,7 +187,7 @@ TEST_CASE("joint loads, efforts and energies are those that the simulation repor
         const core::stepper::StepOutputs& last = done.outputs.back();
         const auto reported = [&](const std::string& name) {
             for (const core::stepper::JointForce& force : last.joints)
-                if (model.mechanism.joints[static_cast<size_t>(force.joint)].name == name) return force;
+                if (model.mechanism.joints[force.joint].name == name) return force;
             FAIL(name);
             return core::stepper::JointForce{};
         };
@@ -240,7 +240,7 @@ void check_derivatives(const DesignProblem& problem, double tolerance) {
         INFO(there.reason);
         REQUIRE(there.usable);
         VectorX out(there.constraints.size());
-        for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = there.constraints[static_cast<size_t>(i)].value;
+        for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = there.constraints[i].value;
         return out;
     };
     for (Eigen::Index k = 0; k < start.size(); ++k) {
@@ -253,7 +253,7 @@ void check_derivatives(const DesignProblem& problem, double tolerance) {
         }
         for (Eigen::Index i = 0; i < least.size(); ++i) {
             const double size = std::max(std::abs(at.jacobian(i, k)), 1e-3 * at.jacobian.row(i).lpNorm<Eigen::Infinity>());
-            CAPTURE(problem.design().constraints[static_cast<size_t>(i)].name, k, at.jacobian(i, k), least[i]);
+            CAPTURE(problem.design().constraints[i].name, k, at.jacobian(i, k), least[i]);
             CHECK(least[i] <= tolerance * size);
         }
     }

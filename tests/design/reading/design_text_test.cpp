@@ -28,7 +28,7 @@ TEST_CASE("a rewritten design reads back bit for bit, from another folder, and h
     REQUIRE(design);
     VectorX values(5);
     values << 0.0123456789012345678, 0.2 / 11, -1e-3 / 3, 1234.5678901234567, 0.98765432109876543;
-    for (Eigen::Index k = 0; k < 5; ++k) values[k] = representable(values[k], design->design.parameters[static_cast<size_t>(k)].unit);
+    for (Eigen::Index k = 0; k < 5; ++k) values[k] = representable(values[k], design->design.parameters[k].unit);
     values[2] = design->design.parameters[2].upper;
     const auto out = folder.path / "out";
     std::filesystem::create_directories(out);
@@ -37,7 +37,7 @@ TEST_CASE("a rewritten design reads back bit for bit, from another folder, and h
     const Result<DesignFile> again = read_design(path);
     INFO(all(again.errors()));
     REQUIRE(again);
-    for (Eigen::Index k = 0; k < 5; ++k) CHECK(again->design.parameters[static_cast<size_t>(k)].value == values[k]);
+    for (Eigen::Index k = 0; k < 5; ++k) CHECK(again->design.parameters[k].value == values[k]);
     CHECK(design_hash(*again) != design_hash(*design));
     std::ofstream(path) << design_text(*design, values_of(design->design.parameters), out.string());
     CHECK(design_hash(*read_design(path)) == design_hash(*design));

@@ -48,10 +48,9 @@ Mesh restless_box(double x, double y, double z) {
     auto& t = mesh.triangles;
     for (size_t j = 1; j < t.size(); ++j) {
         for (int i = 0; i < 3; ++i) {
-            const int a = t[0][static_cast<size_t>(i)], b = t[0][static_cast<size_t>((i + 1) % 3)],
-                      c = t[0][static_cast<size_t>((i + 2) % 3)];
+            const int a = t[0][i], b = t[0][(i + 1) % 3], c = t[0][(i + 2) % 3];
             for (int k = 0; k < 3; ++k) {
-                const auto at = [&](int n) { return t[j][static_cast<size_t>((k + n) % 3)]; };
+                const auto at = [&](int n) { return t[j][(k + n) % 3]; };
                 if (at(0) != b || at(1) != a) continue;
                 const Vector3 first = (mesh.vertices.col(b) - mesh.vertices.col(a)).cross(mesh.vertices.col(c) - mesh.vertices.col(a));
                 const Vector3 second = (mesh.vertices.col(a) - mesh.vertices.col(b)).cross(mesh.vertices.col(at(2)) - mesh.vertices.col(b));

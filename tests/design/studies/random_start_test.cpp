@@ -41,7 +41,7 @@ TEST_CASE("starts fill the bounds evenly, each parameter for itself") {
     for (int seed = 1; seed <= n; ++seed) {
         const VectorX start = start_of_seed(design, static_cast<std::uint64_t>(seed));
         const auto cell = [&](int k) {
-            const description::Parameter& p = design.parameters[static_cast<size_t>(k)];
+            const description::Parameter& p = design.parameters[k];
             REQUIRE((start[k] >= p.lower && start[k] <= p.upper));
             return std::min(cells - 1, static_cast<int>(cells * (start[k] - p.lower) / (p.upper - p.lower)));
         };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What was found, as JUnit XML, SARIF, Markdown and annotations: the same verdict as the exit code, whatever stands in names.
-#include "fettle/design/cli/check_files.hpp"
+#include "fettle/design/cli/finding_files.hpp"
 
 #include <sys/stat.h>
 
@@ -16,7 +16,7 @@
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/text.hpp"
 
-namespace fettle::design::cli::check_files_test {
+namespace fettle::design::cli::finding_files_test {
 
 namespace {
 
@@ -362,4 +362,4 @@ TEST_CASE("check files: the summary of GitHub's job is added to") {
     CHECK(contents(summary).find("### fettle validate: passed") == 0);
 }
 
-}  // namespace fettle::design::cli::check_files_test
+}  // namespace fettle::design::cli::finding_files_test

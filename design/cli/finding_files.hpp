@@ -37,7 +37,7 @@ int exit_code(core::clearance::PairStatus status);
 Check not_judged(const std::string& why, const std::string& file);
 
 /// Where it goes; empty: nowhere.
-struct CheckFiles {
+struct FindingFiles {
     std::string junit, sarif, markdown;
     bool annotations = false;    ///< lines for GitHub Actions on stderr
     std::string summary_before;  ///< where Markdown goes to GitHub's job summary: what others have written there
@@ -64,9 +64,9 @@ std::string annotation_lines(const Checks& checks);
 
 /// Can they be written? An earlier run's are taken away: what ends before it has found anything must leave no pass behind. `files` keeps
 /// those that can be. Contract: none of them is read by the command (named_files.hpp).
-[[nodiscard]] Errors prepare_check_files(CheckFiles& files);
+[[nodiscard]] Errors prepare_finding_files(FindingFiles& files);
 
 /// Writes the files that are asked for; can be called again. GitHub's job summary, where Markdown is to go there, is added to.
-[[nodiscard]] Errors write_check_files(const CheckFiles& files, const Checks& checks);
+[[nodiscard]] Errors write_finding_files(const FindingFiles& files, const Checks& checks);
 
 }  // namespace fettle::design::cli

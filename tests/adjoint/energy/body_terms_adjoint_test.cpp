@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/energy/inertia_adjoint.hpp"
+#include "fettle/adjoint/energy/body_terms_adjoint.hpp"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <random>
 
-namespace fettle::adjoint::energy::inertia_adjoint_test {
+namespace fettle::adjoint::energy::body_terms_adjoint_test {
 
 TEST_CASE("the inertia's gradient follows pose_hat and moments", "[adjoint][energy]") {
     std::mt19937_64 random(5);
@@ -30,4 +30,4 @@ TEST_CASE("the inertia's gradient follows pose_hat and moments", "[adjoint][ener
     CHECK(tangent.cwiseProduct(v).sum() == Approx(by_pose + by_hat + by_moments).epsilon(1e-13));
 }
 
-}  // namespace fettle::adjoint::energy::inertia_adjoint_test
+}  // namespace fettle::adjoint::energy::body_terms_adjoint_test

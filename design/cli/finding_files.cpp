@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/check_files.hpp"
+#include "fettle/design/cli/finding_files.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -219,7 +219,7 @@ std::string annotation_lines(const Checks& checks) {
     return text;
 }
 
-Errors prepare_check_files(CheckFiles& files) {
+Errors prepare_finding_files(FindingFiles& files) {
     Errors errors;
     for (std::string* file : {&files.junit, &files.sarif, &files.markdown}) {
         if (file->empty()) continue;
@@ -236,7 +236,7 @@ Errors prepare_check_files(CheckFiles& files) {
     return errors;
 }
 
-Errors write_check_files(const CheckFiles& files, const Checks& checks) {
+Errors write_finding_files(const FindingFiles& files, const Checks& checks) {
     Errors errors;
     const auto write = [&](const std::string& file, const std::string& text) {
         if (file.empty()) return;
