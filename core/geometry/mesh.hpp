@@ -3,7 +3,9 @@
 /// validity: solids/mesh_validity.hpp; mass: geometry/mass_moments.hpp.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,23 @@ namespace fettle::core::geometry {
 using Edge = std::array<int, 2>;      ///< vertex indices
 using Triangle = std::array<int, 3>;  ///< vertex indices, counter-clockwise seen from outside
 
+/// How far a true part, whose round surfaces are round, and its mesh are from each other, as solids [m], rounding included:
+///     every point of the part is within `out` of the mesh's solid, every point of the mesh's solid within `in` of the part.
+/// So   distance of meshes - out_a - out_b <= distance of the parts <= distance of meshes + in_a + in_b.
+struct Deviation {
+    double out = 0, in = 0;
+    /// False: found from samples (curves of a law without bound), or of what solids cut each other by (parts/solid_booleans.hpp) to first
+    /// order.
+    bool out_is_proven = true, in_is_proven = true;
+
+    void add(const Deviation& other) {
+        out = std::max(out, other.out);
+        in = std::max(in, other.in);
+        out_is_proven = out_is_proven && other.out_is_proven;
+        in_is_proven = in_is_proven && other.in_is_proven;
+    }
+};
+
 /// Connectivity is fixed for life; a shape parameter moves `vertices` only.
 struct Mesh {
     std::string name;   ///< of the file or generator, for messages
@@ -23,6 +42,7 @@ struct Mesh {
     std::vector<int> codimensional_points;  ///< vertices used by no edge
     std::vector<int> triangle_shell;        ///< per triangle: index of its edge-connected shell, 0-based, in order of first triangle
     std::vector<std::string> shell_names;   ///< one per shell
+    std::optional<Deviation> deviation;     ///< from the part that it was drawn for (core/parts); nothing: it is the part
 };
 
 /// Fills edges, codimensional_points, triangle_shell (and shell_names where it has the wrong length: "name/0", "name/1", ...)

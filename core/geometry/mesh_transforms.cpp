@@ -9,6 +9,10 @@ namespace fettle::core::geometry {
 void scale_mesh(Mesh& mesh, const Vector3& factors) {
     mesh.vertices = factors.asDiagonal() * mesh.vertices;
     if (factors.prod() < 0) turn_triangles(mesh);
+    if (!mesh.deviation) return;
+    const double most = (1 + 0x1p-50) * factors.cwiseAbs().maxCoeff();
+    mesh.deviation->out *= most;
+    mesh.deviation->in *= most;
 }
 
 void turn_triangles(Mesh& mesh) {

@@ -3,7 +3,6 @@
 /// true surfaces that its facets stand for. Made by extrude.hpp, revolve.hpp, helix.hpp; cut and united by solid_booleans.hpp.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -15,21 +14,7 @@
 
 namespace fettle::core::parts {
 
-/// How far the true part and its mesh are from each other, as solids [m], rounding included:
-///     every point of the part is within `out` of the mesh's solid, every point of the mesh's solid within `in` of the part.
-/// So   distance of meshes - out_a - out_b <= distance of the parts <= distance of meshes + in_a + in_b.
-struct Deviation {
-    double out = 0, in = 0;
-    /// False: found from samples (curves of a law without bound), or of what solids cut each other by (solid_booleans.hpp) to first order.
-    bool out_is_proven = true, in_is_proven = true;
-
-    void add(const Deviation& other) {
-        out = std::max(out, other.out);
-        in = std::max(in, other.in);
-        out_is_proven = out_is_proven && other.out_is_proven;
-        in_is_proven = in_is_proven && other.in_is_proven;
-    }
-};
+using geometry::Deviation;
 
 /// Of vertices whose formulas are some tens of operations long, where the largest coordinate is so large [m].
 inline double usual_rounding(double largest) { return 64 * 0x1p-52 * largest; }

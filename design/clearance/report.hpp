@@ -36,6 +36,15 @@ struct ReportedPair {
     Change change;        ///< against the baseline
 };
 
+/// Of the parts that the meshes were drawn for, whose round surfaces are round [m].
+struct TrueBounds {
+    double lower = 0, upper = 0;  ///< of the pair's distance; infinity: not measured
+    bool lower_is_proven = false, upper_is_proven = false;
+};
+/// From the bounds of the meshes and how far these are from the parts (geometry::Deviation). Nothing: neither side has such a mesh, or the
+/// meshes have no proven distance.
+std::optional<TrueBounds> true_bounds(const Subject& subject, const ReportedPair& pair);
+
 struct ClearanceReport {
     std::vector<ReportedPair> pairs;  ///< worst first
     std::vector<std::string> ignored;

@@ -61,8 +61,8 @@ void add_witness(Json& json, const ReportedPair& pair, const Subject& subject, c
                          {"point", least.overlap->depth_lower > 0 ? answers::vector_json(least.overlap->center) : Json()}};
         json["volume"] = {{"lower", least.overlap->volume_lower}, {"upper", least.overlap->volume_upper}};
     }
-    if (pair.spec.a.is_group) json["body_a"] = names[static_cast<size_t>(least.a)];
-    if (pair.spec.b.is_group) json["body_b"] = names[static_cast<size_t>(least.b)];
+    if (pair.spec.a.is_group) json["body_a"] = names[least.a];
+    if (pair.spec.b.is_group) json["body_b"] = names[least.b];
     json["pose_a"] = pose_json(pose_where_nearest(subject, least, least.a));
     json["pose_b"] = pose_json(pose_where_nearest(subject, least, least.b));
     json["witness"] = witness_json(least.witness);
@@ -90,9 +90,9 @@ Json moved_poses(const Subject& subject, const PairClearance& pair) {
     Json json = Json::object();
     for (int body = 0; body < count_of(subject.model.bodies); ++body) {
         const core::kinematics::Pose at = core::clearance::pose_at_witness(subject.model, *subject.ranges, pair, body);
-        const core::kinematics::Pose& start = subject.model.bodies[static_cast<size_t>(body)].pose_start;
+        const core::kinematics::Pose& start = subject.model.bodies[body].pose_start;
         if (at.position == start.position && at.rotation == start.rotation) continue;
-        json[subject.model.bodies[static_cast<size_t>(body)].name] = pose_json(pose_where_nearest(subject, pair, body));
+        json[subject.model.bodies[body].name] = pose_json(pose_where_nearest(subject, pair, body));
     }
     return json;
 }
@@ -103,8 +103,8 @@ void add_worst_position(Json& json, const ReportedPair& pair, const Subject& sub
     json["complete"] = least.complete;
     json["tolerance"] = least.tolerance;
     json["coordinates"] = coordinates_json(*subject.ranges, least);
-    if (pair.spec.a.is_group) json["body_a"] = names[static_cast<size_t>(least.a)];
-    if (pair.spec.b.is_group) json["body_b"] = names[static_cast<size_t>(least.b)];
+    if (pair.spec.a.is_group) json["body_a"] = names[least.a];
+    if (pair.spec.b.is_group) json["body_b"] = names[least.b];
     if (!std::isfinite(least.upper)) return;
     const Witness& w = least.witness;
     json["gap"] = least.upper - least.lower;
@@ -145,6 +145,11 @@ Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vect
     } else {
         add_witness(json, pair, subject, names);
     }
+    if (const auto parts = true_bounds(subject, pair))
+        json["true_surfaces"] = {{"lower", parts->lower},
+                                 {"upper", std::isfinite(parts->upper) ? Json(parts->upper) : Json()},
+                                 {"lower_is_proven", parts->lower_is_proven},
+                                 {"upper_is_proven", parts->upper_is_proven}};
     if (!pair.change.word.empty()) json["change"] = pair.change.word;
     if (const auto& before = pair.change.before)
         json["before"] = {{"status", before->status}, {"lower", before->lower}, {"upper", before->upper}};
@@ -176,6 +181,14 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
     if (!subject.ranges) json["steps"] = subject.trajectory.steps.size();
     json["pairs"] = std::move(list);
     if (!subject.ranges) json["not_measured"] = unmeasured;
+    Json deviations = Json::object();
+    for (const core::model::Body& body : subject.model.bodies)
+        if (const auto& deviation = body.mesh.deviation)
+            deviations[body.name] = {{"out", deviation->out},
+                                     {"in", deviation->in},
+                                     {"out_is_proven", deviation->out_is_proven},
+                                     {"in_is_proven", deviation->in_is_proven}};
+    if (!deviations.empty()) json["deviations"] = std::move(deviations);
     json["ignored"] = report.ignored;
     json["left_out"] = report.left_out;
     json["uncovered"] = report.uncovered;

@@ -173,11 +173,22 @@ std::string clash(const ReportedPair& pair, const Subject& subject, const Length
     return text + "\n";
 }
 
+// Of round surfaces, which facets stand for.
+std::string round_surfaces(const ReportedPair& pair, const Subject& subject, const Lengths& lengths) {
+    const auto parts = clearance::true_bounds(subject, pair);
+    if (!parts) return {};
+    const auto bound = [](const std::string& number, bool is_proven) { return number + (is_proven ? "" : " (not proven)"); };
+    std::string text =
+        "   of the round surfaces that the facets stand for: at least " + bound(lengths.down(parts->lower, 3), parts->lower_is_proven);
+    if (std::isfinite(parts->upper)) text += ", at most " + bound(lengths.up(parts->upper, 3), parts->upper_is_proven);
+    return text + " " + lengths.unit() + "\n";
+}
+
 std::string explained(const ReportedPair& pair, const Subject& subject, const Lengths& lengths) {
     const PairClearance& least = pair.least;
     const Witness& w = least.witness;
-    const std::string& a = subject.model.bodies[static_cast<size_t>(least.a)].name;
-    const std::string& b = subject.model.bodies[static_cast<size_t>(least.b)].name;
+    const std::string& a = subject.model.bodies[least.a].name;
+    const std::string& b = subject.model.bodies[least.b].name;
     std::string text = pair_name(pair) + ": " + to_string(pair.finding) + "\n";
     text += (!has_distance(pair) ? std::string("   the parts ") + (pair.finding == Finding::clash ? "share material" : "touch")
              : !std::isfinite(least.upper) && least.is_bounded ? std::string("   nothing is measured")
@@ -188,6 +199,7 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
             (subject.ranges ? "; worst at " + position_text(*subject.ranges, least, lengths) : "") +
             (pair.spec.required_by.empty() ? "\n"
                                            : "; required " + lengths.plain(least.minimum) + " per side (" + pair.spec.required_by + ")\n");
+    text += round_surfaces(pair, subject, lengths);
     if (const double charge = joint_charge(subject, least.a, least.b); charge > 0)
         text += "   each wider by " + lengths.rough(charge) + " " + lengths.unit() + ": what joints part by between the path's nodes\n";
     if (least.status == core::clearance::PairStatus::undecided && !least.reason.empty()) text += "   undecided: " + least.reason + "\n";
@@ -257,8 +269,8 @@ std::string margins_csv(const ClearanceReport& report, const Subject& subject, c
     std::string text = "a,b,step,segment,time_start[s],time_end[s],lower[" + unit + "],upper[" + unit + "]\n";
     for (const ReportedPair& pair : report.pairs) {
         for (const PairClearance& member : pair.members) {
-            const std::string names = core::base::csv_cell(subject.model.bodies[static_cast<size_t>(member.a)].name) + "," +
-                                      core::base::csv_cell(subject.model.bodies[static_cast<size_t>(member.b)].name) + ",";
+            const std::string names = core::base::csv_cell(subject.model.bodies[member.a].name) + "," +
+                                      core::base::csv_cell(subject.model.bodies[member.b].name) + ",";
             for (const core::clearance::MarginInterval& m : member.margin) {
                 const double end = core::stepper::time_at(subject.trajectory, m.step, m.segment, 1);
                 text += names + std::to_string(m.step) + "," + std::to_string(m.segment) + "," +

@@ -49,12 +49,14 @@ Result<std::shared_ptr<const FilePart>> FilePart::create(PartFile file, const st
 Result<description::ShapeInstance> FilePart::at(const std::vector<double>& values) const {
     Result<DrawnPart> drawn = file_.drawn(values, facets_, structure_);
     if (!drawn) return drawn.errors();
+    drawn->mesh.deviation = drawn->deviation;
     return description::ShapeInstance{std::move(drawn->mesh), std::move(drawn->jacobian)};
 }
 
 Result<core::geometry::Mesh> FilePart::mesh(const std::vector<double>& values) const {
     Result<DrawnPart> drawn = file_.drawn(values, facets_, structure_, {.jacobian = false});
     if (!drawn) return drawn.errors();
+    drawn->mesh.deviation = drawn->deviation;
     return std::move(drawn->mesh);
 }
 
