@@ -15,4 +15,8 @@ namespace fettle::core::model {
 /// 1 if there is no dynamic body: then nothing touches. A pure function of masses, forces, h, gravity and dhat.
 double choose_kappa(const Model& model);
 
+/// How many times stiffer than that contact becomes where it may adapt (docs/method/contact.md#stiffness-kappa), and is advised to be made:
+/// against a motor, whose force nothing limits, no stiffness is enough.
+inline constexpr double largest_kappa_rise = 1e4;
+
 }  // namespace fettle::core::model

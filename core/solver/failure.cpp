@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/solver/failure.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/kinematics/mass_matrix.hpp"
+#include "fettle/core/model/choose_kappa.hpp"
 
 namespace fettle::core::solver {
 namespace {
@@ -24,7 +26,8 @@ Closest closest_of(const contact::ContactSet& contacts) {
     return closest;
 }
 
-// The kappa with which the force of the closest pair, kappa b'(d) d, would be reached at half the activation distance; 0: the present one.
+// The kappa with which the force of the closest pair, kappa b'(d) d, would be reached at half the activation distance, but no more than is
+// advised; 0: the present one.
 double sufficient_kappa(const FailedStep& step) {
     const model::Model& model = *step.problem.model;
     const double d = step.contacts.minimum_distance, half = model.dmin + 0.5 * model.dhat;
@@ -32,7 +35,7 @@ double sufficient_kappa(const FailedStep& step) {
     const auto slope = [&](double at) {
         return at * contact::barrier(at * at - model.dmin * model.dmin, step.problem.barrier.gap_hat).first;
     };
-    return step.problem.kappa * slope(d) / slope(half);
+    return step.problem.kappa * std::min(slope(d) / slope(half), model::largest_kappa_rise);
 }
 
 // What the rows would carry here if nothing were driven any further: C^T m = -dE as well as it can be met, by mass.
@@ -106,8 +109,9 @@ void describe_stiffness(const FailedStep& step, std::ostringstream& out) {
     const double wanted = sufficient_kappa(step);
     if (!(wanted > step.problem.kappa)) return;
     const char* unit = step.problem.model->area_weighted ? " N/m^3" : " N/m";
-    out << "; contact is soft for these forces: with `contact.kappa` at " << wanted << unit << " in place of " << step.problem.kappa << unit
-        << " they would leave half of the contact distance";
+    const bool is_enough = wanted < model::largest_kappa_rise * step.problem.kappa;
+    out << "; contact is soft for these forces: " << (is_enough ? "with" : "if the way is free, try") << " `contact.kappa` at " << wanted
+        << unit << " in place of " << step.problem.kappa << unit << (is_enough ? " they would leave half of the contact distance" : "");
 }
 
 }  // namespace

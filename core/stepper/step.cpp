@@ -10,6 +10,7 @@
 #include "fettle/core/ccd/safe_step.hpp"
 #include "fettle/core/energy/body_terms.hpp"
 #include "fettle/core/energy/start_history.hpp"
+#include "fettle/core/model/choose_kappa.hpp"
 #include "fettle/core/model/choose_proximal_weight.hpp"
 #include "fettle/core/stepper/prescribed_path.hpp"
 #include "fettle/core/stepper/step_outputs.hpp"
@@ -143,10 +144,10 @@ double least_kappa(const model::Model& model) { return model.adaptive_kappa ? 10
 
 // Far inside the activation distance the barrier is as good as a wall, and hard to solve against: the next step has a stiffer one.
 double next_kappa(const model::Model& model, double kappa, const contact::ContactSet& contacts) {
-    constexpr double close = 1e-2, well_apart = 0.1, rise = 4, fall = 0.5, largest = 1e4;
+    constexpr double close = 1e-2, well_apart = 0.1, rise = 4, fall = 0.5;
     if (!model.adaptive_kappa) return kappa;
     const double gap = contacts.minimum_distance - model.dmin;
-    if (gap < close * model.dhat) return std::min(largest * model.kappa, rise * kappa);
+    if (gap < close * model.dhat) return std::min(model::largest_kappa_rise * model.kappa, rise * kappa);
     return gap < well_apart * model.dhat ? kappa : std::max(least_kappa(model), fall * kappa);
 }
 
