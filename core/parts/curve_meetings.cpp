@@ -114,13 +114,14 @@ bool find_crossing(const Curve& a, const Curve& b, double& u, double& v, double 
     return (p.position - q.position).norm() <= tolerance && u >= -slack_u && u <= 1 + slack_u && v >= -slack_v && v <= 1 + slack_v;
 }
 
-// One recorded step of Newton's method from a root: what depends on a dimension moves the root as the implicit function theorem says.
+// A root whose derivative is that of one step of Newton's method: what depends on a dimension moves it as the implicit function theorem
+// says. Its value stays as it was found: where the curves nearly touch, a step from what rounding has left would lead far away.
 Meeting recorded(const Curve& a, const Curve& b, double u, double v) {
     const CurvePoint p = at(a, u), q = at(b, v);
     Matrix2 j;
     j << p.velocity, -q.velocity;
     const Matrix2 inverse = j.inverse();
-    const Point2 residual = point_at(a, u) - point_at(b, v);
+    const Point2 apart = point_at(a, u) - point_at(b, v), residual = apart - constant(value(apart));
     const Number du = inverse(0, 0) * residual.x + inverse(0, 1) * residual.y, dv = inverse(1, 0) * residual.x + inverse(1, 1) * residual.y;
     Meeting out;
     out.on_a = {u, u - du, {}};

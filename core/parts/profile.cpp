@@ -44,6 +44,11 @@ Vector2 middle_of(const Loop& loop) {
     return (sampled.low() + sampled.high()) / 2;
 }
 
+// A curve runs up to its end but for rounding and for what arc_about allows: how far two that are joined do not.
+double gap_between(const Curve& before, const Curve& after) {
+    return (at(before, 1).position - value(end_of(before))).norm() + (at(after, 0).position - value(start_of(after))).norm();
+}
+
 // Where a hole is nearest to the edge of what it is in, negative where it is outside of it.
 struct Wall {
     double thickness = INFINITY;
@@ -237,10 +242,13 @@ Errors faults_of(const Profile& profile) {
             if (!a.box.meets(b.box)) continue;
             const bool same_loop = a.loop == b.loop, b_follows = same_loop && (a.index + 1) % a.count == b.index,
                        a_follows = same_loop && (b.index + 1) % b.count == a.index;
+            const auto is_joint = [&](const Curve& before, const Curve& after, const Vector2& p) {
+                return (p - value(end_of(before))).norm() <= 4 * tolerance + 4 * gap_between(before, after);
+            };
             for (const Meeting& m : meetings(a.curve, b.curve, tolerance)) {
                 const Vector2 p = value(m.on_a.point);
-                if (b_follows && (p - value(end_of(a.curve))).norm() <= 2 * tolerance) continue;
-                if (a_follows && (p - value(start_of(a.curve))).norm() <= 2 * tolerance) continue;
+                if (b_follows && is_joint(a.curve, b.curve, p)) continue;
+                if (a_follows && is_joint(b.curve, a.curve, p)) continue;
                 const std::string names = *a.feature == *b.feature
                                               ? (same_loop ? quoted_feature(*a.feature) + " crosses or touches itself"
                                                            : "two curves of " + quoted_feature(*a.feature) + " cross or touch")

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "fettle/core/parts/extrude.hpp"
 #include "fettle/tests/core/parts/part_check.hpp"
@@ -30,6 +31,76 @@ TEST_CASE("a loop that crosses itself or is empty is told") {
     CHECK(told(filled(polygon({{0, 0}, {1, 0}, {2, 0}}, "sliver")).errors()) == "sliver: `sliver` encloses no area\n");
     CHECK(told(Path({0, 0}, "arm").line_to({1, 0}).arc_about({0.5, 0.1}, {2, 0}).closed().errors()).find("about (500 mm, 100 mm) begins") !=
           std::string::npos);
+}
+
+namespace {
+
+enum class Kind { arc, cubic, law };
+
+// A quarter of a circle, counter-clockwise from the angle `from`.
+Curve quarter(Kind kind, const Vector2& centre, double radius, double from) {
+    const auto on_circle = [&](double angle) {
+        return Point2{centre.x() + radius * std::cos(angle), centre.y() + radius * std::sin(angle)};
+    };
+    const Point2 start = on_circle(from), end = on_circle(from + pi / 2);
+    if (kind == Kind::arc) return Arc{start, end, constant(centre), radius, true};
+    if (kind == Kind::cubic) {
+        const double handle = 0.5522847498 * radius;
+        const Vector2 d(std::cos(from), std::sin(from)), aside(-d.y(), d.x());
+        return Bezier{{start, start + constant(Vector2(handle * aside)), end + constant(Vector2(handle * d)), end}};
+    }
+    Law law([=](const auto& t) {
+        using std::cos, std::sin;
+        return std::array{centre.x() + radius * cos(t), centre.y() + radius * sin(t)};
+    });
+    return law_curve(std::move(law), from, from + pi / 2);
+}
+
+}  // namespace
+
+// Such joints are where rounding decides how two curves cross that touch.
+TEST_CASE("curves that go on smoothly into each other do not cross, at any scale and angle") {
+    std::mt19937 random(3);
+    const auto uniform = [&](double low, double high) { return low + (high - low) * static_cast<double>(random()) / 4294967296.0; };
+    constexpr std::array<Kind, 3> kinds{Kind::arc, Kind::cubic, Kind::law};
+    for (int k = 0; k < 81 * 12; ++k) {
+        // An oval of four quarters, two of them smaller.
+        const double large = std::pow(10, uniform(-5, 1)), small = large * uniform(0.02, 0.9), angle = uniform(0, 2 * pi);
+        Vector2 centre = large * Vector2(uniform(-1, 1), uniform(-1, 1));
+        Loop oval;
+        for (int i = 0, which = k % 81; i < 4; ++i, which /= 3) {
+            const double radius = i % 2 == 0 ? large : small, from = angle + i * pi / 2;
+            oval.segments.push_back({quarter(kinds[which % 3], centre, radius, from), "oval", std::nullopt});
+            const double onward = i % 2 == 0 ? large - small : small - large;
+            centre += onward * Vector2(std::cos(from + pi / 2), std::sin(from + pi / 2));
+        }
+        for (std::size_t i = 0; i < 4; ++i) {  // neighbours share their ends
+            const Point2 end = end_of(oval.segments[i].curve);
+            Curve& next = oval.segments[(i + 1) % 4].curve;
+            if (auto* cubic = std::get_if<Bezier>(&next)) cubic->points.front() = end;
+            if (auto* arc = std::get_if<Arc>(&next)) arc->start = end;
+            if (auto* law = std::get_if<LawCurve>(&next)) law->start = end;
+        }
+        INFO("oval " << k << ", radii " << large << " and " << small << ", at " << angle);
+        CHECK(told(filled(oval).errors()) == "");
+    }
+    // Fillets between an arc and the flanks of a gap.
+    for (int k = 0; k < 300; ++k) {
+        const double base = std::pow(10, uniform(-3, 0)), root = base * uniform(1.1, 1.2), tip = base * uniform(1.005, 1.05);
+        const double turn = uniform(0.12, 0.2), at_root = std::sqrt(root * root / base / base - 1),
+                     at_tip = std::sqrt(tip * tip / base / base - 1);
+        const LawCurve out = involute(base, -turn, at_tip, at_root), back = involute(base, turn, at_root, at_tip, true);
+        const auto gap = Path(out.start, "gap")
+                             .along(out)
+                             .round(0.02 * base * turn)
+                             .arc_about({0, 0}, back.start)
+                             .round(0.1 * base * turn)
+                             .along(back)
+                             .closed();
+        REQUIRE(gap);
+        INFO("gap " << k << " of base " << base);
+        CHECK(told(filled(turned(*gap, uniform(0, 2 * pi))).errors()) == "");
+    }
 }
 
 TEST_CASE("areas of what lines, arcs and splines enclose") {
