@@ -56,7 +56,8 @@ int answer(const std::string& what, const std::vector<Entry>& entries, const std
 std::string millimetres(double metres) { return formatted("%.6g", metres * 1e3); }
 
 Entry shape_entry(const shapes::GeneratorInfo& info) {
-    Entry entry{info.name, info.description, "", {{"name", info.name}, {"from", "generator"}, {"description", info.description}}};
+    Entry entry{
+        info.name, "generator: " + info.description, "", {{"name", info.name}, {"from", "generator"}, {"description", info.description}}};
     entry.facts["dimensions"] = Json::array();
     for (const shapes::DimensionInfo& d : info.dimensions) {
         const bool coordinate = d.kind == shapes::DimensionKind::coordinate;

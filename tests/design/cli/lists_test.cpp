@@ -95,9 +95,9 @@ TEST_CASE("Starters: each is written, valid, and simulates; none is overwritten"
     CHECK(run("new hindge", true).says("hinge"));
 }
 
-TEST_CASE("Starters: hinge and ratchet are tuned to what they ask for") {
+TEST_CASE("Starters: hinge, ratchet, latch and lock box are tuned to what they ask for") {
     const TemporaryFolder folder;
-    for (const std::string name : {"hinge", "ratchet"}) {
+    for (const std::string name : {"hinge", "ratchet", "latch", "lock_box"}) {
         CAPTURE(name);
         REQUIRE(run("new " + name + " --in " + folder.path.string()).code == 0);
         const Answer answer = run("optimise " + folder.file(name + ".design.json") + " --out " + folder.file(name + ".out") + " --json");
