@@ -74,7 +74,8 @@ void add(ModelGradient& sum, const ModelGradient& part);
 struct Seeds {
     TrajectoryGradient trajectory_bar;
     ModelGradient model_bar;
-    std::string refusal{};  ///< why the quantity has no derivative here, with the step; empty: it has one
+    VectorX parameters_bar{};  ///< of numbers of the caller's own that no model holds; no sweep looks at it. Empty: of none
+    std::string refusal{};     ///< why the quantity has no derivative here, with the step; empty: it has one
 };
 Seeds zero_seeds(const core::model::Model& model, int steps);
 

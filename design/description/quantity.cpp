@@ -9,6 +9,8 @@ void Quantity::add_deviation_seeds(const Simulated&, int, double, Seeds&) const 
 
 std::vector<Branch> Quantity::branches(const Simulated&, const Measurement&, double) const { return {}; }
 
+std::string Quantity::explanation(const Measurement&) const { return {}; }
+
 Errors Quantity::check(const core::model::Model&, int) const { return {}; }
 
 Errors check_body(const core::model::Model& model, int body) {

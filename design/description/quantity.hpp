@@ -25,6 +25,8 @@ struct Simulated {
     const core::model::Model& model;
     const core::stepper::Trajectory& trajectory;
     double clearance_tolerance = 1e-9;  ///< upper - lower wanted of certified distances [m]
+    std::vector<std::string> names{};   ///< of the design's parameters
+    VectorX parameters{};               ///< their values, SI
 };
 
 /// lower <= true value <= upper; `value`, in [lower, upper], is what the optimiser sees and what is differentiated.
@@ -32,8 +34,9 @@ struct Measurement {
     double value = 0, lower = 0, upper = 0;                   ///< SI
     std::optional<core::clearance::PairClearance> clearance;  ///< where the value comes from, if it is a certified distance
     std::string fault;  ///< why no bound on it can be met, whatever the numbers (a body lies inside the other); empty: nothing of the kind
+    std::vector<Measurement> parts{};  ///< what it was made from, if it is an expression of other quantities
 };
-inline Measurement exact(double value) { return {value, value, value, std::nullopt, {}}; }
+inline Measurement exact(double value) { return {value, value, value, std::nullopt, {}, {}}; }
 
 /// One of the smooth functions that a value is the least of: a distance between two features at one instant.
 struct Branch {
@@ -51,7 +54,8 @@ public:
     /// Const and pure: called from several threads at once.
     virtual Measurement value(const Simulated& simulated) const = 0;
 
-    /// Adds scale * d(value) to the seeds. `measured` is what value() returned for the same `simulated`.
+    /// Adds scale * d(value) to the seeds: by the simulation, and by the parameters that it follows from itself (Seeds::parameters_bar).
+    /// `measured` is what value() returned for the same `simulated`.
     virtual void add_seeds(const Simulated& simulated, const Measurement& measured, double scale, Seeds& seeds) const = 0;
 
     /// The deviations r_i of which the value is the sum of squares; empty: it is no such sum. For Gauss-Newton's curvature.
@@ -67,6 +71,12 @@ public:
 
     /// Whether a simulation changes nothing of it: of the parts as assembled, or of their shapes alone.
     virtual bool is_at_rest() const { return false; }
+
+    /// The names of the parameters that it follows from itself, and not through the scene: those of a formula of its own, such as a target.
+    virtual std::vector<std::string> parameters() const { return {}; }
+
+    /// What a value came from, where that says why it is not a finite number: "force = 3 N, mass = 0 kg". Empty: nothing to say.
+    virtual std::string explanation(const Measurement& measured) const;
 
     /// What makes it meaningless for these bodies and this number of steps: a body that is not there, a volume of an open mesh. Asked once,
     /// of the scene as written. `where` is left to the caller.

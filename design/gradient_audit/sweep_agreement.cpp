@@ -98,7 +98,7 @@ double forwards(const adjoint::TrajectoryGradient& seed, const Trajectory& traje
 
 // Of the objective and of each constraint: what depends on the motion.
 std::vector<adjoint::TrajectoryGradient> motion_seeds(const description::Design& design, const problem::DesignEvaluation& at) {
-    const description::Simulated simulated{*at.model, at.simulation.trajectory, design.clearance_tolerance};
+    const description::Simulated simulated = problem::simulated_at(design, at);
     const auto zero = [&] { return adjoint::zero_seeds(*at.model, count_of(at.simulation.trajectory.steps)); };
     std::vector<adjoint::TrajectoryGradient> out;
     adjoint::Seeds objective = zero();

@@ -151,6 +151,10 @@ private:
     void check_quantity(const description::Quantity* quantity, const std::string& where) {
         if (quantity == nullptr) return add(ErrorCode::missing_key, where, "it has no quantity");
         for (const Error& error : quantity->check(model_, design_.steps)) add(error.code, where, error.message);
+        const std::vector<std::string> known = description::names_of(design_.parameters);
+        for (const std::string& name : quantity->parameters())
+            if (std::find(known.begin(), known.end(), name) == known.end())
+                add(ErrorCode::unknown_key, where, "it names `" + name + "`, which is no parameter");
     }
 
     const Design& design_;

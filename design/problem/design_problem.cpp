@@ -48,6 +48,7 @@ bool is_finite(const adjoint::Seeds& seeds) {
     const auto is_finite_row = [](const auto& row) {
         return std::all_of(row.begin(), row.end(), [](const auto& x) { return x.allFinite(); });
     };
+    if (!seeds.parameters_bar.allFinite()) return false;
     for (const auto* rows : {&seed.pose_bar, &seed.velocity_bar, &seed.lag_bar})
         if (!std::all_of(rows->begin(), rows->end(), is_finite_row)) return false;
     return is_finite_row(seed.multiplier_bar);
@@ -64,7 +65,30 @@ Design with_plain_places(Design design) {
 std::string name_of(const description::ObjectiveTerm& term) { return "objective `" + term.name + "`"; }
 std::string name_of(const description::Constraint& constraint) { return "constraint `" + constraint.name + "`"; }
 
+// d/d(parameters) of each: by the model, and what follows from parameters itself. Contract: parameters_bar is that of the seeds.
+MatrixX rows_of(const MovedScene& moved, const Model& model, const std::vector<adjoint::ModelGradient>& gradients,
+                const std::vector<VectorX>& parameters_bar, int parameter_count) {
+    MatrixX rows(gradients.size(), parameter_count);
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+        const auto k = static_cast<size_t>(i);
+        rows.row(i) = pull_back(moved, model, gradients[k], parameter_count).transpose();
+        if (parameters_bar[k].size() > 0) rows.row(i) += parameters_bar[k].transpose();
+    }
+    return rows;
+}
+
+std::vector<VectorX> parameters_bars(const std::vector<adjoint::Seeds>& seeds) {
+    std::vector<VectorX> bars;
+    for (const adjoint::Seeds& seed : seeds) bars.push_back(seed.parameters_bar);
+    return bars;
+}
+
 }  // namespace
+
+Simulated simulated_at(const Design& design, const DesignEvaluation& evaluation) {
+    return {*evaluation.model, evaluation.simulation.trajectory, design.clearance_tolerance, description::names_of(design.parameters),
+            evaluation.parameters};
+}
 
 Result<DesignProblem> DesignProblem::create(Design design) {
     core::model::BuildOptions options;
@@ -153,6 +177,7 @@ std::string DesignProblem::refusal(const VectorX& p) const {
 DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions& options) const {
     const Stopwatch forward;
     DesignEvaluation evaluation;
+    evaluation.parameters = p;
     evaluation.relations = relations(p);
     if (const Errors errors = undefined(evaluation.relations); !errors.empty()) {
         evaluation.reason = first_reason(errors);
@@ -201,7 +226,7 @@ std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const
     core::stepper::SimulationOptions nothing;
     nothing.steps = 0;
     const core::stepper::Trajectory start = core::stepper::simulate(*model, nothing).trajectory;
-    const Simulated simulated{*model, start, design_.clearance_tolerance};
+    const Simulated simulated{*model, start, design_.clearance_tolerance, description::names_of(design_.parameters), p};
     optimisers::Rows rows;
     std::vector<adjoint::Seeds> seeds;
     const std::vector<int> indices = rest_constraints();
@@ -213,11 +238,10 @@ std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const
         seeds.push_back(adjoint::zero_seeds(*model, 0));
         quantity.add_seeds(simulated, measured, 1, seeds.back());
     }
+    const std::vector<VectorX> bars = parameters_bars(seeds);
     const Result<std::vector<adjoint::ModelGradient>> gradients = adjoint::stepper::seeded_sweep(*model, start, std::move(seeds));
     if (!gradients) return std::nullopt;
-    rows.jacobian.resize(rows.values.size(), parameter_count());
-    for (Eigen::Index i = 0; i < rows.jacobian.rows(); ++i)
-        rows.jacobian.row(i) = pull_back(*moved, *model, (*gradients)[i], parameter_count()).transpose();
+    rows.jacobian = rows_of(*moved, *model, *gradients, bars, parameter_count());
     if (!rows.values.allFinite() || !rows.jacobian.allFinite()) return std::nullopt;
     return rows;
 }
@@ -243,10 +267,12 @@ void DesignProblem::simulate(const EvaluateOptions& options, DesignEvaluation& e
 
 // Sets the reason where a value is not a finite number. (A bound of it may be infinite: nothing is known on that side.)
 void DesignProblem::measure(DesignEvaluation& evaluation) const {
-    const Simulated simulated{*evaluation.model, evaluation.simulation.trajectory, design_.clearance_tolerance};
+    const Simulated simulated = simulated_at(design_, evaluation);
     const auto look_at = [&](const auto& of, const description::Measurement& measured) {
         if (std::isfinite(measured.value) && !std::isnan(measured.lower) && !std::isnan(measured.upper)) return;
-        if (evaluation.reason.empty()) evaluation.reason = name_of(of) + ": its value is not a finite number";
+        if (!evaluation.reason.empty()) return;
+        const std::string why = of.quantity->explanation(measured);
+        evaluation.reason = name_of(of) + ": its value is not a finite number" + (why.empty() ? "" : " (" + why + ")");
     };
     evaluation.objective = evaluation.violation = 0;
     for (const description::ObjectiveTerm& term : design_.objective) {
@@ -266,7 +292,7 @@ void DesignProblem::measure(DesignEvaluation& evaluation) const {
 }
 
 void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, DesignEvaluation& evaluation) const {
-    const Simulated simulated{*evaluation.model, evaluation.simulation.trajectory, design_.clearance_tolerance};
+    const Simulated simulated = simulated_at(design_, evaluation);
     const auto zero = [&] { return adjoint::zero_seeds(simulated.model, count_of(simulated.trajectory.steps)); };
     std::vector<adjoint::Seeds> seeds{zero()};
     const auto refuse = [&](const std::string& reason) {
@@ -298,12 +324,11 @@ void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, De
     const size_t first_branch = seeds.size();
     std::vector<QuantityBranches> branches = branches_of(design_, simulated, {evaluation.terms, evaluation.constraints}, reach);
     for (const QuantityBranches& quantity : branches) add_seeds(quantity, simulated, seeds);
+    const std::vector<VectorX> bars = parameters_bars(seeds);
     const Result<std::vector<adjoint::ModelGradient>> gradients =
         adjoint::stepper::seeded_sweep(simulated.model, simulated.trajectory, std::move(seeds));
     if (!gradients) return refuse(first_reason(gradients.errors()));
-    MatrixX rows(gradients->size(), parameter_count());
-    for (Eigen::Index i = 0; i < rows.rows(); ++i)
-        rows.row(i) = pull_back(moved, *evaluation.model, (*gradients)[i], parameter_count()).transpose();
+    const MatrixX rows = rows_of(moved, *evaluation.model, *gradients, bars, parameter_count());
     for (int k = 0; k < parameter_count(); ++k) {
         const std::string by = ": its derivative by `" + design_.parameters[k].name + "` is not a finite number";
         if (!std::isfinite(rows(0, k))) return refuse("objective" + by);

@@ -34,6 +34,7 @@ struct EvaluateOptions {
 /// A design, simulated and measured.
 struct DesignEvaluation {
     bool usable = false;
+    VectorX parameters;        ///< where, SI
     std::string reason;        ///< why not: the part that cannot be made, the bodies that intersect, what blocks the motor ...
     bool interrupted = false;  ///< not usable, because should_stop said so
     std::shared_ptr<const core::model::Model> model;    ///< null if it could not be built
@@ -53,6 +54,9 @@ struct DesignEvaluation {
     double forward_seconds = 0;                ///< parts, model, simulation, values
     double backward_seconds = 0;               ///< seeds, sweep, chain
 };
+
+/// What quantities are asked about. Contract: the evaluation has a model; it outlives what is returned.
+description::Simulated simulated_at(const description::Design& design, const DesignEvaluation& evaluation);
 
 /// Const after creation: evaluate may be called from several threads at once.
 class DesignProblem {

@@ -5,7 +5,15 @@
 
 #include <pybind11/pybind11.h>
 
+#include "fettle/core/expression/formula.hpp"
+
 namespace fettle::design::python {
+
+/// What may stand in arithmetic: a formula, a parameter (its name, in its unit), a number (SI where it stands beside a quantity), a text
+/// with a unit.
+core::expression::Formula formula_from(pybind11::handle given);
+/// Does it follow from parameters: is it a formula or a parameter?
+bool is_followed(pybind11::handle given);
 
 void bind_formula(pybind11::module_& module);     ///< arithmetic with parameters
 void bind_scene(pybind11::module_& module);       ///< meshes and scenes, read

@@ -13,10 +13,8 @@ using core::expression::Node;
 using core::expression::Operation;
 using core::expression::Scope;
 
-namespace {
+bool is_followed(py::handle given) { return py::isinstance<Formula>(given) || py::isinstance(given, record_class("Parameter")); }
 
-// What may stand in arithmetic: a formula, a parameter (its name, in its unit), a number (SI where it stands beside a quantity), a text
-// with a unit.
 Formula formula_from(py::handle given) {
     if (py::isinstance<Formula>(given)) return given.cast<Formula>();
     if (py::isinstance(given, record_class("Parameter"))) {
@@ -35,6 +33,13 @@ Formula formula_from(py::handle given) {
     out.text = py::repr(py::float_(given.cast<double>())).cast<std::string>();
     return out;
 }
+
+namespace {
+
+// A quantity knows what arithmetic with it is (fettle.Expression).
+bool is_quantity(py::handle given) { return py::isinstance(given, record_class("Measured")); }
+
+py::object not_here() { return py::reinterpret_borrow<py::object>(Py_NotImplemented); }
 
 // `pattern` with its operands: a, b, c, d. Dimensions and their faults are those of texts.
 Formula combined(const std::string& pattern, const std::vector<Formula>& operands) {
@@ -140,8 +145,8 @@ void bind_formula(py::module_& module) {
     const auto both_ways = [&](const char* name, const char* reflected, const std::string& sign) {
         formula.def(
             name,
-            [sign](const Formula& a, const py::object& b) {
-                return combined("A " + sign + " B", {a, formula_from(b)});
+            [sign](const Formula& a, const py::object& b) -> py::object {
+                return is_quantity(b) ? not_here() : py::cast(combined("A " + sign + " B", {a, formula_from(b)}));
             },
             py::is_operator());
         formula.def(
@@ -159,6 +164,14 @@ void bind_formula(py::module_& module) {
     formula.def("__neg__", [](const Formula& a) { return combined("-A", {a}); });
     formula.def("__pos__", [](const Formula& a) { return a; });
     formula.def("__abs__", [](const Formula& a) { return combined("abs(A)", {a}); });
+    module.def(
+        "measured",
+        [](const std::string& name, Dimension dimension) {
+            Formula out = core::expression::input_formula(name, core::expression::powers_of(dimension));
+            out.text = core::expression::quoted_if_needed(name);
+            return out;
+        },
+        py::arg("name"), py::arg("dimension"), "A quantity in an expression, by the name that it has there.");
     module.def("formula", &formula_from, py::arg("of"), "A parameter, a number or a text with a unit as a formula.");
     for (const char* name : {"sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "log"}) {
         module.def(

@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "fettle/design/python/arguments.hpp"
+#include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/model_arrays.hpp"
 #include "fettle/design/python/own_shape.hpp"
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/contact_force.hpp"
 #include "fettle/design/quantities/energy.hpp"
+#include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
@@ -225,6 +227,45 @@ struct MembersOf {
     }
 };
 
+std::shared_ptr<const Quantity> stroke_from(py::handle q, const MembersOf& of_q) {
+    const auto body = of_q.get<int>("body");
+    const auto axis = of_q.get<Vector3>("axis");
+    const py::object target = q.attr("target");
+    if (is_followed(target)) return std::make_shared<quantities::Stroke>(body, axis, formula_from(target));
+    return std::make_shared<quantities::Stroke>(body, axis, of_q.get<std::optional<double>>("target"));
+}
+
+// Targets may have formulas at some of their coordinates; these are 0 in the points.
+std::shared_ptr<const Quantity> marker_path_from(py::handle q, const MembersOf& of_q) {
+    std::vector<quantities::MovedCoordinate> moved;
+    py::list targets;
+    for (const py::handle target : q.attr("targets")) {
+        py::list numbers;
+        for (const py::handle coordinate : target) {
+            const bool follows = is_followed(coordinate);
+            if (follows) moved.push_back({static_cast<int>(targets.size()), static_cast<int>(numbers.size()), formula_from(coordinate)});
+            numbers.append(follows ? py::object(py::float_(0.0)) : py::reinterpret_borrow<py::object>(coordinate));
+        }
+        targets.append(numbers);
+    }
+    const auto points = moved.empty() ? of_q.get<std::vector<Vector3>>("targets") : targets.cast<std::vector<Vector3>>();
+    return std::make_shared<quantities::MarkerPath>(of_q.get<int>("body"), of_q.get<Vector3>("point"), points,
+                                                    of_q.get<std::vector<double>>("times"), std::move(moved));
+}
+
+// Texts are read by Design._prepared, which knows the parameters.
+std::shared_ptr<const Quantity> expression_from(py::handle q) {
+    std::vector<quantities::NamedQuantity> parts;
+    for (const auto& [name, part] : q.attr("parts").cast<py::dict>()) {
+        auto quantity = quantity_from_python(part);
+        if (!quantity) throw py::type_error("an expression's parts are quantities by name");
+        parts.push_back({py::str(name), std::move(quantity)});
+    }
+    const py::object formula = q.attr("formula");
+    if (py::isinstance<py::str>(formula)) return value_or_raise(quantities::Expression::parse(formula.cast<std::string>(), parts));
+    return value_or_raise(quantities::Expression::create(formula_from(formula), parts));
+}
+
 std::shared_ptr<const Quantity> library_quantity(py::handle q) {
     using namespace quantities;
     const std::string type = py::str(py::type::of(q).attr("__name__"));
@@ -245,11 +286,9 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
             of.push_back({index, kind});
         return std::make_shared<Mass>(std::move(of));
     }
-    if (is("Stroke")) return std::make_shared<Stroke>(body(), of_q.get<Vector3>("axis"), of_q.get<std::optional<double>>("target"));
-    if (is("MarkerPath")) {
-        return std::make_shared<MarkerPath>(body(), of_q.get<Vector3>("point"), of_q.get<std::vector<Vector3>>("targets"),
-                                            of_q.get<std::vector<double>>("times"));
-    }
+    if (is("Stroke")) return stroke_from(q, of_q);
+    if (is("MarkerPath")) return marker_path_from(q, of_q);
+    if (is("Expression")) return expression_from(q);
     const auto over = [&] { return of_q.get<Over>("over"); };
     if (is("MarkerSpeed")) {
         const MarkerSpeed::Of of{body(), of_q.get<Vector3>("point"), of_q.get<Vector3>("axis")};
@@ -280,6 +319,28 @@ std::shared_ptr<const Quantity> quantity_from_python(py::handle quantity) {
     return std::make_shared<PythonQuantity>(quantity);
 }
 
+namespace {
+
+py::object number_or_formula(const core::expression::Formula& formula) {
+    return formula.is_constant() ? py::object(py::float_(core::expression::value_of<double>(formula, {}))) : py::cast(formula);
+}
+
+py::object moved_targets(const quantities::MarkerPath& path) {
+    py::list targets;
+    for (const Vector3& target : path.targets()) {
+        py::list numbers;
+        for (Eigen::Index k = 0; k < 3; ++k) numbers.append(target[k]);
+        targets.append(numbers);
+    }
+    for (const quantities::MovedCoordinate& each : path.moved()) {
+        const py::list numbers = targets[static_cast<std::size_t>(each.target)];
+        numbers[static_cast<std::size_t>(each.axis)] = py::cast(each.formula);
+    }
+    return std::move(targets);
+}
+
+}  // namespace
+
 py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
     using namespace quantities;
     if (!quantity) return py::none();
@@ -293,9 +354,19 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
         for (const Mass::Of& one : q->bodies()) of.append(py::make_tuple(one.body, one.kind));
         return record_class("Mass")(of);
     }
-    if (const auto* q = dynamic_cast<const Stroke*>(quantity.get())) return record_class("Stroke")(q->body(), q->axis(), q->target());
-    if (const auto* q = dynamic_cast<const MarkerPath*>(quantity.get()))
-        return record_class("MarkerPath")(q->body(), q->point(), q->targets(), q->times());
+    if (const auto* q = dynamic_cast<const Stroke*>(quantity.get())) {
+        const py::object target = q->target() ? number_or_formula(*q->target()) : py::object(py::none());
+        return record_class("Stroke")(q->body(), q->axis(), target);
+    }
+    if (const auto* q = dynamic_cast<const MarkerPath*>(quantity.get())) {
+        const py::object targets = q->moved().empty() ? py::object(py::cast(q->targets())) : moved_targets(*q);
+        return record_class("MarkerPath")(q->body(), q->point(), targets, q->times());
+    }
+    if (const auto* q = dynamic_cast<const Expression*>(quantity.get())) {
+        py::dict parts;
+        for (const NamedQuantity& part : q->parts()) parts[py::str(part.name)] = quantity_to_python(part.quantity);
+        return record_class("Expression")(q->formula(), parts);
+    }
     if (const auto* q = dynamic_cast<const MarkerSpeed*>(quantity.get()))
         return record_class("MarkerSpeed")(q->of().body, q->of().point, q->over(), q->of().axis);
     if (const auto* q = dynamic_cast<const JointLoad*>(quantity.get()))

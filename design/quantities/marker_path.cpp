@@ -7,6 +7,7 @@
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/design/quantities/marker.hpp"
+#include "fettle/design/quantities/own_formula.hpp"
 
 namespace fettle::design::quantities {
 
@@ -14,10 +15,19 @@ using description::Measurement;
 using description::Seeds;
 using description::Simulated;
 
-MarkerPath::MarkerPath(int body, const Vector3& point, std::vector<Vector3> targets, std::vector<double> times)
-    : body_(body), point_(point), targets_(std::move(targets)), times_(std::move(times)) {
+MarkerPath::MarkerPath(int body, const Vector3& point, std::vector<Vector3> targets, std::vector<double> times,
+                       std::vector<MovedCoordinate> moved)
+    : body_(body), point_(point), targets_(std::move(targets)), times_(std::move(times)), moved_(std::move(moved)) {
     FETTLE_ASSERT(!targets_.empty(), "a path of no points");
     FETTLE_ASSERT(times_.empty() || times_.size() == targets_.size(), "one time per target, or none");
+    for (const MovedCoordinate& each : moved_)
+        FETTLE_ASSERT(each.target >= 0 && each.target < count_of(targets_) && each.axis >= 0 && each.axis < 3, "a coordinate of a target");
+}
+
+std::vector<Vector3> MarkerPath::targets_at(const Simulated& simulated) const {
+    std::vector<Vector3> targets = targets_;
+    for (const MovedCoordinate& each : moved_) targets[static_cast<size_t>(each.target)][each.axis] = value_at(each.formula, simulated);
+    return targets;
 }
 
 MarkerPath::Place MarkerPath::nearest(const std::vector<Vector3>& path, const Vector3& target) const {
@@ -31,7 +41,7 @@ MarkerPath::Place MarkerPath::nearest(const std::vector<Vector3>& path, const Ve
         const double distance = (position - target).squaredNorm();
         if (distance < best_distance) {
             best_distance = distance;
-            best = {static_cast<int>(t), s, position};
+            best = {static_cast<int>(t), s, position, target};
         }
     }
     return best;
@@ -43,16 +53,18 @@ std::vector<MarkerPath::Place> MarkerPath::places(const Simulated& s) const {
     for (int t = 0; t <= last; ++t) path.push_back(marker_position(s, t, body_, point_));
     FETTLE_ASSERT(last >= 1, "a marker's path needs a step");
     std::vector<Place> result;
+    const std::vector<Vector3> targets = targets_at(s);
     for (size_t k = 0; k < targets_.size(); ++k) {
+        const Vector3& target = targets[k];
         if (times_.empty()) {
-            result.push_back(nearest(path, targets_[k]));
+            result.push_back(nearest(path, target));
             continue;
         }
         const double steps = (times_[k] - s.trajectory.time_start) / s.trajectory.timestep;
         const int t = std::clamp(static_cast<int>(std::floor(steps)), 0, last - 1);
         const double fraction = std::clamp(steps - t, 0.0, 1.0);
         const auto i = static_cast<size_t>(t);
-        result.push_back({t, fraction, path[i] + fraction * (path[i + 1] - path[i])});
+        result.push_back({t, fraction, path[i] + fraction * (path[i + 1] - path[i]), target});
     }
     return result;
 }
@@ -60,16 +72,18 @@ std::vector<MarkerPath::Place> MarkerPath::places(const Simulated& s) const {
 Measurement MarkerPath::value(const Simulated& simulated) const {
     const std::vector<Place> found = places(simulated);
     double sum = 0;
-    for (size_t k = 0; k < targets_.size(); ++k) sum += (found[k].position - targets_[k]).squaredNorm();
+    for (const Place& place : found) sum += (place.position - place.target).squaredNorm();
     return description::exact(sum / static_cast<double>(targets_.size()));
 }
 
 void MarkerPath::add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const {
     const std::vector<Place> found = places(simulated);
     for (size_t k = 0; k < targets_.size(); ++k) {
-        const Vector3 gradient = scale * 2 / static_cast<double>(targets_.size()) * (found[k].position - targets_[k]);
+        const Vector3 gradient = scale * 2 / static_cast<double>(targets_.size()) * (found[k].position - found[k].target);
         add_marker_seed(simulated, found[k].index, body_, point_, (1 - found[k].fraction) * gradient, seeds);
         add_marker_seed(simulated, found[k].index + 1, body_, point_, found[k].fraction * gradient, seeds);
+        for (const MovedCoordinate& each : moved_)
+            if (each.target == static_cast<int>(k)) add_formula_seed(each.formula, simulated, -gradient[each.axis], seeds);
     }
 }
 
@@ -78,7 +92,7 @@ VectorX MarkerPath::deviations(const Simulated& simulated) const {
     VectorX r(3 * static_cast<Eigen::Index>(found.size()));
     for (size_t k = 0; k < found.size(); ++k)
         r.segment<3>(3 * static_cast<Eigen::Index>(k)) =
-            (found[k].position - targets_[k]) / std::sqrt(static_cast<double>(targets_.size()));
+            (found[k].position - found[k].target) / std::sqrt(static_cast<double>(targets_.size()));
     return r;
 }
 
@@ -95,6 +109,14 @@ void MarkerPath::add_deviation_seeds(const Simulated& simulated, int i, double s
     }
     add_marker_seed(simulated, found.index, body_, point_, (1 - found.fraction) * direction, seeds);
     add_marker_seed(simulated, found.index + 1, body_, point_, found.fraction * direction, seeds);
+    for (const MovedCoordinate& each : moved_)
+        if (each.target == i / 3) add_formula_seed(each.formula, simulated, -direction[each.axis], seeds);
+}
+
+std::vector<std::string> MarkerPath::parameters() const {
+    std::vector<std::string> names;
+    for (const MovedCoordinate& each : moved_) names.insert(names.end(), each.formula.inputs.begin(), each.formula.inputs.end());
+    return names;
 }
 
 Errors MarkerPath::check(const core::model::Model& model, int steps) const {

@@ -7,20 +7,31 @@
 
 #include <vector>
 
+#include "fettle/core/expression/formula.hpp"
 #include "fettle/design/description/quantity.hpp"
 
 namespace fettle::design::quantities {
+
+/// A coordinate of a target that follows from the design's parameters [m].
+struct MovedCoordinate {
+    int target = 0;  ///< counted from 0
+    int axis = 0;    ///< 0, 1, 2
+    core::expression::Formula formula;
+};
 
 class MarkerPath : public description::Quantity {
 public:
     /// @param point    In the body's file frame [m].
     /// @param targets  World [m], at least one.
     /// @param times    [s] within the simulation, as many as targets; or empty: free timing.
-    MarkerPath(int body, const Vector3& point, std::vector<Vector3> targets, std::vector<double> times);
+    /// @param moved    Coordinates in place of those of `targets`.
+    MarkerPath(int body, const Vector3& point, std::vector<Vector3> targets, std::vector<double> times,
+               std::vector<MovedCoordinate> moved = {});
 
     int body() const { return body_; }
     const Vector3& point() const { return point_; }
     const std::vector<Vector3>& targets() const { return targets_; }
+    const std::vector<MovedCoordinate>& moved() const { return moved_; }
     const std::vector<double>& times() const { return times_; }
     Dimension dimension() const override { return Dimension::area; }
     description::Measurement value(const description::Simulated& simulated) const override;
@@ -29,6 +40,7 @@ public:
     /// Three for each target: its distance's coordinates, over the root of their number.
     VectorX deviations(const description::Simulated& simulated) const override;
     void add_deviation_seeds(const description::Simulated& simulated, int i, double scale, description::Seeds& seeds) const override;
+    std::vector<std::string> parameters() const override;
     Errors check(const core::model::Model& model, int steps) const override;
 
 private:
@@ -36,15 +48,17 @@ private:
     struct Place {
         int index = 0;
         double fraction = 0;
-        Vector3 position = Vector3::Zero();
+        Vector3 position = Vector3::Zero(), target = Vector3::Zero();
     };
     std::vector<Place> places(const description::Simulated& simulated) const;
+    std::vector<Vector3> targets_at(const description::Simulated& simulated) const;
     Place nearest(const std::vector<Vector3>& path, const Vector3& target) const;
 
     int body_;
     Vector3 point_;
     std::vector<Vector3> targets_;
     std::vector<double> times_;
+    std::vector<MovedCoordinate> moved_;
 };
 
 }  // namespace fettle::design::quantities

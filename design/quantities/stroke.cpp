@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/design/quantities/own_formula.hpp"
 
 namespace fettle::design::quantities {
 
@@ -35,17 +36,19 @@ double Stroke::stroke(const Simulated& simulated) const {
     return smooth_maximum(coordinates(simulated, 1)).value + smooth_maximum(coordinates(simulated, -1)).value;
 }
 
+double Stroke::deviation(const Simulated& simulated) const { return stroke(simulated) - (target_ ? value_at(*target_, simulated) : 0); }
+
 Measurement Stroke::value(const Simulated& simulated) const {
-    const double s = stroke(simulated);
-    return description::exact(target_ ? (s - *target_) * (s - *target_) : s);
+    const double s = deviation(simulated);
+    return description::exact(target_ ? s * s : s);
 }
 
 void Stroke::add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const {
-    add_deviation_seeds(simulated, 0, scale * (target_ ? 2 * (stroke(simulated) - *target_) : 1), seeds);
+    add_deviation_seeds(simulated, 0, scale * (target_ ? 2 * deviation(simulated) : 1), seeds);
 }
 
 VectorX Stroke::deviations(const Simulated& simulated) const {
-    return target_ ? VectorX(VectorX::Constant(1, stroke(simulated) - *target_)) : VectorX();
+    return target_ ? VectorX(VectorX::Constant(1, deviation(simulated))) : VectorX();
 }
 
 void Stroke::add_deviation_seeds(const Simulated& simulated, int, double scale, Seeds& seeds) const {
@@ -57,7 +60,10 @@ void Stroke::add_deviation_seeds(const Simulated& simulated, int, double scale, 
                 scale * extreme.weights[k] * sign * axis_;
         }
     }
+    if (target_) add_formula_seed(*target_, simulated, -scale, seeds);
 }
+
+std::vector<std::string> Stroke::parameters() const { return target_ ? target_->inputs : std::vector<std::string>(); }
 
 Errors Stroke::check(const core::model::Model& model, int) const {
     Errors errors = description::check_body(model, body_);

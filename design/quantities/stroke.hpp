@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "fettle/core/expression/formula.hpp"
 #include "fettle/design/description/quantity.hpp"
 
 namespace fettle::design::quantities {
@@ -29,26 +30,32 @@ class Stroke : public description::Quantity {
 public:
     /// @param axis    Unit vector, world.
     /// @param target  If given, the value is (stroke - target)^2 [m^2], else the stroke [m].
-    Stroke(int body, const Vector3& axis, std::optional<double> target) : body_(body), axis_(axis), target_(target) {}
+    Stroke(int body, const Vector3& axis, std::optional<double> target) : body_(body), axis_(axis) {
+        if (target) target_ = core::expression::constant_formula(*target, core::expression::powers_of(Dimension::length));
+    }
+    /// @param target  A formula of the design's parameters [m].
+    Stroke(int body, const Vector3& axis, core::expression::Formula target) : body_(body), axis_(axis), target_(std::move(target)) {}
 
     int body() const { return body_; }
     const Vector3& axis() const { return axis_; }
-    const std::optional<double>& target() const { return target_; }
+    const std::optional<core::expression::Formula>& target() const { return target_; }
     Dimension dimension() const override { return target_ ? Dimension::area : Dimension::length; }
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
     VectorX deviations(const description::Simulated& simulated) const override;
     void add_deviation_seeds(const description::Simulated& simulated, int i, double scale, description::Seeds& seeds) const override;
+    std::vector<std::string> parameters() const override;
     Errors check(const core::model::Model& model, int steps) const override;
 
 private:
     std::vector<double> coordinates(const description::Simulated& simulated, double sign) const;
     double stroke(const description::Simulated& simulated) const;
+    double deviation(const description::Simulated& simulated) const;  // from the target; without one the stroke
 
     int body_;
     Vector3 axis_;
-    std::optional<double> target_;
+    std::optional<core::expression::Formula> target_;
 };
 
 }  // namespace fettle::design::quantities

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <set>
 
+#include "fettle/core/expression/parse_formula.hpp"
 #include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
 #include "fettle/design/reading/relation_reader.hpp"
 
@@ -39,24 +41,62 @@ private:
         return unique_name(node["name"].string().value_or(otherwise), names_);
     }
 
+    /// A bound that parameters change.
+    struct MovingBound {
+        core::expression::Formula formula;
+        std::string text;  ///< as written, without the `=`
+    };
+
+    std::optional<MovingBound> moving(const JsonNode& node, Dimension dimension) const {
+        auto formula = context_.formulas.followed(node, dimension, context_.unit(dimension));
+        if (!formula) return std::nullopt;
+        const std::string text = *node.string();
+        return MovingBound{std::move(*formula), text.substr(text.find_first_not_of(" \t\n", text.find('=') + 1))};
+    }
+
+    // quantity - bound, whose own bound is 0.
+    static std::shared_ptr<const description::Quantity> beyond(std::shared_ptr<const description::Quantity> quantity,
+                                                               const MovingBound& bound, const std::string& name) {
+        std::set<std::string> taken(bound.formula.inputs.begin(), bound.formula.inputs.end());
+        const std::string measured = unique_name(name, taken), limit = unique_name("limit", taken);
+        core::expression::Scope scope;
+        scope.names = {{measured, core::expression::powers_of(quantity->dimension())}, {limit, bound.formula.dimension, bound.formula}};
+        auto difference = core::expression::parse_formula(
+            core::expression::quoted_if_needed(measured) + " - " + core::expression::quoted_if_needed(limit), scope);
+        core::expression::Formula formula = std::move(difference).value();
+        formula.text = less(core::expression::quoted_if_needed(measured), bound);
+        return quantities::Expression::create(std::move(formula), {{measured, std::move(quantity)}}).value();
+    }
+
+    static std::string less(const std::string& name, const MovingBound& bound) {
+        const bool is_plain = bound.text.find_first_of(" +-*/^") == std::string::npos;
+        return name + " - " + (is_plain ? bound.text : "(" + bound.text + ")");
+    }
+
     // `minimum` instead of bounds, and several constraints where the motion is divided.
     void read_clearance(const JsonNode& node, std::vector<Constraint>& out) {
         node.allow_keys({"type", "name", "a", "b", "minimum", "margin", "motion", "windows"});
         const auto a = context_.body(node.require("a")), b = context_.body(node.require("b"));
         Bounds bounds;
         bounds.unit = context_.length_unit;
-        bounds.lower = node.require("minimum").length(context_.length_unit, core::files::positive).value_or(0);
+        const auto minimum = moving(node["minimum"], Dimension::length);
+        if (minimum && !(context_.formulas.value_of(minimum->formula) > 0))
+            node["minimum"].fail(ErrorCode::out_of_range, "at the parameters' values this is not greater than 0");
+        bounds.lower = minimum ? 0 : node.require("minimum").length(context_.length_unit, core::files::positive).value_or(0);
         bounds.margin = node["margin"].length(context_.length_unit, core::files::not_negative).value_or(clearance_margin_);
         const bool motion = node["motion"].boolean().value_or(false);
         const int windows = node["windows"].integer(1, 1000).value_or(1);
         if (windows > 1 && !motion) node["windows"].fail(ErrorCode::inconsistent, "`windows` divide the motion; set `motion` to true");
         if (!a || !b) return;
         if (*a == *b) node.fail(ErrorCode::inconsistent, "a clearance is between two bodies; `a` and `b` are the same");
-        const std::string name = name_of(node, find_quantity_type("clearance")->default_name(node));
+        const std::string measured = find_quantity_type("clearance")->default_name(node);
+        const std::string name = name_of(node, minimum ? less(measured, *minimum) : measured);
         for (int w = 0; w < windows; ++w) {
             const std::string part = windows > 1 ? name + " window " + std::to_string(w + 1) : name;
             const quantities::ClearanceRange range{*a, *b, motion, w, windows};
-            out.push_back({part, bounds, std::make_shared<quantities::Clearance>(range, bounds.lower)});
+            std::shared_ptr<const description::Quantity> quantity = std::make_shared<quantities::Clearance>(range, bounds.lower);
+            if (minimum) quantity = beyond(std::move(quantity), *minimum, measured);
+            out.push_back({part, bounds, std::move(quantity)});
         }
     }
 
@@ -71,14 +111,46 @@ private:
             node.fail(ErrorCode::missing_key, "a constraint has `lower`, `upper` or both");
         }
         if (!quantity) return;
-        const Bounds bounds = read_bounds(node, quantity->dimension());
-        out.push_back({name_of(node, type.default_name(node)), bounds, std::move(quantity)});
+        if (const auto* expression = dynamic_cast<const quantities::Expression*>(quantity.get()); expression && expression->parts().empty())
+            node["expression"].fail(ErrorCode::inconsistent,
+                                    "this names none of the design's `quantities`; a condition between parameters alone is a `relation`");
+        const auto lower = moving(node["lower"], quantity->dimension()), upper = moving(node["upper"], quantity->dimension());
+        const Bounds bounds = read_bounds(node, quantity->dimension(), lower, upper);
+        const std::string measured = type.default_name(node);
+        if (!lower && !upper) {
+            out.push_back({name_of(node, measured), bounds, std::move(quantity)});
+            return;
+        }
+        if (lower && upper && lower->text == upper->text) {
+            Bounds exactly = bounds;
+            exactly.lower = exactly.upper = 0;
+            out.push_back({name_of(node, less(measured, *lower)), exactly, beyond(quantity, *lower, measured)});
+            return;
+        }
+        // One constraint for each side: they are about different numbers.
+        const auto add = [&](const char* key, const std::optional<MovingBound>& bound, double Bounds::*side) {
+            if (!node[key].exists()) return;
+            Bounds one = bounds;
+            one.lower = Bounds().lower;
+            one.upper = Bounds().upper;
+            one.*side = bound ? 0 : bounds.*side;
+            out.push_back(
+                {name_of(node, bound ? less(measured, *bound) : measured), one, bound ? beyond(quantity, *bound, measured) : quantity});
+        };
+        add("lower", lower, &Bounds::lower);
+        add("upper", upper, &Bounds::upper);
     }
 
-    Bounds read_bounds(const JsonNode& node, Dimension dimension) const {
+    // Of those that parameters change the values at the parameters' values.
+    Bounds read_bounds(const JsonNode& node, Dimension dimension, const std::optional<MovingBound>& lower,
+                       const std::optional<MovingBound>& upper) const {
         Bounds bounds;
         bounds.unit = context_.unit(dimension);
-        const auto amount = [&](const char* key) { return node[key].quantity(dimension, bounds.unit); };
+        const auto amount = [&](const std::string& key) -> std::optional<double> {
+            if (key == "lower" && lower) return context_.formulas.value_of(lower->formula);
+            if (key == "upper" && upper) return context_.formulas.value_of(upper->formula);
+            return node[key].quantity(dimension, bounds.unit);
+        };
         bounds.lower = amount("lower").value_or(bounds.lower);
         bounds.upper = amount("upper").value_or(bounds.upper);
         if (bounds.lower > bounds.upper) {

@@ -2,7 +2,6 @@
 #include "fettle/design/reading/design_formulas.hpp"
 
 #include "fettle/core/base/limits.hpp"
-#include "fettle/design/reading/read_context.hpp"
 
 namespace fettle::design::reading {
 
@@ -74,6 +73,22 @@ std::vector<core::scene::FormulaInput> DesignFormulas::inputs_of_scene() const {
         if (!name.meaning) out.push_back({name.name, name.dimension, values_.at(name.name)});
     out.insert(out.end(), own_.begin(), own_.end());
     return out;
+}
+
+std::optional<Formula> DesignFormulas::followed(const JsonNode& node, Dimension dimension, double si_per_number) const {
+    if (!node.is_string()) return std::nullopt;
+    const std::string text = *node.string();
+    const std::size_t begin = text.find_first_not_of(" \t\n");
+    if (begin == std::string::npos || text[begin] != '=') return std::nullopt;
+    Result<Formula> formula = core::expression::parse_formula_of(text, scope_, dimension, si_per_number);
+    if (!formula || formula->is_constant()) return std::nullopt;
+    return std::move(formula).value();
+}
+
+double DesignFormulas::value_of(const Formula& formula) const {
+    std::vector<double> inputs;
+    for (const std::string& name : formula.inputs) inputs.push_back(values_.at(name));
+    return core::expression::value_of<double>(formula, inputs);
 }
 
 std::optional<double> DesignFormulas::read(const JsonNode& node, const std::string& text, Dimension dimension, double si_per_number) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// The formulas of a design's file: over its parameters, its own `variables`, and those of its scene.
 ///     "variables": { "room": "= bore - pin" }          of parameters, and of the scene's variables
-///     "minimum": "= 2 * layer"                         any number of the file, if no parameter changes it
+///     "clearance_margin": "= layer / 100"              any number of the file, if no parameter changes it
+///     "upper": "= 2 * gap"                             bounds and targets, which parameters may change
 /// Part of design_reader.hpp.
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -16,6 +18,8 @@
 #include "fettle/design/description/parameter.hpp"
 
 namespace fettle::design::reading {
+
+inline constexpr double grams = 1e-3;  ///< the unit of masses without a unit in designs [kg]
 
 class DesignFormulas {
 public:
@@ -31,6 +35,14 @@ public:
     void add_parameters(const core::files::JsonNode& node, const std::vector<description::Parameter>& parameters);
     /// The design's own `variables`.
     void read_variables(const core::files::JsonNode& node);
+
+    /// What formulas may name by now, and in which units numbers without one count.
+    const core::expression::Scope& scope() const { return scope_; }
+    /// The formula of a number that parameters change: a text that begins with "=". Nothing where it is another number, or is wrong; then
+    /// reading the number as such tells what is wrong with it.
+    std::optional<core::expression::Formula> followed(const core::files::JsonNode& node, Dimension dimension, double si_per_number) const;
+    /// At the parameters' values.
+    double value_of(const core::expression::Formula& formula) const;
 
     /// The names that formulas of the scene may use: the parameters, and the design's variables.
     std::vector<core::scene::FormulaInput> inputs_of_scene() const;

@@ -41,7 +41,7 @@ public:
     Result<DesignFile> read() {
         const JsonNode root = document_.root();
         root.allow_keys({"$schema", "fettle_design", "description", "scene", "units", "parameters", "variables", "set", "simulation",
-                         "objective", "constraints", "optimiser", "output"});
+                         "quantities", "objective", "constraints", "optimiser", "output"});
         root["$schema"].string();
         root["description"].string();
         core::files::is_version(root.require("fettle_design"), 1);
@@ -57,13 +57,16 @@ public:
         formulas.read_variables(root["variables"]);
         if (!has_parameters() || !read_scene_file(*scene, root["set"], formulas)) return all_errors();
         take_shapes();
-        take_numbers(root["parameters"]);
+        take_numbers();
         read_simulation(root["simulation"]);
-        const ReadContext context{design_.scene, to_si(1, file_.length_unit), design_.steps * design_.scene.timestep};
+        std::vector<quantities::NamedQuantity> named;
+        const ReadContext context{design_.scene, to_si(1, file_.length_unit), design_.steps * design_.scene.timestep, formulas, named};
+        named = read_named_quantities(root["quantities"], context);
         read_objective(root["objective"], context);
         const double margin = read_optimiser(root["optimiser"]);
         design_.constraints = read_constraints(root["constraints"], context, margin);
         design_.relations = read_relations(root["constraints"], context, design_.parameters, design_.constraints);
+        check_use(root["parameters"]);
         file_.output = root["output"].string().value_or("");
         if (const std::string fault = core::base::name_fault(file_.output); !file_.output.empty() && !fault.empty())
             root["output"].fail(ErrorCode::out_of_range, "the folder's name " + fault);
@@ -126,17 +129,30 @@ private:
     }
 
     // What follows from the parameters; the scene's other variables are constant here.
-    void take_numbers(const JsonNode& parameters) {
+    void take_numbers() {
         std::map<std::string, core::expression::Formula> constants;
         for (const core::scene::Variable& variable : design_.scene.variables)
             if (variable.formula.is_constant())
                 constants[variable.name] = core::expression::constant_formula(variable.value, variable.formula.dimension);
-        std::set<std::string> used;
         for (core::scene::BoundNumber& number : design_.scene.numbers) {
             number.formula = core::expression::substituted(number.formula, constants);
             if (!number.formula.is_constant()) design_.numbers.push_back(number);
-            used.insert(number.formula.inputs.begin(), number.formula.inputs.end());
         }
+        check_scaled_parts();
+    }
+
+    // A parameter that nothing follows from is a mistake: no number of the scene, and nothing that is wanted or required.
+    void check_use(const JsonNode& parameters) const {
+        if (!document_.errors().empty()) return;  // what could not be read may name it
+        std::set<std::string> used;
+        for (const core::scene::BoundNumber& number : design_.numbers)
+            used.insert(number.formula.inputs.begin(), number.formula.inputs.end());
+        const auto look_at = [&](const description::Quantity& quantity) {
+            const std::vector<std::string> names = quantity.parameters();
+            used.insert(names.begin(), names.end());
+        };
+        for (const description::ObjectiveTerm& term : design_.objective) look_at(*term.quantity);
+        for (const description::Constraint& constraint : design_.constraints) look_at(*constraint.quantity);
         const std::vector<JsonNode> nodes = parameters.elements();
         for (std::size_t k = 0; k < design_.parameters.size(); ++k)
             if (used.count(design_.parameters[k].name) == 0)
@@ -145,7 +161,6 @@ private:
                                   "\": use it in a formula there, or in the design's `set`, such as \"/bodies/" +
                                   (design_.scene.bodies.empty() ? std::string("0") : design_.scene.bodies.front().name) +
                                   "/position/0\": \"= " + core::expression::quoted_if_needed(design_.parameters[k].name) + "\"");
-        check_scaled_parts();
     }
 
     void check_scaled_parts() {

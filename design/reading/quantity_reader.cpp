@@ -8,6 +8,7 @@
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/contact_force.hpp"
 #include "fettle/design/quantities/energy.hpp"
+#include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
@@ -27,15 +28,41 @@ std::string text(const JsonNode& node) { return node.is_string() ? *node.string(
 std::shared_ptr<const Quantity> read_stroke(const JsonNode& node, const ReadContext& context) {
     const auto body = context.body(node.require("body"));
     const auto axis = context.axis(node.require("axis"));
+    if (auto target = context.formulas.followed(node["target"], Dimension::length, context.length_unit)) {
+        if (!body || !axis) return nullptr;
+        return std::make_shared<quantities::Stroke>(*body, *axis, std::move(*target));
+    }
     const auto target = node["target"].length(context.length_unit, core::files::not_negative);
     if (!body || !axis) return nullptr;
     return std::make_shared<quantities::Stroke>(*body, *axis, target);
 }
 
-std::vector<Vector3> read_points(const JsonNode& node, double unit) {
+// One that parameters move, at their values; its moved coordinates are added to those.
+std::optional<Vector3> read_moved_point(const JsonNode& entry, int index, const ReadContext& context,
+                                        std::vector<quantities::MovedCoordinate>& moved) {
+    const std::vector<JsonNode> numbers = entry.is_array() ? entry.elements() : std::vector<JsonNode>();
+    std::vector<quantities::MovedCoordinate> found;
+    for (int axis = 0; numbers.size() == 3 && axis < 3; ++axis)
+        if (auto formula = context.formulas.followed(numbers[static_cast<size_t>(axis)], Dimension::length, context.length_unit))
+            found.push_back({index, axis, std::move(*formula)});
+    if (found.empty()) return entry.length3(context.length_unit);
+    Vector3 point = Vector3::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto is_here = [&](const quantities::MovedCoordinate& each) { return each.axis == axis; };
+        const auto at = std::find_if(found.begin(), found.end(), is_here);
+        const auto number = at != found.end() ? std::optional(context.formulas.value_of(at->formula))
+                                              : numbers[static_cast<size_t>(axis)].length(context.length_unit);
+        if (!number) return std::nullopt;
+        point[axis] = *number;
+    }
+    moved.insert(moved.end(), found.begin(), found.end());
+    return point;
+}
+
+std::vector<Vector3> read_points(const JsonNode& node, const ReadContext& context, std::vector<quantities::MovedCoordinate>& moved) {
     std::vector<Vector3> points;
     for (const JsonNode& entry : node.elements()) {
-        if (const auto point = entry.length3(unit)) points.push_back(*point);
+        if (const auto point = read_moved_point(entry, count_of(points), context, moved)) points.push_back(*point);
     }
     if (node.is_array() && points.empty()) node.fail(ErrorCode::out_of_range, "a path needs a point");
     return points;
@@ -56,10 +83,11 @@ std::vector<double> read_times(const JsonNode& node, size_t points, double end_t
 std::shared_ptr<const Quantity> read_marker_path(const JsonNode& node, const ReadContext& context) {
     const auto body = context.body(node.require("body"));
     const auto point = node.require("point").length3(context.length_unit);
-    const std::vector<Vector3> targets = read_points(node.require("points"), context.length_unit);
+    std::vector<quantities::MovedCoordinate> moved;
+    const std::vector<Vector3> targets = read_points(node.require("points"), context, moved);
     const std::vector<double> times = read_times(node["times"], targets.size(), context.end_time);
     if (!body || !point || targets.empty() || (!times.empty() && times.size() != targets.size())) return nullptr;
-    return std::make_shared<quantities::MarkerPath>(*body, *point, targets, times);
+    return std::make_shared<quantities::MarkerPath>(*body, *point, targets, times, std::move(moved));
 }
 
 std::shared_ptr<const Quantity> read_clearance(const JsonNode& node, const ReadContext& context) {
@@ -186,6 +214,25 @@ std::shared_ptr<const Quantity> read_energy(const JsonNode& node, const ReadCont
         static_cast<quantities::EnergyKind>(std::find(names.begin(), names.end(), *name) - names.begin()), over);
 }
 
+std::shared_ptr<const Quantity> read_expression(const JsonNode& node, const ReadContext& context) {
+    const auto text = node.require("expression").string();
+    if (!text) return nullptr;
+    core::expression::Scope scope = context.formulas.scope();
+    scope.what = "quantity, parameter or variable";
+    for (core::expression::Scope::Name& name : quantities::names_of(context.quantities)) scope.names.push_back(std::move(name));
+    Result<core::expression::Formula> formula = core::expression::parse_formula(*text, scope);
+    for (const Error& error : formula.errors()) node["expression"].fail(error.code, error.message);
+    if (!formula) return nullptr;
+    if (formula->is_constant()) {
+        node["expression"].fail(ErrorCode::inconsistent, "this names no quantity and no parameter, so no design could change it");
+        return nullptr;
+    }
+    const Result<std::shared_ptr<const quantities::Expression>> made =
+        quantities::Expression::create(std::move(formula).value(), context.quantities);
+    for (const Error& error : made.errors()) node["expression"].fail(error.code, error.message);
+    return made ? *made : nullptr;
+}
+
 std::string stroke_name(const JsonNode& node) { return "stroke " + text(node["body"]); }
 std::string marker_name(const JsonNode& node) { return "marker_path " + text(node["body"]); }
 std::string marker_speed_name(const JsonNode& node) { return "marker_speed " + text(node["body"]); }
@@ -208,6 +255,7 @@ std::string contact_of(const JsonNode& node) { return text(node["body"]) + (node
 std::string contact_force_name(const JsonNode& node) { return "contact_force " + contact_of(node); }
 std::string contact_torque_name(const JsonNode& node) { return "contact_torque " + contact_of(node); }
 std::string energy_name(const JsonNode& node) { return "energy " + text(node["of"]); }
+std::string expression_name(const JsonNode& node) { return text(node["expression"]); }
 
 }  // namespace
 
@@ -269,7 +317,13 @@ const std::vector<QuantityType>& quantity_table() {
          contact_torque_name,
          "N m",
          "its torque about a point of the body (what a motor that holds a massless one there has to give, with the other sign)"},
-        {"energy", {"of", "over"}, read_energy, energy_name, "J", "kinetic, potential, spring or total energy at the steps' ends"}};
+        {"energy", {"of", "over"}, read_energy, energy_name, "J", "kinetic, potential, spring or total energy at the steps' ends"},
+        {"expression",
+         {"expression"},
+         read_expression,
+         expression_name,
+         "that of what it says",
+         "a formula of the design's named `quantities` and parameters, such as `max_force / mass`"}};
     return table;
 }
 
@@ -284,6 +338,27 @@ const QuantityType* find_quantity_type(std::string_view name) {
         if (type.name == name) return &type;
     }
     return nullptr;
+}
+
+std::vector<quantities::NamedQuantity> read_named_quantities(const JsonNode& node, const ReadContext& context) {
+    std::vector<quantities::NamedQuantity> out;
+    std::vector<std::string_view> types = quantity_names();
+    std::erase(types, expression_type);  // it is written where it is used
+    for (const auto& [name, entry] : node.members()) {
+        if (name.starts_with('#')) continue;
+        if (!core::expression::is_possible_name(name))
+            entry.fail(ErrorCode::out_of_range, "a quantity's name must not be empty or contain a single quote");
+        if (context.formulas.scope().find(name) != nullptr)
+            entry.fail(ErrorCode::inconsistent, "a parameter or variable is called `" + name + "` already");
+        const auto type_name = entry.require("type").choice(types);
+        if (!type_name) continue;
+        const QuantityType& type = *find_quantity_type(*type_name);
+        std::vector<std::string_view> keys{"type"};
+        keys.insert(keys.end(), type.keys.begin(), type.keys.end());
+        entry.allow_keys(keys);
+        if (auto quantity = type.read(entry, context)) out.push_back({name, std::move(quantity)});
+    }
+    return out;
 }
 
 }  // namespace fettle::design::reading

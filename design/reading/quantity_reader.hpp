@@ -27,4 +27,11 @@ const std::vector<QuantityType>& quantity_table();
 std::vector<std::string_view> quantity_names();
 const QuantityType* find_quantity_type(std::string_view name);
 
+inline constexpr std::string_view expression_type = "expression";
+
+/// The `quantities` of a design file, which expressions name:
+///     "quantities": { "force": { "type": "joint_force", "joint": "pin", "over": "largest" }, "arm": { "type": "mass", "bodies": ["arm"] }
+///     }, "objective": [ { "type": "expression", "expression": "force / arm" } ]
+std::vector<quantities::NamedQuantity> read_named_quantities(const core::files::JsonNode& node, const ReadContext& context);
+
 }  // namespace fettle::design::reading

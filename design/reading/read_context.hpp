@@ -9,15 +9,17 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/scene.hpp"
+#include "fettle/design/quantities/expression.hpp"
+#include "fettle/design/reading/design_formulas.hpp"
 
 namespace fettle::design::reading {
-
-inline constexpr double grams = 1e-3;  ///< the unit of masses without a unit in designs [kg]
 
 struct ReadContext {
     const core::scene::Scene& scene;
     double length_unit = 1;  ///< of the file [m]
     double end_time = 0;     ///< of the simulation [s]
+    const DesignFormulas& formulas;
+    const std::vector<quantities::NamedQuantity>& quantities;  ///< the file's `quantities`, which expressions may name
 
     /// Index of the body that a node names; unknown_key with the nearest name otherwise.
     std::optional<int> body(const core::files::JsonNode& node) const;

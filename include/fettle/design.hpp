@@ -16,6 +16,7 @@
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/contact_force.hpp"
 #include "fettle/design/quantities/energy.hpp"
+#include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"

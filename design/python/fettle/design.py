@@ -7,16 +7,20 @@ Shapes and quantities of one's own derive from Shape and Quantity.
     radius = fettle.Parameter("radius", "5mm", "4mm", "6mm", "mm")
     design.parameters.append(radius)
     design.set("/bodies/pin/shape/dimensions/radius", radius)
-    design.set("/bodies/pin/position", [0, 0, 2 * radius + "0.5 mm"])
+    design.scene.bodies[0].position = [0, 0, 2 * radius + "0.5 mm"]
+    design.objective.append(fettle.ObjectiveTerm("force per mass", quantity=force / mass))  # of quantities
 """
 import dataclasses
 import math
+import operator
+import zlib
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _fettle
+from ._moved import settled_scene
 from ._record import Given, Number, Record, did_you_mean, faults_of, number
 from .errors import Error, Fault
 from .results import Measurement
@@ -108,7 +112,43 @@ class QuantityGradient(Record):
     densities: Dict[int, float] = dataclasses.field(default_factory=dict)  #: by body
 
 
-class Quantity:
+class Measured:
+    """Arithmetic with quantities: force / mass and stroke - 2 * gap are an Expression."""
+
+    __slots__ = ()
+
+    def __add__(self, other: "Term") -> "Expression":
+        return _combined("+", self, other)
+
+    def __radd__(self, other: "Term") -> "Expression":
+        return _combined("+", other, self)
+
+    def __sub__(self, other: "Term") -> "Expression":
+        return _combined("-", self, other)
+
+    def __rsub__(self, other: "Term") -> "Expression":
+        return _combined("-", other, self)
+
+    def __mul__(self, other: "Term") -> "Expression":
+        return _combined("*", self, other)
+
+    def __rmul__(self, other: "Term") -> "Expression":
+        return _combined("*", other, self)
+
+    def __truediv__(self, other: "Term") -> "Expression":
+        return _combined("/", self, other)
+
+    def __rtruediv__(self, other: "Term") -> "Expression":
+        return _combined("/", other, self)
+
+    def __pow__(self, other: "Term") -> "Expression":
+        return _combined("**", self, other)
+
+    def __neg__(self) -> "Expression":
+        return _combined("*", -1.0, self)
+
+
+class Quantity(Measured):
     """A number that a simulated design has. Derive from it; a pure function. A value that is not finite is an evaluation that failed."""
 
     __slots__ = ()
@@ -154,7 +194,7 @@ class FunctionQuantity(Record, Quantity):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class Clearance(Record):
+class Clearance(Record, Measured):
     """Certified least distance of two bodies [m]: as assembled, or over the motion, or a window of it."""
 
     a: Which
@@ -166,15 +206,15 @@ class Clearance(Record):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class Mass(Record):
+class Mass(Record, Measured):
     """Mass of bodies, given as (body, kind), kind as in Body.mass_kind [kg]."""
 
     bodies: Sequence[Tuple[Which, str]]
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class Stroke(Record):
-    """Along a unit axis [m]; with a target the square of the deviation from it [m^2]."""
+class Stroke(Record, Measured):
+    """Along a unit axis [m]; with a target, which may be a formula of parameters, the square of the deviation from it [m^2]."""
 
     body: Which
     axis: Vector
@@ -182,8 +222,9 @@ class Stroke(Record):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class MarkerPath(Record):
-    """Mean squared distance of a body's point from targets [m^2]; without times each at its nearest."""
+class MarkerPath(Record, Measured):
+    """Mean squared distance of a body's point from targets, whose coordinates may be formulas of parameters [m^2]; without times each at its
+    nearest."""
 
     body: Which
     point: Vector = number("length")
@@ -192,7 +233,7 @@ class MarkerPath(Record):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class MarkerSpeed(Record):
+class MarkerSpeed(Record, Measured):
     """Velocity of a body's point (in its file frame) at the steps' ends [m/s]; `over` as in JointLoad."""
 
     body: Which
@@ -202,7 +243,7 @@ class MarkerSpeed(Record):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class JointLoad(Record):
+class JointLoad(Record, Measured):
     """Force [N] or torque [N m] that a joint carries, or the effort of a motor [N m or N], at the steps' ends; `over` them: "end", "sum",
     "mean", "largest" or "least"."""
 
@@ -214,7 +255,7 @@ class JointLoad(Record):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class ContactLoad(Record):
+class ContactLoad(Record, Measured):
     """Resultant force of contact on a body, friction included, at the steps' ends [N], of `other` or of all; `over` as in JointLoad."""
 
     body: Which
@@ -225,15 +266,80 @@ class ContactLoad(Record):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class Energy(Record):
+class Energy(Record, Measured):
     """Energy of all bodies, joints and springs at the steps' ends [J]; `over` as in JointLoad."""
 
     kind: str  #: "kinetic", "potential", "spring", "total"
     over: str = "end"
 
 
-AnyQuantity = Union[Quantity, Clearance, Mass, Stroke, MarkerPath, MarkerSpeed, JointLoad, ContactLoad, Energy, "_fettle.OpaqueQuantity"]
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class Expression(Record, Measured):
+    """A formula of other quantities, by name, and of parameters: what arithmetic with quantities gives, and
+
+        fettle.Expression("max(left, right) / arm", {"left": left, "right": right, "arm": fettle.Mass([("arm", "volume")])})
+
+    Numbers of a text without a unit count in SI. Its bounds enclose the formula over those of the quantities."""
+
+    formula: "Union[_fettle.Formula, str]" = ""
+    parts: Dict[str, Any] = dataclasses.field(default_factory=dict)  #: quantities
+
+
+AnyQuantity = Union[
+    Quantity, Clearance, Mass, Stroke, MarkerPath, MarkerSpeed, JointLoad, ContactLoad, Energy, Expression, "_fettle.OpaqueQuantity"
+]
+Term = Union[Measured, Operand]  # of an expression
 AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
+
+
+class _AnyBody(List[str]):
+    """Names of bodies, where it does not matter which."""
+
+    def __contains__(self, name: object) -> bool:
+        return True
+
+    def index(self, *_: Any) -> int:
+        return 0
+
+
+def _dimension(quantity: Any) -> str:
+    return _fettle.quantity_dimension(_numbered(quantity, _AnyBody(), []))
+
+
+def _as_part(quantity: Any) -> Tuple["_fettle.Formula", Dict[str, Any]]:
+    """A quantity in an expression; equal ones have one name."""
+    if isinstance(quantity, Expression):
+        return _formula_of(quantity, []), quantity.parts
+    kind = type(quantity).__name__
+    if isinstance(quantity, Record) and not isinstance(quantity, Quantity):
+        members = [(field.name, getattr(quantity, field.name)) for field in dataclasses.fields(quantity)]
+        text = repr([(name, value.tolist() if isinstance(value, np.ndarray) else value) for name, value in members])
+        name = f"{kind}_{zlib.crc32(text.encode()):08x}"
+    else:
+        name = f"{kind}_{id(quantity):x}"
+    return _fettle.measured(name, _dimension(quantity)), {name: quantity}
+
+
+_SIGNS: Dict[str, Callable[[Any, Any], Any]] = {
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv, "**": operator.pow
+}
+
+
+def _combined(sign: str, a: Any, b: Any) -> "Expression":
+    (left, left_parts), (right, right_parts) = (_as_part(x) if isinstance(x, Measured) else (_fettle.formula(x), {}) for x in (a, b))
+    for name in left_parts.keys() & right_parts.keys():
+        if left_parts[name] != right_parts[name]:
+            raise Error([Fault("inconsistent", "expression", f"both sides call a quantity {name!r}, and mean different ones")])
+    return Expression(_SIGNS[sign](left, right), {**left_parts, **right_parts})
+
+
+def _formula_of(expression: "Expression", parameters: Sequence["Parameter"]) -> "_fettle.Formula":
+    if not isinstance(expression.formula, str):
+        return expression.formula
+    unit_of = {dimension: unit for unit, dimension in _fettle.units().items()}
+    units = {parameter.name: parameter.unit or "1" for parameter in parameters}
+    units.update({name: unit_of[_dimension(part)] for name, part in expression.parts.items()})
+    return _fettle.Formula(expression.formula, units)
 
 
 class _Arithmetic:
@@ -371,10 +477,17 @@ class Design(Record):
         dimension than what it bounds."""
         faults: List[Fault] = []
         names = [body.name for body in self.scene.bodies]
+
+        def of(quantity: Any) -> Any:
+            return _numbered(quantity, names, faults, self.parameters)
+
+        scene, numbers = settled_scene(self.scene, {parameter.name: parameter.value for parameter in self.parameters})
         made = dataclasses.replace(
             self,
-            objective=[dataclasses.replace(term, quantity=_numbered(term.quantity, names, faults)) for term in self.objective],
-            constraints=[dataclasses.replace(c, quantity=_numbered(c.quantity, names, faults)) for c in self.constraints],
+            scene=scene,
+            numbers=[*self.numbers, *numbers],
+            objective=[dataclasses.replace(term, quantity=of(term.quantity)) for term in self.objective],
+            constraints=[dataclasses.replace(c, quantity=of(c.quantity)) for c in self.constraints],
         )
         faults = faults or _faults_of_units(made)
         if faults:
@@ -391,9 +504,12 @@ def _body_number(body: Which, names: Sequence[str], where: str, faults: List[Fau
     return 0
 
 
-def _numbered(record: Any, names: Sequence[str], faults: List[Fault]) -> Any:
-    """A quantity with its bodies by number."""
+def _numbered(record: Any, names: Sequence[str], faults: List[Fault], parameters: Sequence[Parameter] = ()) -> Any:
+    """A quantity with its bodies by number, and texts of expressions as formulas."""
     kind = type(record)
+    if kind is Expression:
+        parts = {name: _numbered(part, names, faults, parameters) for name, part in record.parts.items()}
+        return Expression(_formula_of(record, parameters), parts)
     if kind is Mass:
         if all(not isinstance(body, str) for body, _ in record.bodies):
             return record

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A scene as plain data (the library's core/scene/): SI units throughout, vectors of three numbers, rotations as matrices (3, 3). A number that
-has a dimension may be given as a text with a unit; it is in SI once it is there.
+has a dimension may be given as a text with a unit; it is in SI once it is there. In the scene of a design a number that a parameter can move
+(BoundNumber) may be a parameter, or a formula of parameters: `body.position = [crank + rod * fettle.cos(phi), 0, 0]`.
 
     table = fettle.Body("table", type="static", mesh=..., prescribed=fettle.held())
     scene = fettle.Scene(bodies=[table, fettle.Body("cube", mesh=...)], gravity=[0, 0, -9.81], timestep="5ms")
@@ -186,6 +187,15 @@ class Body(Record):
     damping: Damping = dataclasses.field(default_factory=Damping)
     reference_point: Optional[Vector] = number("length", None)  #: in the file's frame [m]
     group: int = -1  #: bodies of one group (>= 0) never collide
+
+    @property
+    def position(self) -> Vector:
+        """The pose's [m]."""
+        return self.pose.position
+
+    @position.setter
+    def position(self, value: Vector) -> None:
+        self.pose.position = value
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)

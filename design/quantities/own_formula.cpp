@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/quantities/own_formula.hpp"
+
+#include <algorithm>
+
+#include "fettle/core/base/contract.hpp"
+
+namespace fettle::design::quantities {
+
+using core::expression::Formula;
+using description::Seeds;
+using description::Simulated;
+
+namespace {
+
+std::vector<double> inputs_of(const Formula& formula, const Simulated& simulated) {
+    std::vector<double> inputs;
+    for (const int position : positions_of(formula, simulated.names)) inputs.push_back(simulated.parameters[position]);
+    return inputs;
+}
+
+}  // namespace
+
+double value_at(const Formula& formula, const Simulated& simulated) {
+    return core::expression::value_of<double>(formula, inputs_of(formula, simulated));
+}
+
+void add_parameter_seed(const std::string& parameter, const Simulated& simulated, double scale, Seeds& seeds) {
+    const auto found = std::find(simulated.names.begin(), simulated.names.end(), parameter);
+    FETTLE_ASSERT(found != simulated.names.end(), "a formula's inputs are parameters of the design");
+    if (seeds.parameters_bar.size() == 0) seeds.parameters_bar = VectorX::Zero(simulated.parameters.size());
+    seeds.parameters_bar[found - simulated.names.begin()] += scale;
+}
+
+void add_formula_seed(const Formula& formula, const Simulated& simulated, double scale, Seeds& seeds) {
+    const VectorX gradient = core::expression::differentiated(formula, inputs_of(formula, simulated)).gradient;
+    for (size_t k = 0; k < formula.inputs.size(); ++k)
+        add_parameter_seed(formula.inputs[k], simulated, scale * gradient[static_cast<Eigen::Index>(k)], seeds);
+}
+
+}  // namespace fettle::design::quantities
