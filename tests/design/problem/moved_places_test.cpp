@@ -5,7 +5,14 @@
 #include <set>
 
 #include "fettle/design/problem/check_design.hpp"
+#include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/problem/moved_scene.hpp"
+#include "fettle/design/quantities/energy.hpp"
+#include "fettle/design/quantities/expression.hpp"
+#include "fettle/design/quantities/joint_load.hpp"
+#include "fettle/design/quantities/marker_speed.hpp"
+#include "fettle/design/quantities/mass.hpp"
+#include "fettle/design/quantities/stroke.hpp"
 #include "fettle/design/shapes/generated_part.hpp"
 #include "fettle/tests/design/linear_numbers.hpp"
 #include "fettle/tests/support/mechanisms.hpp"
@@ -331,6 +338,43 @@ core::expression::Formula random_formula(std::mt19937_64& random, const Design& 
     return *formula;
 }
 
+// Three parameters, and eight numbers of the scene that follow from them. @return the places
+std::set<Place> follow_random_formulas(Design& design, std::mt19937_64& random) {
+    for (const char* name : {"a", "b", "c"}) {
+        Parameter p;
+        p.name = name;
+        p.value = std::uniform_real_distribution<double>(0.3, 0.8)(random);
+        p.lower = 0;
+        p.upper = 1;
+        design.parameters.push_back(p);
+    }
+    const VectorX start = values_of(design.parameters);
+    const core::scene::Scene scene = description::described_scene(design);
+    const std::vector<Place> places = core::scene::places_of(scene);
+    std::set<Place> taken;
+    while (taken.size() < 8) {
+        const Place place = places[std::uniform_int_distribution<std::size_t>(0, places.size() - 1)(random)];
+        const double value = core::scene::value_at(scene, place);
+        if (std::isnan(value) || !core::scene::faults_at(scene, place).empty() || !taken.insert(place).second) continue;
+        core::expression::Formula shape = random_formula(random, design);
+        std::vector<double> inputs;
+        for (const int k : positions_of(shape, names_of(design.parameters))) inputs.push_back(start[k]);
+        const double at_start = core::expression::value_of<double>(shape, inputs);
+        const std::string pointer = pointer_to(scene, place);
+        const bool is_place = pointer.find("position") != std::string::npos || pointer.find("point") != std::string::npos;
+        const double scale = (is_place ? 0.01 : 0.3 * std::max(0.1, std::abs(value))) / std::max(1.0, std::abs(at_start));
+        // value + scale (shape - shape at the start), in the dimension of the place
+        core::expression::Scope scope;
+        scope.names = {{"shape", {}, shape}};
+        char text[200];
+        std::snprintf(text, sizeof text, "%.17g + %.17g * (shape - %.17g)", value, scale, at_start);
+        core::expression::Formula formula = *core::expression::parse_formula(text, scope);
+        formula.dimension = core::expression::powers_of(core::scene::dimension_at(scene, place));
+        design.numbers.push_back({pointer, formula});
+    }
+    return taken;
+}
+
 Model model_at(const Design& design, const VectorX& p, const std::vector<Vector3>& reference_points) {
     const Result<MovedScene> moved = move_scene(design, p);
     REQUIRE(moved);
@@ -404,38 +448,8 @@ TEST_CASE("random formulas at random places: the derivative goes back through bo
     const std::vector<Design> bases = designs();
     for (int run = 0; run < 300; ++run) {
         Design design = bases[static_cast<std::size_t>(run) % bases.size()];
-        for (const char* name : {"a", "b", "c"}) {
-            Parameter p;
-            p.name = name;
-            p.value = std::uniform_real_distribution<double>(0.3, 0.8)(random);
-            p.lower = 0;
-            p.upper = 1;
-            design.parameters.push_back(p);
-        }
+        follow_random_formulas(design, random);
         const VectorX start = values_of(design.parameters);
-        const core::scene::Scene scene = description::described_scene(design);
-        const std::vector<Place> places = core::scene::places_of(scene);
-        std::set<Place> taken;
-        while (taken.size() < 8) {
-            const Place place = places[std::uniform_int_distribution<std::size_t>(0, places.size() - 1)(random)];
-            const double value = core::scene::value_at(scene, place);
-            if (std::isnan(value) || !core::scene::faults_at(scene, place).empty() || !taken.insert(place).second) continue;
-            core::expression::Formula shape = random_formula(random, design);
-            std::vector<double> inputs;
-            for (const int k : positions_of(shape, names_of(design.parameters))) inputs.push_back(start[k]);
-            const double at_start = core::expression::value_of<double>(shape, inputs);
-            const std::string pointer = pointer_to(scene, place);
-            const bool is_place = pointer.find("position") != std::string::npos || pointer.find("point") != std::string::npos;
-            const double scale = (is_place ? 0.01 : 0.3 * std::max(0.1, std::abs(value))) / std::max(1.0, std::abs(at_start));
-            // value + scale (shape - shape at the start), in the dimension of the place
-            core::expression::Scope scope;
-            scope.names = {{"shape", {}, shape}};
-            char text[200];
-            std::snprintf(text, sizeof text, "%.17g + %.17g * (shape - %.17g)", value, scale, at_start);
-            core::expression::Formula formula = *core::expression::parse_formula(text, scope);
-            formula.dimension = core::expression::powers_of(core::scene::dimension_at(scene, place));
-            design.numbers.push_back({pointer, formula});
-        }
         std::vector<Vector3> reference_points;
         for (const core::model::Body& body : model_at(design, start, {}).bodies) reference_points.push_back(body.reference_point);
         const Model model = model_at(design, start, reference_points);
@@ -485,6 +499,101 @@ TEST_CASE("a trial whose spring, damper or coefficient of friction is 0 is refus
         }
     }
     CHECK(refused > 12);
+}
+
+// A random formula of what is measured of a mechanism, and of the parameters.
+std::shared_ptr<const description::Quantity> random_expression(std::mt19937_64& random, const Design& design) {
+    using quantities::NamedQuantity, quantities::Over;
+    const core::scene::Mechanism& mechanism = design.scene.mechanism;
+    const auto one_of = [&](std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(random); };
+    const auto over = [&] { return std::array{Over::end, Over::sum, Over::mean}[one_of(3)]; };
+    const int body = static_cast<int>(one_of(design.scene.bodies.size()));
+    const std::vector<NamedQuantity> parts{
+        {"travel", std::make_shared<quantities::Stroke>(body, Vector3(1, 2, 2) / 3, std::nullopt)},
+        {"speed",
+         std::make_shared<quantities::MarkerSpeed>(quantities::MarkerSpeed::Of{body, Vector3(0.1, 0, 0.05), Vector3::UnitY()}, over())},
+        {"work", std::make_shared<quantities::Energy>(quantities::EnergyKind::spring, over())},
+        {"load",
+         std::make_shared<quantities::JointLoad>(
+             quantities::JointLoad::Of{quantities::JointLoadKind::force,
+                                       mechanism.joints[one_of(std::min<std::size_t>(2, mechanism.joints.size()))].name, Vector3::UnitZ()},
+             over())},
+        {"matter", std::make_shared<quantities::Mass>(design.scene, std::vector<int>{body})}};
+    const std::vector<std::string> plain{
+        "travel / 1 m", "speed / 1 m * 1 s", "work / 1 N / 1 m", "load / 1 N", "matter / 1 kg", "a", "b", "c"};
+    const auto operand = [&] { return "(" + plain[one_of(plain.size())] + ")"; };
+    const std::string x = operand(), y = operand(), z = operand();
+    const std::vector<std::string> texts{x + " * " + y + " + " + z,
+                                         x + " - 2 * " + y + " * " + z,
+                                         x + " / (2 + " + y + "^2) + " + z,
+                                         "sin(" + x + ") * hypot(1 + " + y + ", " + z + ")",
+                                         "log(2 + " + x + "^2) - atan(" + y + ") / 1 rad * " + z,
+                                         "max(" + x + ", " + x + " - 1) * " + y + " + exp(-" + z + "^2)"};
+    const std::string text = texts[one_of(texts.size())];
+    INFO(text);
+    const auto made = quantities::Expression::parse(text, parts, design.parameters);
+    for (const Error& error : made.errors()) UNSCOPED_INFO(error.message);
+    REQUIRE(made);
+    return *made;
+}
+
+TEST_CASE("random designs of random expressions: the adjoint of whole simulations against differences", "[joints][slow]") {
+    std::mt19937_64 random(341);
+    const std::vector<Design> bases = designs();
+    std::set<int> rows;
+    int runs = 0, resolved = 0, wrong = 0, found = 0, not_usable = 0;
+    double worst = 0;
+    for (; runs < 300; ++runs) {
+        Design design = bases[static_cast<std::size_t>(runs) % bases.size()];
+        design.scene.velocity_tolerance = 1e-10;
+        for (const Place& place : follow_random_formulas(design, random)) rows.insert(place.row);
+        description::ObjectiveTerm term;
+        term.name = "objective";
+        term.quantity = random_expression(random, design);
+        design.objective = {term};
+        const auto problem = DesignProblem::create(design);
+        for (const Error& error : problem.errors()) UNSCOPED_INFO(error.where + ": " + error.message);
+        REQUIRE(problem);
+        const VectorX start = values_of(design.parameters);
+        const DesignEvaluation at = problem->evaluate(start);
+        if (!at.usable) {
+            WARN("run " << runs << ": " << at.reason);
+            ++not_usable;
+            continue;
+        }
+        for (Eigen::Index k = 0; k < 3; ++k) {
+            const auto objective = [&](double s) { return problem->evaluate(start + s * VectorX::Unit(3, k), {false, {}, {}}).objective; };
+            std::vector<double> estimates;
+            for (const double s : {1e-2, 3e-3, 1e-3, 3e-4}) {
+                const double wide = (objective(s) - objective(-s)) / (2 * s), fine = (objective(s / 2) - objective(-s / 2)) / s;
+                estimates.push_back((4 * fine - wide) / 3);
+            }
+            // How far the differences themselves are known: two neighbours that agree.
+            double noise = INFINITY, best = NAN;
+            for (std::size_t i = 1; i < estimates.size(); ++i) {
+                const double apart = std::abs(estimates[i] - estimates[i - 1]);
+                if (!(apart < noise)) continue;
+                noise = apart;
+                best = estimates[i];
+            }
+            const double scale = std::max({std::abs(at.gradient[k]), 1e-3 * at.gradient.cwiseAbs().maxCoeff(), 1e-6});
+            if (!(noise < 3e-7 * scale)) continue;
+            ++resolved;
+            const double error = std::abs(best - at.gradient[k]) / scale;
+            worst = std::max(worst, error);
+            CAPTURE(runs, k, at.gradient[k], best, noise);
+            CHECK(error < 1e-6);
+            if (std::abs(at.gradient[k]) < scale) continue;
+            ++wrong;
+            found += std::abs(best - 1.00001 * at.gradient[k]) / scale > 1e-6;
+        }
+    }
+    WARN("runs " << runs << ", derivatives resolved " << resolved << " of " << 3 * runs << ", worst error " << worst);
+    CHECK(not_usable < 15);
+    CHECK(resolved > 600);
+    CHECK(wrong > 400);
+    CHECK(found == wrong);                                                     // a derivative that is off by a hundred thousandth
+    CHECK(rows.size() == static_cast<std::size_t>(core::scene::row_count()));  // every place
 }
 
 }  // namespace fettle::design::problem::moved_places_test
