@@ -243,7 +243,7 @@ std::shared_ptr<const Quantity> marker_path_from(py::handle q, const MembersOf& 
         py::list numbers;
         for (const py::handle coordinate : target) {
             const bool follows = is_followed(coordinate);
-            if (follows) moved.push_back({static_cast<int>(targets.size()), static_cast<int>(numbers.size()), formula_from(coordinate)});
+            if (follows) moved.push_back({count_of(targets), count_of(numbers), formula_from(coordinate)});
             numbers.append(follows ? py::object(py::float_(0.0)) : py::reinterpret_borrow<py::object>(coordinate));
         }
         targets.append(numbers);
@@ -333,8 +333,8 @@ py::object moved_targets(const quantities::MarkerPath& path) {
         targets.append(numbers);
     }
     for (const quantities::MovedCoordinate& each : path.moved()) {
-        const py::list numbers = targets[static_cast<std::size_t>(each.target)];
-        numbers[static_cast<std::size_t>(each.axis)] = py::cast(each.formula);
+        const py::list numbers = targets[each.target];
+        numbers[each.axis] = py::cast(each.formula);
     }
     return std::move(targets);
 }

@@ -80,7 +80,7 @@ Measurement Expression::value(const Simulated& simulated) const {
         if (out.fault.empty()) out.fault = measured.fault;
         out.parts.push_back(std::move(measured));
     }
-    const auto at = [&](int part) -> const Measurement& { return out.parts[static_cast<size_t>(part)]; };
+    const auto at = [&](int part) -> const Measurement& { return out.parts[part]; };
     const std::vector<double> values = inputs<double>(simulated, [&](int part) { return at(part).value; });
     out.value = out.lower = out.upper = core::expression::value_of<double>(formula_, values);
     if (exact) return out;
@@ -92,10 +92,10 @@ Measurement Expression::value(const Simulated& simulated) const {
 }
 
 void Expression::add_seeds(const Simulated& simulated, const Measurement& measured, double scale, Seeds& seeds) const {
-    const std::vector<double> values = inputs<double>(simulated, [&](int part) { return measured.parts[static_cast<size_t>(part)].value; });
+    const std::vector<double> values = inputs<double>(simulated, [&](int part) { return measured.parts[part].value; });
     const VectorX gradient = core::expression::differentiated(formula_, values).gradient;
     for (size_t k = 0; k < formula_.inputs.size(); ++k) {
-        const double slope = scale * gradient[static_cast<Eigen::Index>(k)];
+        const double slope = scale * gradient[k];
         const int part = part_of(formula_.inputs[k]);
         if (slope == 0) continue;  // the side of min, max or if that is not taken may have no derivative
         if (!std::isfinite(slope)) {
@@ -106,7 +106,7 @@ void Expression::add_seeds(const Simulated& simulated, const Measurement& measur
         if (part < 0)
             add_parameter_seed(formula_.inputs[k], simulated, slope, seeds);
         else
-            parts_[static_cast<size_t>(part)].quantity->add_seeds(simulated, measured.parts[static_cast<size_t>(part)], slope, seeds);
+            parts_[part].quantity->add_seeds(simulated, measured.parts[part], slope, seeds);
     }
 }
 

@@ -26,7 +26,7 @@ MarkerPath::MarkerPath(int body, const Vector3& point, std::vector<Vector3> targ
 
 std::vector<Vector3> MarkerPath::targets_at(const Simulated& simulated) const {
     std::vector<Vector3> targets = targets_;
-    for (const MovedCoordinate& each : moved_) targets[static_cast<size_t>(each.target)][each.axis] = value_at(each.formula, simulated);
+    for (const MovedCoordinate& each : moved_) targets[each.target][each.axis] = value_at(each.formula, simulated);
     return targets;
 }
 

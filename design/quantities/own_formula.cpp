@@ -34,8 +34,7 @@ void add_parameter_seed(const std::string& parameter, const Simulated& simulated
 
 void add_formula_seed(const Formula& formula, const Simulated& simulated, double scale, Seeds& seeds) {
     const VectorX gradient = core::expression::differentiated(formula, inputs_of(formula, simulated)).gradient;
-    for (size_t k = 0; k < formula.inputs.size(); ++k)
-        add_parameter_seed(formula.inputs[k], simulated, scale * gradient[static_cast<Eigen::Index>(k)], seeds);
+    for (size_t k = 0; k < formula.inputs.size(); ++k) add_parameter_seed(formula.inputs[k], simulated, scale * gradient[k], seeds);
 }
 
 }  // namespace fettle::design::quantities

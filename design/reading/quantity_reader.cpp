@@ -43,15 +43,15 @@ std::optional<Vector3> read_moved_point(const JsonNode& entry, int index, const 
     const std::vector<JsonNode> numbers = entry.is_array() ? entry.elements() : std::vector<JsonNode>();
     std::vector<quantities::MovedCoordinate> found;
     for (int axis = 0; numbers.size() == 3 && axis < 3; ++axis)
-        if (auto formula = context.formulas.followed(numbers[static_cast<size_t>(axis)], Dimension::length, context.length_unit))
+        if (auto formula = context.formulas.followed(numbers[axis], Dimension::length, context.length_unit))
             found.push_back({index, axis, std::move(*formula)});
     if (found.empty()) return entry.length3(context.length_unit);
     Vector3 point = Vector3::Zero();
     for (int axis = 0; axis < 3; ++axis) {
         const auto is_here = [&](const quantities::MovedCoordinate& each) { return each.axis == axis; };
         const auto at = std::find_if(found.begin(), found.end(), is_here);
-        const auto number = at != found.end() ? std::optional(context.formulas.value_of(at->formula))
-                                              : numbers[static_cast<size_t>(axis)].length(context.length_unit);
+        const auto number =
+            at != found.end() ? std::optional(context.formulas.value_of(at->formula)) : numbers[axis].length(context.length_unit);
         if (!number) return std::nullopt;
         point[axis] = *number;
     }

@@ -101,7 +101,7 @@ TEST_CASE("a bound that follows from parameters enters its constraint with its d
         expected(0, parameter) -= slope;
         CHECK(largest(at.jacobian.row(i) - expected) < 1e-14);
     };
-    const auto value = [&](int i) { return at.constraints[static_cast<size_t>(i)].value; };
+    const auto value = [&](int i) { return at.constraints[i].value; };
     CHECK(constraints[4].name == "stroke cube - (height / 20)");
     CHECK(value(4) == Approx(value(0) - 0.01 / 20).epsilon(1e-14));
     CHECK(constraints[4].bounds.lower == 0);
@@ -144,7 +144,7 @@ TEST_CASE("targets that follow from parameters: value, gradient and curvature") 
         const std::vector<std::string> plain{"4", "2", "7", "8", "3", "6"};
         const auto with = [&](int k, double change) {
             std::vector<std::string> numbers = plain;
-            if (k >= 0) numbers[static_cast<size_t>(k)] = std::to_string(std::stod(numbers[static_cast<size_t>(k)]) + change);
+            if (k >= 0) numbers[k] = std::to_string(std::stod(numbers[k]) + change);
             return along(
                 "[[" + numbers[0] + "," + numbers[1] + "," + numbers[2] + "],[" + numbers[3] + "," + numbers[4] + "," + numbers[5] + "]]",
                 times);
