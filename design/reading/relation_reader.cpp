@@ -92,6 +92,11 @@ private:
             return std::nullopt;
         }
         const Result<Formula> constant = core::expression::parse_formula(*node.string(), {.what = "parameter"});
+        if (!constant && core::expression::parse_formula(*node.string(), scope_)) {
+            node.fail(ErrorCode::unsupported,
+                      "a relation's bound follows from no parameter: subtract it from the expression, and bound the difference by 0");
+            return std::nullopt;
+        }
         if (!constant) {
             for (const Error& error : constant.errors()) node.fail(error.code, error.message);
             return std::nullopt;

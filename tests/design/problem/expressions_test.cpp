@@ -221,6 +221,7 @@ TEST_CASE("faults of expressions are told with their place and a remedy") {
          "#/constraints/0/lower", "above the upper bound");
     told(fine, R"({ "type": "clearance", "a": "cube", "b": "wall", "minimum": "= place - 1 cm" })", "#/constraints/0/minimum",
          "greater than 0");
+    told(fine, R"({ "type": "relation", "expression": "height", "upper": "= 2 * width" })", "#/constraints/0/upper", "subtract it");
     const auto named = [&](const std::string& quantity) {
         return errors_of(replaced(design_with(fine, ""), "\"quantities\": {", "\"quantities\": { " + quantity + ","));
     };
