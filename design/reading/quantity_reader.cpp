@@ -322,7 +322,7 @@ const std::vector<QuantityType>& quantity_table() {
          {"expression"},
          read_expression,
          expression_name,
-         "that of what it says",
+         "by its dimension",
          "a formula of the design's named `quantities` and parameters, such as `max_force / mass`"}};
     return table;
 }
