@@ -60,6 +60,7 @@ from ._fettle import (
     judge_mesh as judge_mesh,
     log as log,
     maximum as maximum,
+    measured as measured,
     minimum as minimum,
     optimise as optimise,
     optimise_file as optimise_file,
