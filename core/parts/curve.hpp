@@ -14,6 +14,7 @@
 #include "fettle/core/parts/facets.hpp"
 #include "fettle/core/parts/jet.hpp"
 #include "fettle/core/parts/point.hpp"
+#include "fettle/core/parts/range.hpp"
 
 namespace fettle::core::parts {
 
@@ -42,13 +43,23 @@ struct Law {
     std::function<std::array<Number, 2>(const Number&)> point;
     std::function<std::array<Jet<Number>, 2>(const Jet<Number>&)> jet;
     std::function<std::array<Jet<double>, 2>(const Jet<double>&)> bend;
+    /// Over a stretch of the parameter; and with more derivatives, which an offset needs.
+    std::function<std::array<Jet<Range>, 2>(const Jet<Range>&)> ranges;
+    std::function<std::array<Jet<Jet<Range>>, 2>(const Jet<Jet<Range>>&)> higher_ranges;
 
     Law() = default;
     template <class Function>
-    explicit Law(Function f) : point(f), jet(f), bend(f) {}
+    explicit Law(Function f) {
+        const auto shared = std::make_shared<const Function>(std::move(f));
+        point = [shared](const Number& t) { return (*shared)(t); };
+        jet = [shared](const Jet<Number>& t) { return (*shared)(t); };
+        bend = [shared](const Jet<double>& t) { return (*shared)(t); };
+        ranges = [shared](const Jet<Range>& t) { return (*shared)(t); };
+        higher_ranges = [shared](const Jet<Jet<Range>>& t) { return (*shared)(t); };
+    }
 
-    /// Largest |second derivative| over a range of the parameter [m / parameter^2]; without it the law is sampled, and what is said of the
-    /// curve's distance from its chords is found, not proven.
+    /// Largest |second derivative| over a range of the parameter [m / parameter^2], where there is a closed form; else the law is evaluated
+    /// on ranges (law_chords.hpp).
     std::function<double(double from, double to)> largest_bend;
     bool turns_one_way = false;  ///< promises that it has no inflection
 

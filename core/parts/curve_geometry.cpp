@@ -7,11 +7,13 @@
 #include <numbers>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/parts/law_chords.hpp"
 
 namespace fettle::core::parts {
 namespace {
 
 constexpr double full_turn = 2 * std::numbers::pi;
+constexpr int most_facets = 100'000;
 
 template <class... Visitors>
 struct Overloaded : Visitors... {
@@ -80,6 +82,22 @@ std::array<Jet<T>, 2> jet_beside(const std::array<Jet<T>, 2>& p, const T& distan
             Jet<T>(p[1].value + distance * x / speed, y - distance * turn * y / speed, none)};
 }
 
+// The same over a stretch, with the second derivative. With the derivatives p1, p2, p3 of the law, its speed s and its curvature k they are
+//     (1 - d k) p1,   (1 - d k) p2 - d k' p1,   where   k' = (x1 y3 - y1 x3) / s^3 - 3 k (p1 . p2) / s^2.
+std::array<Jet<Range>, 2> ranges_beside(const Law& law, double distance, const Jet<Range>& t) {
+    const auto [x, y] = law.higher_ranges({Jet<Range>::parameter(t.value), Jet<Range>(1.0), Jet<Range>(0.0)});
+    const Range x1 = x.first.value, x2 = x.second.value, x3 = x.second.first, y1 = y.first.value, y2 = y.second.value, y3 = y.second.first;
+    const Range speed = hypot(x1, y1), square = speed * speed, cube = square * speed;
+    const Range curvature = (x1 * y2 - y1 * x2) / cube;
+    const Range change = (x1 * y3 - y1 * x3) / cube - 3.0 * (curvature * (x1 * x2 + y1 * y2)) / square;
+    const Range along = 1.0 - distance * curvature, bent = distance * change;
+    const auto chained = [&](const Range& place, const Range& p1, const Range& p2) {
+        const Range first = along * p1, second = along * p2 - bent * p1;
+        return Jet<Range>(place, first * t.first, second * (t.first * t.first) + first * t.second);
+    };
+    return {chained(x.value.value - distance * (y1 / speed), x1, x2), chained(y.value.value + distance * (x1 / speed), y1, y2)};
+}
+
 std::shared_ptr<const Law> law_beside(const std::shared_ptr<const Law>& law, const Number& distance) {
     const auto base = law->offset_of ? law->offset_of : law;
     const Number all = law->offset_distance + distance;
@@ -99,6 +117,7 @@ std::shared_ptr<const Law> law_beside(const std::shared_ptr<const Law>& law, con
         return p;
     };
     const double distance_value = all.value;
+    out->ranges = [base, distance_value](const Jet<Range>& t) { return ranges_beside(*base, distance_value, t); };
     out->bend = [base, distance_value](const Jet<double>& t) {
         const auto jet = [&](double at) { return jet_beside(base->bend(Jet<double>::parameter(at)), distance_value); };
         auto p = jet(t.value);
@@ -123,6 +142,8 @@ std::shared_ptr<const Law> placed_law(const std::shared_ptr<const Law>& law, con
     out->point = [law, map](const Number& t) { return map(law->point(t)); };
     out->jet = [law, map](const Jet<Number>& t) { return map(law->jet(t)); };
     out->bend = [law, map](const Jet<double>& t) { return map(law->bend(t)); };
+    out->ranges = [law, map](const Jet<Range>& t) { return map(law->ranges(t)); };
+    if (law->higher_ranges) out->higher_ranges = [law, map](const Jet<Jet<Range>>& t) { return map(law->higher_ranges(t)); };
     out->largest_bend = law->largest_bend;
     out->turns_one_way = law->turns_one_way;
     if (law->offset_of) {
@@ -160,6 +181,18 @@ double bend_over(const Curve& curve, double from, double to, bool& proven) {
     constexpr int samples = 8;
     for (int k = 0; k <= samples; ++k) largest = std::max(largest, bending(curve, from + (to - from) * k / samples).norm());
     return 1.1 * largest;
+}
+
+// Of a law's curve without a closed form: bound of its distance from its facets, `side` as it runs; nothing where it has none.
+std::optional<ChordDeviation> law_deviation(const Curve& curve, int count) {
+    const auto* law_curve = std::get_if<LawCurve>(&curve);
+    if (law_curve == nullptr || law_curve->law->largest_bend) return std::nullopt;
+    const double from = law_curve->from.value, to = law_curve->to.value;
+    if (!(from < to || to < from)) return std::nullopt;
+    ChordDeviation out = chord_deviation(*law_curve->law, std::min(from, to), std::max(from, to), count);
+    if (!std::isfinite(out.distance)) return std::nullopt;
+    if (to < from) out.side = -out.side;
+    return out;
 }
 
 // Which way it bends over a range: 1 left, -1 right, 0 unknown. Proven of Beziers and of laws that promise it.
@@ -448,7 +481,15 @@ int facet_count(const Curve& curve, const Facets& facets) {
     if (const auto* arc = std::get_if<Arc>(&curve)) return segments_of(facets, arc->radius.value, sweep_value(*arc));
     if (!(facets.chord > 0)) return std::max(1, static_cast<int>(std::ceil(facets.segments * turning(curve) / full_turn - 1e-6)));
     bool proven = true;
-    return std::clamp(static_cast<int>(std::ceil(std::sqrt(bend_over(curve, 0, 1, proven) / (8 * facets.chord)) - 1e-9)), 1, 100000);
+    const double least = std::sqrt(bend_over(curve, 0, 1, proven) / (8 * facets.chord));
+    int count = std::clamp(static_cast<int>(std::ceil(least - 1e-9)), 1, most_facets);
+    // More where the proven bound is not yet within the chord; the bound falls with the square of the count.
+    for (int k = 0; k < 3; ++k) {
+        const auto deviation = law_deviation(curve, count);
+        if (!deviation || deviation->distance <= facets.chord) break;
+        count = std::clamp(static_cast<int>(std::ceil(count * 1.02 * std::sqrt(deviation->distance / facets.chord))), count, most_facets);
+    }
+    return count;
 }
 
 Chain chain_of(const Curve& curve, int count, Lean lean) {
@@ -478,6 +519,11 @@ Chain chain_of(const Curve& curve, int count, Lean lean) {
         return chain;
     }
     for (int k = 1; k < count; ++k) chain.inner.push_back(point_at(curve, static_cast<double>(k) / count));
+    if (const auto deviation = law_deviation(curve, count)) {
+        chain.out = deviation->side >= 0 ? deviation->distance : 0;
+        chain.in = deviation->side <= 0 ? deviation->distance : 0;
+        return chain;
+    }
     for (int k = 0; k < count; ++k) {
         const double from = static_cast<double>(k) / count, to = static_cast<double>(k + 1) / count;
         const double bound = bend_over(curve, from, to, chain.proven) * (to - from) * (to - from) / 8;

@@ -12,7 +12,8 @@
 
 namespace fettle::core::parts {
 
-/// @tparam T  Number: derivatives are recorded as well; double: at the present values of all dimensions.
+/// @tparam T  Number: derivatives are recorded as well; double: at the present values of all dimensions; Range (range.hpp): all values
+///            over a stretch of the parameter; a Jet: up to the fourth derivative.
 template <class T>
 struct Jet {
     T value = 0, first = 0, second = 0;
@@ -42,6 +43,7 @@ struct Jet {
         return {q, dq, (a.second - 2.0 * (dq * b.first) - q * b.second) / b.value};
     }
 
+    friend bool operator==(const Jet& a, const Jet& b) { return a.value == b.value && a.first == b.first && a.second == b.second; }
     friend bool operator<(const Jet& a, const Jet& b) { return a.value < b.value; }
     friend bool operator>(const Jet& a, const Jet& b) { return a.value > b.value; }
     friend bool operator<=(const Jet& a, const Jet& b) { return a.value <= b.value; }
