@@ -13,10 +13,10 @@ namespace {
 using geometry::upper;
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
-constexpr std::size_t most_cells = 600;   // until a law is known wherever it is smooth
-constexpr std::size_t enough_cells = 64;  // for a bound that is near to the truth
-constexpr double near_enough = 1.15;      // a bound against what samples find
-constexpr double shortest = 0x1p-20;      // of a step: a switch is known no better
+constexpr std::size_t most_cells = 600;  // until a law is known wherever it is smooth
+constexpr int most_cuts = 64;            // for a bound that is near to the truth
+constexpr double near_enough = 1.15;     // a bound against what samples find
+constexpr double shortest = 0x1p-20;     // of a step: a switch is known no better
 
 using RangePoint = std::array<Jet<Range>, 2>;
 
@@ -125,7 +125,7 @@ ChordDeviation chord_deviation(const Law& law, double low, double high, int coun
         if (!is_known(cell)) rest.push_back(cell);
     cells.erase(std::remove_if(cells.begin(), cells.end(), [](const Cell& cell) { return !is_known(cell); }), cells.end());
     std::make_heap(cells.begin(), cells.end(), less);
-    while (!cells.empty() && cells.size() < enough_cells && cells.front().bend > near_enough * found + negligible) {
+    for (int cut = 0; cut < most_cuts && !cells.empty() && cells.front().bend > near_enough * found + negligible; ++cut) {
         std::pop_heap(cells.begin(), cells.end(), less);
         const Cell cell = cells.back();
         cells.pop_back();

@@ -83,6 +83,16 @@ std::vector<Case> cases() {
         },
         0, 2, 2, 0);
     add(
+        "rise, dwell, fall, rest",
+        [](const auto& t) {
+            const auto s = t / 1.7, v = (t - 2.5) / 2.0;
+            const auto rise = pow(s, 3.0) * (10.0 - s * (15.0 - 6.0 * s)), fall = 1.0 - pow(v, 3.0) * (10.0 - v * (15.0 - 6.0 * v));
+            const auto one = 0.0 * t + 1.0;
+            const auto r = 20.0 + 6.0 * choose(t - 1.7, rise, choose(t - 2.5, one, choose(t - 4.5, fall, 0.0 * t)));
+            return std::array{r * cos(t), r * sin(t)};
+        },
+        0, 6.28, 1.6, 0);
+    add(
         "corner",
         [](const auto& t) {
             return std::array{t, 0.1 * abs(t - 0.31)};
