@@ -131,8 +131,8 @@ Meeting recorded(const Curve& a, const Curve& b, double u, double v) {
     return out;
 }
 
-void add_general(const Curve& a, const Curve& b, double tolerance, std::vector<Meeting>& out) {
-    const auto of_a = samples_of(a, tolerance), of_b = samples_of(b, tolerance);
+void add_general(const Curve& a, const std::vector<Sample>& of_a, const Curve& b, const std::vector<Sample>& of_b, double tolerance,
+                 std::vector<Meeting>& out) {
     for (const Sample& x : of_a) {
         for (const Sample& y : of_b) {
             if (!x.box.meets(y.box)) continue;
@@ -157,10 +157,12 @@ std::vector<Point2> closed_form(const Curve& a, const Curve& b, double tolerance
     return points;
 }
 
-// u of a point on the curve, with its end snapped; nothing if it is beside the curve.
-std::optional<double> parameter_on(const Curve& curve, const Vector2& p, double tolerance) {
+// u of a point on the curve, with its end snapped; nothing if it is beside the curve. `samples`: boxes that hold it; none: not looked at.
+std::optional<double> parameter_on(const Curve& curve, const std::vector<Sample>& samples, const Vector2& p, double tolerance) {
     if ((p - value(start_of(curve))).norm() <= tolerance) return 0;
     if ((p - value(end_of(curve))).norm() <= tolerance) return 1;
+    const auto is_near = [&](const Sample& sample) { return sample.box.meets({p, p}); };
+    if (!samples.empty() && std::none_of(samples.begin(), samples.end(), is_near)) return std::nullopt;
     const double u = nearest_parameter(curve, p);
     if ((at(curve, u).position - p).norm() > tolerance) return std::nullopt;
     return u;
@@ -175,7 +177,7 @@ Cut cut_at(const Curve& curve, double u, const Point2& point) {
 std::vector<Meeting> extended_meetings(const Curve& a, const Curve& b, double tolerance) {
     std::vector<Meeting> out;
     if (is_general(a) || is_general(b)) {
-        add_general(a, b, tolerance, out);
+        add_general(a, samples_of(a, tolerance), b, samples_of(b, tolerance), tolerance, out);
         return out;
     }
     for (const Point2& p : closed_form(a, b, tolerance)) {
@@ -187,13 +189,16 @@ std::vector<Meeting> extended_meetings(const Curve& a, const Curve& b, double to
 
 std::vector<Meeting> meetings(const Curve& a, const Curve& b, double tolerance) {
     std::vector<Meeting> out;
+    const bool general = is_general(a) || is_general(b);
+    const std::vector<Sample> of_a = general ? samples_of(a, tolerance) : std::vector<Sample>(),
+                              of_b = general ? samples_of(b, tolerance) : std::vector<Sample>();
     const auto is_new = [&](const Vector2& p) {
         return std::none_of(out.begin(), out.end(), [&](const Meeting& m) { return (value(m.on_a.point) - p).norm() <= 2 * tolerance; });
     };
     const auto add_ends = [&](const Curve& of, const Curve& on, bool of_is_a) {
         for (const double u : {0.0, 1.0}) {
             const Point2& p = u == 0 ? start_of(of) : end_of(of);
-            const auto v = parameter_on(on, value(p), tolerance);
+            const auto v = parameter_on(on, of_is_a ? of_b : of_a, value(p), tolerance);
             if (!v || !is_new(value(p))) continue;
             // An end on an end: the point of a.
             const Point2& point = !of_is_a && *v == 0 ? start_of(on) : !of_is_a && *v == 1 ? end_of(on) : p;
@@ -203,20 +208,22 @@ std::vector<Meeting> meetings(const Curve& a, const Curve& b, double tolerance) 
     };
     add_ends(a, b, true);
     add_ends(b, a, false);
-    if (is_general(a) || is_general(b)) {
+    if (general) {
         std::vector<Meeting> found;
-        add_general(a, b, tolerance, found);
+        add_general(a, of_a, b, of_b, tolerance, found);
         for (Meeting& m : found)
             if (is_new(value(m.on_a.point))) out.push_back(m);
         return out;
     }
     // Decided on plain numbers, recorded where they meet.
-    const auto on_both = [&](const Vector2& p) { return is_new(p) && parameter_on(a, p, tolerance) && parameter_on(b, p, tolerance); };
+    const auto on_both = [&](const Vector2& p) {
+        return is_new(p) && parameter_on(a, {}, p, tolerance) && parameter_on(b, {}, p, tolerance);
+    };
     const auto plain = closed_form(frozen(a), frozen(b), tolerance);
     if (std::none_of(plain.begin(), plain.end(), [&](const Point2& p) { return on_both(value(p)); })) return out;
     for (const Point2& p : closed_form(a, b, tolerance)) {
         if (!on_both(value(p))) continue;
-        const double u = *parameter_on(a, value(p), tolerance), v = *parameter_on(b, value(p), tolerance);
+        const double u = *parameter_on(a, {}, value(p), tolerance), v = *parameter_on(b, {}, value(p), tolerance);
         out.push_back({{u, u, p}, {v, v, p}});
     }
     return out;
