@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "fettle/design/answers/optimise_json.hpp"
-#include "fettle/design/cli/finding_files.hpp"
 #include "fettle/design/cli/console.hpp"
+#include "fettle/design/cli/finding_files.hpp"
 
 namespace fettle::design::cli {
 

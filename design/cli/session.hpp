@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/cli/finding_files.hpp"
 #include "fettle/design/cli/command_line.hpp"
 #include "fettle/design/cli/console.hpp"
+#include "fettle/design/cli/finding_files.hpp"
 #include "fettle/design/cli/named_files.hpp"
 
 namespace fettle::design::cli {
@@ -20,7 +20,7 @@ struct CommonOptions {
     std::vector<std::string> mesh_dirs;
     std::string log;              ///< file for narration and progress; empty: none
     std::string command;          ///< what was typed, for those who read its results
-    FindingFiles finding_files;       ///< what was found, for those who show it beside a project
+    FindingFiles finding_files;   ///< what was found, for those who show it beside a project
     GivenFiles given;             ///< for outputs whose names only the work shows: replaced_inputs()
     bool allow_programs = false;  ///< parts of a scene may be made by the programs that it names
 };
