@@ -17,7 +17,7 @@ VectorX gather(const FreeDofs& dofs, const std::vector<Vector6>& values) {
     return out;
 }
 
-void scatter(const FreeDofs& dofs, const VectorX& free_values, std::vector<Vector6>& values) {
+void scatter(const FreeDofs& dofs, const Eigen::Ref<const VectorX>& free_values, std::vector<Vector6>& values) {
     for (std::size_t body = 0; body < values.size(); ++body) {
         const std::array<int, 6>& index = dofs.index[body];
         if (are_all_free(index)) {

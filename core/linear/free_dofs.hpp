@@ -38,6 +38,6 @@ inline bool is_none_free(const std::array<int, 6>& index) {
 
 /// Entries of the free DOFs of a per-body vector, and back (prescribed entries are left alone).
 VectorX gather(const FreeDofs& dofs, const std::vector<Vector6>& values);
-void scatter(const FreeDofs& dofs, const VectorX& free_values, std::vector<Vector6>& values);
+void scatter(const FreeDofs& dofs, const Eigen::Ref<const VectorX>& free_values, std::vector<Vector6>& values);
 
 }  // namespace fettle::core::linear

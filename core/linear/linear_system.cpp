@@ -17,32 +17,73 @@ namespace {
 constexpr int most_refinements = 6;
 constexpr double refined_enough = 1e-15;  // of what rounding is measured by
 
-// The sums of magnitudes that the residual of column k is the difference of: the largest of a force's, and of a row's.
-std::array<double, 2> magnitudes(const BlockHessian& hessian, const RowJacobian& rows, const FreeDofs& dofs, const VectorX& r,
-                                 const VectorX& c, const LinearSystem::Solution& x, Eigen::Index k) {
-    std::vector<Vector6> y(dofs.index.size(), Vector6::Zero());
-    scatter(dofs, x.y.col(k).cwiseAbs(), y);
-    std::vector<Vector6> sum(y.size());
-    for (std::size_t i = 0; i < y.size(); ++i) sum[i] = hessian.diagonal[i].cwiseAbs() * y[i];
-    for (const OffDiagonalBlock& b : hessian.off_diagonal) {
-        sum[b.a] += b.block.cwiseAbs() * y[b.b];
-        sum[b.b] += b.block.transpose().cwiseAbs() * y[b.a];
-    }
-    VectorX of_rows = c.cwiseAbs();
-    for (int i = 0; i < rows.count(); ++i)
-        for (int e = rows.first[i]; e < rows.first[i + 1]; ++e) {
-            const Vector6 gradient = rows.entries[e].gradient.cwiseAbs();
-            sum[rows.entries[e].body] += std::abs(x.multipliers(i, k)) * gradient;
-            of_rows[i] += gradient.dot(y[rows.entries[e].body]);
-        }
-    const VectorX of_forces = r.cwiseAbs() + gather(dofs, sum);
-    return {of_forces.size() > 0 ? of_forces.maxCoeff() : 0, of_rows.size() > 0 ? of_rows.maxCoeff() : 0};
-}
+using Column = Eigen::Ref<const VectorX>;
 
-// Of column k: the largest entry of a force, and of a row: each for themselves, for one may be far smaller than the other.
-std::array<double, 2> largest(const LinearSystem::Solution& residual, Eigen::Index k) {
-    return {residual.y.rows() > 0 ? residual.y.col(k).cwiseAbs().maxCoeff() : 0,
-            residual.multipliers.rows() > 0 ? residual.multipliers.col(k).cwiseAbs().maxCoeff() : 0};
+// What one solution leaves over: b - A x, the largest entry of a force and of a row, and the largest sum of magnitudes that such an entry
+// is the difference of. Forces and rows each for themselves, for one may be far smaller than the other.
+class Residual {
+public:
+    Residual(const BlockHessian& hessian, const RowJacobian& rows, const FreeDofs& dofs) : hessian_(hessian), rows_(rows), dofs_(dofs) {
+        y_.assign(dofs.index.size(), Vector6::Zero());
+        taken_.resize(y_.size());
+        sum_.resize(y_.size());
+    }
+
+    /// @param b, x  forces, then rows; degrees of freedom, then multipliers
+    void measure(const Column& b, const Column& x) {
+        const Eigen::Index count = dofs_.count, row_count = rows_.count();
+        scatter(dofs_, x.head(count), y_);
+        of_rows_ = b.tail(row_count).cwiseAbs();
+        VectorX row_sums = VectorX::Zero(row_count);
+        for (std::size_t i = 0; i < y_.size(); ++i) {
+            taken_[i] = hessian_.diagonal[i] * y_[i];
+            sum_[i] = hessian_.diagonal[i].cwiseAbs() * y_[i].cwiseAbs();
+        }
+        for (const OffDiagonalBlock& block : hessian_.off_diagonal) {
+            taken_[block.a] += block.block * y_[block.b];
+            taken_[block.b] += block.block.transpose() * y_[block.a];
+            sum_[block.a] += block.block.cwiseAbs() * y_[block.b].cwiseAbs();
+            sum_[block.b] += block.block.transpose().cwiseAbs() * y_[block.a].cwiseAbs();
+        }
+        for (Eigen::Index i = 0; i < row_count; ++i)
+            for (int e = rows_.first[i]; e < rows_.first[i + 1]; ++e) {
+                const auto& [body, gradient] = rows_.entries[e];
+                taken_[body] += x[count + i] * gradient;
+                sum_[body] += std::abs(x[count + i]) * gradient.cwiseAbs();
+                row_sums[i] += gradient.dot(y_[body]);
+                of_rows_[i] += gradient.cwiseAbs().dot(y_[body].cwiseAbs());
+            }
+        left_.resize(count + row_count);
+        left_.head(count) = b.head(count) - gather(dofs_, taken_);
+        left_.tail(row_count) = b.tail(row_count) - row_sums;
+        largest_ = {largest_of(left_.head(count)), largest_of(left_.tail(row_count))};
+        magnitude_ = {largest_of(b.head(count).cwiseAbs() + gather(dofs_, sum_)), largest_of(of_rows_)};
+    }
+
+    const VectorX& left() const { return left_; }
+    const std::array<double, 2>& largest() const { return largest_; }
+    /// Is what is left over the rounding of the sums?
+    bool is_rounding() const { return !(largest_[0] > refined_enough * magnitude_[0] || largest_[1] > refined_enough * magnitude_[1]); }
+
+private:
+    template <class Values>
+    static double largest_of(const Values& values) {
+        return values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0;
+    }
+
+    const BlockHessian& hessian_;
+    const RowJacobian& rows_;
+    const FreeDofs& dofs_;
+    std::vector<Vector6> y_, taken_, sum_;
+    VectorX left_, of_rows_;
+    std::array<double, 2> largest_{}, magnitude_{};
+};
+
+MatrixX stacked(const MatrixX& r, const MatrixX& c) {
+    if (c.rows() == 0) return r;
+    MatrixX both(r.rows() + c.rows(), r.cols());
+    both << r, c;
+    return both;
 }
 
 }  // namespace
@@ -115,64 +156,60 @@ bool LinearSystem::factorise_any(const BlockHessian& hessian, const RowJacobian&
 bool LinearSystem::is_usable() const { return implementation_->factor != Implementation::Factor::none; }
 
 LinearSystem::Solution LinearSystem::solve(const MatrixX& r, const MatrixX& c) const {
-    if (c.rows() == 0) return {r.size() > 0 ? implementation_->solve(r) : r, MatrixX(0, r.cols())};
-    MatrixX both(r.rows() + c.rows(), r.cols());
-    both << r, c;
-    const MatrixX x = implementation_->solve(both);
+    const MatrixX b = stacked(r, c);
+    if (b.size() == 0) return {r, c};
+    const MatrixX x = implementation_->solve(b);
     return {x.topRows(r.rows()), x.bottomRows(c.rows())};
 }
 
 LinearSystem::Solution LinearSystem::residual(const BlockHessian& hessian, const RowJacobian& rows, const MatrixX& r, const MatrixX& c,
                                               const Solution& x) const {
-    const FreeDofs& dofs = this->dofs();
+    Residual residual(hessian, rows, dofs());
+    const MatrixX b = stacked(r, c), both = stacked(x.y, x.multipliers);
     Solution out{MatrixX(r.rows(), r.cols()), MatrixX(rows.count(), r.cols())};
-    std::vector<Vector6> y(dofs.index.size(), Vector6::Zero());
     for (Eigen::Index k = 0; k < r.cols(); ++k) {
-        scatter(dofs, x.y.col(k), y);
-        std::vector<Vector6> taken = multiply(hessian, y);
-        if (rows.count() > 0) {
-            add_transposed(rows, x.multipliers.col(k), taken);
-            out.multipliers.col(k) = c.col(k) - multiply(rows, y);
-        }
-        out.y.col(k) = r.col(k) - gather(dofs, taken);
+        residual.measure(b.col(k), both.col(k));
+        out.y.col(k) = residual.left().head(r.rows());
+        out.multipliers.col(k) = residual.left().tail(rows.count());
     }
     return out;
 }
 
 LinearSystem::Solution LinearSystem::solve_refined(const BlockHessian& hessian, const RowJacobian& rows, const MatrixX& r,
                                                    const MatrixX& c) const {
-    Solution x = solve(r, c);
-    if (r.size() == 0 && rows.count() == 0) return x;
-    Solution left = residual(hessian, rows, r, c, x);
-    if (rows.count() == 0) {
-        x.y += solve(left.y).y;
-        return x;
+    const MatrixX b = stacked(r, c);
+    if (b.size() == 0) return {r, c};
+    MatrixX x = implementation_->solve(b);
+    Residual now(hessian, rows, dofs());
+    MatrixX left(b.rows(), b.cols());            // of the columns that are worth another pass, side by side
+    std::vector<std::array<double, 2>> largest;  // their largest entries
+    std::vector<Eigen::Index> open;              // which they are
+    for (Eigen::Index k = 0; k < b.cols(); ++k) {
+        now.measure(b.col(k), x.col(k));
+        if (rows.count() > 0 && now.is_rounding()) continue;
+        left.col(count_of(open)) = now.left();
+        open.push_back(k);
+        largest.push_back(now.largest());
     }
-    std::vector<Eigen::Index> open;  // columns that are worth another pass
-    for (Eigen::Index k = 0; k < r.cols(); ++k) open.push_back(k);
-    for (int pass = 0; pass < most_refinements; ++pass) {
-        std::erase_if(open, [&](Eigen::Index k) {
-            const std::array<double, 2> most = largest(left, k), magnitude = magnitudes(hessian, rows, dofs(), r.col(k), c.col(k), x, k);
-            return !(most[0] > refined_enough * magnitude[0] || most[1] > refined_enough * magnitude[1]);
-        });
-        if (open.empty()) break;
-        const Solution change = solve(left.y(Eigen::all, open), left.multipliers(Eigen::all, open));
-        const Solution refined{x.y(Eigen::all, open) + change.y, x.multipliers(Eigen::all, open) + change.multipliers};
-        const Solution still = residual(hessian, rows, r(Eigen::all, open), c(Eigen::all, open), refined);
-        std::vector<Eigen::Index> better;
+    if (rows.count() == 0) return {x + implementation_->solve(left), c};
+    for (int pass = 0; pass < most_refinements && !open.empty(); ++pass) {
+        MatrixX refined = implementation_->solve(left.leftCols(count_of(open)));
+        std::vector<Eigen::Index> still;
         for (std::size_t n = 0; n < open.size(); ++n) {
-            const auto of = static_cast<Eigen::Index>(n);
-            const std::array<double, 2> before = largest(left, open[n]), after = largest(still, of);
-            if (!(after[0] < 0.5 * before[0] || after[1] < 0.5 * before[1])) continue;
-            x.y.col(open[n]) = refined.y.col(of);
-            x.multipliers.col(open[n]) = refined.multipliers.col(of);
-            left.y.col(open[n]) = still.y.col(of);
-            left.multipliers.col(open[n]) = still.multipliers.col(of);
-            better.push_back(open[n]);
+            const Eigen::Index k = open[n];
+            auto change = refined.col(static_cast<Eigen::Index>(n));
+            change += x.col(k);
+            now.measure(b.col(k), change);
+            if (!(now.largest()[0] < 0.5 * largest[n][0] || now.largest()[1] < 0.5 * largest[n][1])) continue;
+            x.col(k) = change;
+            if (now.is_rounding()) continue;
+            left.col(count_of(still)) = now.left();
+            largest[still.size()] = now.largest();
+            still.push_back(k);
         }
-        open = std::move(better);
+        open = std::move(still);
     }
-    return x;
+    return {x.topRows(r.rows()), x.bottomRows(c.rows())};
 }
 
 }  // namespace fettle::core::linear

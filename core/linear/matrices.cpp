@@ -44,7 +44,7 @@ VectorX multiply(const RowJacobian& rows, const std::vector<Vector6>& v) {
     return out;
 }
 
-void add_transposed(const RowJacobian& rows, const VectorX& multipliers, std::vector<Vector6>& out) {
+void add_transposed(const RowJacobian& rows, const Eigen::Ref<const VectorX>& multipliers, std::vector<Vector6>& out) {
     for (int i = 0; i < rows.count(); ++i)
         for (int k = rows.first[i]; k < rows.first[i + 1]; ++k) out[rows.entries[k].body] += multipliers[i] * rows.entries[k].gradient;
 }

@@ -32,7 +32,7 @@ std::vector<Vector6> multiply(const BlockHessian& hessian, const std::vector<Vec
 /// C v.
 VectorX multiply(const RowJacobian& rows, const std::vector<Vector6>& v);
 /// out += C^T multipliers.
-void add_transposed(const RowJacobian& rows, const VectorX& multipliers, std::vector<Vector6>& out);
+void add_transposed(const RowJacobian& rows, const Eigen::Ref<const VectorX>& multipliers, std::vector<Vector6>& out);
 
 /// Makes the off-diagonal blocks of these pairs of bodies, zero where they are not there yet. @return [pair] where its block is
 /// @param pairs  a < b, in any order, the same more than once too

@@ -172,36 +172,41 @@ struct QuasiDefiniteFactor::Implementation {
         is_augmented = true;
     }
 
-    // Of right-hand sides in the matrix's order: the same solution with either factor.
-    Columns through_factor(Columns rhs) const {
-        if (!is_augmented) return solved_by(factor, std::move(rhs));
-        Columns c(rows, rhs.cols());
-        for (int i = 0; i < rows; ++i) c.row(i) = weights[i] * rhs.row(place[count + i]);
-        rhs += gradients.transpose() * c;
-        return solved_by(augmented_factor, std::move(rhs));
+    // Right-hand sides in the matrix's order become solutions: the same ones with either factor.
+    void through_factor(Columns& x) const {
+        if (is_augmented) {
+            Columns c(rows, x.cols());
+            for (int i = 0; i < rows; ++i) c.row(i) = weights[i] * x.row(place[count + i]);
+            x += gradients.transpose() * c;
+        }
+        const Factor& f = is_augmented ? augmented_factor : factor;
+        if (x.cols() == 1)
+            solve_in_place<1>(f, x);
+        else
+            solve_in_place<Eigen::Dynamic>(f, x);
     }
 
-    // All right-hand sides in one pass through L, and one back.
-    static Columns solved_by(const Factor& f, Columns x) {
+    // All right-hand sides in one pass through L, and one back. Width: 1, for the compiler to know, or Eigen::Dynamic.
+    template <int Width>
+    static void solve_in_place(const Factor& f, Columns& x) {
         const Sparse& l = f.matrixL().nestedExpression();  // its diagonal is 1
-        const Eigen::Index n = x.rows(), width = x.cols();
-        double* const values = x.data();
+        const int *const first = l.outerIndexPtr(), *const rows = l.innerIndexPtr();
+        const double* const entries = l.valuePtr();
+        const VectorX pivots = f.vectorD();
+        const Eigen::Index n = x.rows(), width = Width == 1 ? 1 : x.cols();
+        using Row = Eigen::Array<double, 1, Width, Eigen::RowMajor>;
+        const auto row = [&, values = x.data()](Eigen::Index j) { return Eigen::Map<Row>(values + j * width, width); };
+        Row own(width);
         for (Eigen::Index j = 0; j < n; ++j) {
-            const double* const own = values + j * width;
-            for (Sparse::InnerIterator entry(l, j); entry; ++entry) {
-                double* const other = values + entry.row() * width;
-                for (Eigen::Index c = 0; c < width; ++c) other[c] -= own[c] * entry.value();
-            }
+            own = row(j);
+            for (int k = first[j]; k < first[j + 1]; ++k) row(rows[k]) -= own * entries[k];
         }
-        x.array().colwise() *= f.vectorD().array().inverse();
+        for (Eigen::Index j = 0; j < n; ++j) row(j) *= 1 / pivots[j];
         for (Eigen::Index j = n; j-- > 0;) {
-            double* const own = values + j * width;
-            for (Sparse::InnerIterator entry(l, j); entry; ++entry) {
-                const double* const other = values + entry.row() * width;
-                for (Eigen::Index c = 0; c < width; ++c) own[c] -= entry.value() * other[c];
-            }
+            own = row(j);
+            for (int k = first[j]; k < first[j + 1]; ++k) own -= entries[k] * row(rows[k]);
+            row(j) = own;
         }
-        return x;
     }
 
     bool matrix_is_finite() const { return Eigen::Map<const VectorX>(matrix.valuePtr(), matrix.nonZeros()).allFinite(); }
@@ -251,9 +256,9 @@ bool QuasiDefiniteFactor::is_usable() const { return implementation_->usable; }
 MatrixX QuasiDefiniteFactor::solve(const MatrixX& rhs) const {
     const Implementation& self = *implementation_;
     FETTLE_ASSERT(self.usable, "solve without a factorisation");
-    Columns permuted(rhs.rows(), rhs.cols());
-    for (Eigen::Index i = 0; i < rhs.rows(); ++i) permuted.row(self.place[i]) = rhs.row(i);
-    const Columns x = self.through_factor(std::move(permuted));
+    Columns x(rhs.rows(), rhs.cols());
+    for (Eigen::Index i = 0; i < rhs.rows(); ++i) x.row(self.place[i]) = rhs.row(i);
+    self.through_factor(x);
     MatrixX out(rhs.rows(), rhs.cols());
     for (Eigen::Index i = 0; i < rhs.rows(); ++i) out.row(i) = x.row(self.place[i]);
     return out;
