@@ -58,8 +58,9 @@ struct Law {
         higher_ranges = [shared](const Jet<Jet<Range>>& t) { return (*shared)(t); };
     }
 
-    /// Largest |second derivative| over a range of the parameter [m / parameter^2], where there is a closed form; else the law is evaluated
-    /// on ranges (law_chords.hpp).
+    /// Bound over a range of the parameter of the second derivative's part that is square to a chord within the range [m / parameter^2],
+    /// where there is a closed form: a chord over the step h leaves the curve by an eighth of it times h^2, at most. Else the law is
+    /// evaluated on ranges (law_chords.hpp).
     std::function<double(double from, double to)> largest_bend;
     bool turns_one_way = false;  ///< promises that it has no inflection
 

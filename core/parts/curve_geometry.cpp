@@ -553,8 +553,12 @@ LawCurve involute(const Number& base, const Number& turn, const Number& from, co
         return std::array<T, 2>{T(r * (c + hand * u * s)), T(r * (s - hand * u * c))};
     });
     const double radius = base.value;
-    // d2/du2 = base times a vector of length sqrt(1 + u^2).
-    law.largest_bend = [radius](double a, double b) { return radius * std::hypot(1.0, std::max(std::abs(a), std::abs(b))); };
+    // d2/du2 = base (t + u n) with the tangent t, which turns by b - a over the range, and the normal n: square to a chord, which is a
+    // tangent somewhere in the range, it is at most base (|u| + b - a). At u = 0 there is a cusp, beyond which tangents turn back.
+    law.largest_bend = [radius](double a, double b) {
+        const double most = std::max(std::abs(a), std::abs(b)), length = std::hypot(1.0, most);
+        return radius * (a * b < 0 ? length : std::min(length, most + (b - a)));
+    };
     law.turns_one_way = from.value * to.value >= 0;
     return law_curve(std::move(law), from, to);
 }
