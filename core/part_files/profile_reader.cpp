@@ -6,6 +6,7 @@
 #include "fettle/core/part_files/curve_reader.hpp"
 #include "fettle/core/part_files/path_reader.hpp"
 #include "fettle/core/parts/profile_booleans.hpp"
+#include "fettle/core/parts/undercut.hpp"
 
 namespace fettle::core::part_files {
 
@@ -73,7 +74,7 @@ const std::vector<ProfileReader::Verb>& ProfileReader::verbs() {
                                        {"union", {}, &P::unite},
                                        {"intersect", {}, &P::intersect},
                                        {"together", {}, &P::together},
-                                       {"offset", {"by"}, &P::offset},
+                                       {"offset", {"by", "undercut"}, &P::offset},
                                        {"round", {"radius", "corners"}, &P::round},
                                        {"chamfer", {"by", "corners"}, &P::chamfer},
                                        {"move", {"by"}, &P::move},
@@ -256,11 +257,15 @@ ProfileMaker ProfileReader::together(const JsonNode& node, const std::string& na
 ProfileMaker ProfileReader::offset(const JsonNode& node, const std::string& name) {
     const ProfileMaker what = read(node["offset"], name);
     const PartNumber by = numbers_.length(node.require("by"));
+    const bool is_refused = node["undercut"].choice({"cut", "refused"}).value_or("cut") == "refused";
     return [=, where = node.where()](Sheet& sheet) -> Result<Profile> {
         const Result<Profile> made = what(sheet);
         if (!made) return made;
         if (size_of(*made) > most_cut_segments) return too_many(where, size_of(*made), most_cut_segments);
-        return parts::offset(*made, by.at(sheet));
+        const parts::Number distance = by.at(sheet);
+        if (is_refused)
+            if (Errors faults = parts::undercuts(*made, distance.value); !faults.empty()) return faults;
+        return parts::offset(*made, distance);
     };
 }
 
