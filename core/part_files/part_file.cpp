@@ -24,6 +24,7 @@ struct PartFile::Contents {
     std::vector<PartDimension> dimensions;
     std::vector<PartCount> counts;
     std::vector<PartRelation> relations;
+    parts::Facets facets;
     PartNumbers numbers{1e-3};
     SolidMaker solid;
     std::shared_ptr<const std::map<std::string, ProfileMaker>> profiles;
@@ -149,8 +150,8 @@ Result<PartFile> PartFile::parse(const std::string& text, const std::string& nam
         return document->errors();
     }
     if (!files::is_version(root["fettle_part"], format_version)) return document->errors();
-    root.allow_keys(
-        {"$schema", "fettle_part", "about", "units", "dimensions", "counts", "variables", "relations", "profiles", "solids", "solid"});
+    root.allow_keys({"$schema", "fettle_part", "about", "units", "dimensions", "counts", "variables", "relations", "segments", "profiles",
+                     "solids", "solid"});
     const auto unit = root["units"].choice({"um", "mm", "cm", "m", "in", "ft"});
 
     auto contents = std::make_shared<Contents>();
@@ -158,6 +159,7 @@ Result<PartFile> PartFile::parse(const std::string& text, const std::string& nam
     contents->about = root["about"].string().value_or("");
     contents->numbers = PartNumbers(base::metres_per_unit(unit.value_or("mm")).value());
     PartNumbers& numbers = contents->numbers;
+    if (const auto segments = root["segments"].integer(fewest_circle_segments, most_circle_segments)) contents->facets.segments = *segments;
     if (root["dimensions"].exists() && !root["dimensions"].is_object()) (void)root["dimensions"].members();
     for (const std::string& key : keys_as_written(text, "dimensions"))
         contents->dimensions.push_back(read_dimension(key, root["dimensions"][key], numbers));
@@ -187,6 +189,7 @@ const std::string& PartFile::about() const { return contents_->about; }
 const std::vector<PartDimension>& PartFile::dimensions() const { return contents_->dimensions; }
 const std::vector<PartCount>& PartFile::counts() const { return contents_->counts; }
 const std::vector<PartRelation>& PartFile::relations() const { return contents_->relations; }
+const parts::Facets& PartFile::facets() const { return contents_->facets; }
 
 Errors PartFile::faults(const std::vector<double>& values) const {
     FETTLE_ASSERT(values.size() == dimensions().size(), "one value for each dimension");

@@ -55,6 +55,9 @@ struct PartCount {
     std::string about;
 };
 
+/// Segments of a circle that may be asked for.
+inline constexpr int fewest_circle_segments = 8, most_circle_segments = 720;
+
 /// What a scene says besides the dimensions.
 using Counts = std::map<std::string, int>;
 
@@ -73,6 +76,8 @@ public:
     const std::vector<PartDimension>& dimensions() const;
     const std::vector<PartCount>& counts() const;  ///< `value`: as given
     const std::vector<PartRelation>& relations() const;
+    /// Of one for which nobody asks for others: as many segments of a circle as the file says.
+    const parts::Facets& facets() const;
 
     /// What is wrong with these values, one for each dimension [SI]: not finite, not above 0, relations. `where`: the part's name and the
     /// dimension ("washer/bore"), or the relation's place.

@@ -111,7 +111,7 @@ Result<core::geometry::Mesh> mesh_of(const std::string& name) {
     }
     const auto part = shapes::find_part(name);
     if (!part) return part.errors();
-    const auto shape = shapes::FilePart::create(*part, {});
+    const auto shape = shapes::FilePart::create(*part, {}, part->facets());
     return shape ? description::drawn_mesh(**shape) : Result<core::geometry::Mesh>(shape.errors());
 }
 

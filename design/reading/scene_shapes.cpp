@@ -2,6 +2,7 @@
 #include "fettle/design/reading/scene_shapes.hpp"
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "fettle/design/shapes/file_part.hpp"
@@ -24,22 +25,22 @@ MadeShape as_shape(const Result<std::shared_ptr<const Part>>& part) {
 // How its facets are cut is said with its counts.
 MadeShape part_of_file(const core::scene::ShapeSpec& spec) {
     core::part_files::Counts counts = spec.counts;
-    core::parts::Facets facets;
-    facets.chord = spec.chord;
     const auto segments = counts.find("segments");
+    std::optional<int> asked;
     if (segments != counts.end()) {
-        constexpr int fewest = 8, most = 720;
-        if (segments->second < fewest || segments->second > most)
-            return Error{ErrorCode::out_of_range, "counts/segments",
-                         "segments is " + std::to_string(segments->second) + "; allowed: from 8 to 720"};
+        asked = segments->second;
+        if (*asked < core::part_files::fewest_circle_segments || *asked > core::part_files::most_circle_segments)
+            return Error{ErrorCode::out_of_range, "counts/segments", "segments is " + std::to_string(*asked) + "; allowed: from 8 to 720"};
         if (spec.chord > 0)
             return Error{ErrorCode::inconsistent, "counts/segments",
                          "`facets` says how far facets may be from what is round; `segments` goes without it"};
-        facets.segments = segments->second;
         counts.erase(segments);
     }
     auto file = shapes::find_part(spec.part, counts);
     if (!file) return file.errors();
+    core::parts::Facets facets = file->facets();
+    facets.chord = spec.chord;
+    facets.segments = asked.value_or(facets.segments);
     return as_shape(shapes::FilePart::create(std::move(file).value(), spec.dimensions, facets));
 }
 

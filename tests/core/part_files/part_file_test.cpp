@@ -51,6 +51,27 @@ constexpr double pi = std::numbers::pi;
 
 }  // namespace
 
+TEST_CASE("part file: segments of a circle, where nobody asks for others") {
+    const std::string disc = R"("solid": {"extrude": {"circle": 1}, "to": 1})";
+    CHECK(PartFile::parse(part(disc), "a.part.json")->facets().segments == 48);
+    CHECK(PartFile::parse(part(R"("segments": 12, )" + disc), "a.part.json")->facets().segments == 12);
+    CHECK(is_told(reading_faults(part(R"("segments": 7, )" + disc)), "#/segments", "8"));
+}
+
+TEST_CASE("part file: an offset that is undercut is cut, or refused where the file says so") {
+    const auto drawn = [](const std::string& more) {
+        const auto file = PartFile::parse(
+            part(R"("solid": {"extrude": {"offset": {"rectangle": [20, 10], "name": "rim"}, "by": -2)" + more + R"(}, "to": 1})"),
+            "a.part.json");
+        REQUIRE(file);
+        return file->drawn(defaults(*file)).errors();
+    };
+    CHECK(drawn("").empty());
+    CHECK(drawn(R"(, "undercut": "cut")").empty());
+    CHECK(is_told(drawn(R"(, "undercut": "refused")"), "#/solid/extrude", "`rim` is undercut at"));
+    CHECK_FALSE(reading_faults(part(R"("solid": {"extrude": {"offset": {"circle": 3}, "by": -2, "undercut": "no"}, "to": 1})")).empty());
+}
+
 TEST_CASE("part file: what it says of itself") {
     const auto file = PartFile::parse(part(R"("solid": {"extrude": {"circle": 1}, "to": 1})"), "some/where/knob.part.json");
     REQUIRE(file);
