@@ -215,7 +215,7 @@ Result<std::vector<DrawnBody>> drawn_bodies(const ExportArguments& options, cons
         return errors;
     const auto made = std::make_shared<std::vector<reading::MadePart>>();
     const auto scene =
-        core::scene_files::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common), made));
+        reading::read_scene_or_part(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common), made));
     if (!scene) return scene.errors();
     for (const core::scene::Body& body : scene->bodies)
         for (const reading::MadePart& part : *made)

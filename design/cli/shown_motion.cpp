@@ -38,7 +38,7 @@ std::string stem_of(const std::string& path) {
     if (name.empty()) name = fs::path(path).parent_path().filename().string();
     const fs::path folder = fs::absolute(path).parent_path();
     if (name == "trajectory.json" || name == "trajectory.running.json") return folder.filename().string();
-    for (const char* ending : {".scene.json", ".design.json", ".trajectory.json", ".certificate.json", ".json"})
+    for (const char* ending : {".scene.json", ".design.json", ".part.json", ".trajectory.json", ".certificate.json", ".json"})
         if (name.size() > std::string_view(ending).size() && name.ends_with(ending))
             return name.substr(0, name.size() - std::string_view(ending).size());
     return fs::is_directory(path) ? name : fs::path(name).stem().string();
@@ -57,8 +57,9 @@ void take_gravity(const CommonOptions& common, clearance::Subject& subject) {
 }  // namespace
 
 void add_shown_options(CommandLine& app, ShownOptions& options) {
-    app.option("FILE", options.path,
-               "Scene or design (as assembled), trajectory, certificate (its path), mesh, or a folder (of a run, or with meshes)")
+    app.option(
+           "FILE", options.path,
+           "Scene or design (as assembled), part file, trajectory, certificate (its path), mesh, or a folder (of a run, or with meshes)")
         .required();
     app.option("--unit", options.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
     app.option("--trajectory", options.trajectory, "For a certificate: the path that it is about (default: beside it)");

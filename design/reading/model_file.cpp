@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "fettle/core/base/stop.hpp"
@@ -14,6 +15,7 @@
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/model/check_scene.hpp"
+#include "fettle/core/part_files/part_file.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
@@ -83,7 +85,7 @@ Result<LoadedModel> load_scene(const std::string& path, const InputOptions& opti
     core::scene::ReadOptions read_options = scene_read_options(options.mesh_dirs, options.programs);
     read_options.strict_meshes = options.strict;
     read_options.should_stop = options.should_stop;
-    Result<core::scene::Scene> scene = core::scene_files::read_scene(path, read_options);
+    Result<core::scene::Scene> scene = read_scene_or_part(path, read_options);
     if (!scene) return scene.errors();
     LoadedModel loaded;
     loaded.scene_path = path;
@@ -108,6 +110,15 @@ FileKind file_kind(const std::string& path) {
     if (core::mesh_files::has_mesh_extension(path)) return FileKind::mesh;
     const auto key = std::find(keys.begin(), keys.end(), core::files::top_level_key(path, keys));
     return key == keys.end() ? FileKind::scene : kinds[key - keys.begin()];
+}
+
+Result<core::scene::Scene> read_scene_or_part(const std::string& path, const core::scene::ReadOptions& options) {
+    if (!path.ends_with(core::part_files::part_file_ending)) return core::scene_files::read_scene(path, options);
+    const std::string file = std::filesystem::path(path).filename().string();
+    const std::string name = file.substr(0, file.size() - core::part_files::part_file_ending.size());
+    const nlohmann::json body{{"name", name}, {"type", "static"}, {"shape", {{"part", file}}}};
+    const nlohmann::json scene{{"fettle_scene", 1}, {"units", "mm"}, {"bodies", {body}}};
+    return core::scene_files::parse_scene(scene.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), path, options);
 }
 
 Errors not_wanted(const std::string& path, FileKind kind, const std::string& wanted) {

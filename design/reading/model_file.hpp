@@ -9,6 +9,7 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/model/model.hpp"
+#include "fettle/core/scene/read_options.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 
@@ -17,6 +18,9 @@ namespace fettle::design::reading {
 enum class FileKind { scene, design, trajectory, mesh, certificate };
 /// Meshes by extension, the rest by the keys in the file; what cannot be read counts as a scene, whose reader then says why.
 FileKind file_kind(const std::string& path);
+
+/// A scene; of a part file (NAME.part.json) that of the part alone, at its defaults, called NAME, which stands still.
+Result<core::scene::Scene> read_scene_or_part(const std::string& path, const core::scene::ReadOptions& options);
 
 /// That the file is a trajectory or a certificate, where a `wanted` ("scene") is: empty, if it is neither.
 Errors not_wanted(const std::string& path, FileKind kind, const std::string& wanted);

@@ -117,6 +117,24 @@ TEST_CASE("export: a certificate names files of its bodies, and is stale when on
     CHECK(run("export " + certificate + " --to " + folder.file("other.3mf"), true).says("is not about"));
 }
 
+TEST_CASE("draw, export and validate take a part file by itself, at its defaults") {
+    const TemporaryFolder folder;
+    const std::string part = folder.write("block.part.json", R"({"fettle_part": 1, "units": "mm", "dimensions": {"side": 4},
+        "profiles": {"face": {"rectangle": ["= side", "= side"]}}, "solid": {"extrude": "face", "to": "= 2 * side"}})");
+    REQUIRE(run("draw " + part + " --out " + folder.file("a.svg")).code == 0);
+    CHECK(contents(folder.file("a.svg")).find("block") != std::string::npos);
+    REQUIRE(run("export " + part + " --to " + folder.file("block.3mf")).code == 0);
+    CHECK(run("validate " + folder.file("block.3mf") + " --json").json()["size"][2].get<double>() == Approx(8));
+    REQUIRE(run("export " + part + " --to " + folder.file("face.dxf")).code == 0);
+    CHECK(contents(folder.file("face.dxf")).find("LINE") != std::string::npos);
+    CHECK(run("validate " + part).code == 0);
+    const std::string wrong =
+        folder.write("wrong.part.json", R"({"fettle_part": 1, "dimensions": {}, "solid": {"extrude": {"circle": 0}, "to": 1}})");
+    for (const std::string& command : {"draw " + wrong + " --out " + folder.file("b.svg"), "validate " + wrong,
+                                       "draw " + folder.file("none.part.json") + " --out " + folder.file("b.svg")})
+        CHECK(run(command).code == 3);
+}
+
 TEST_CASE("draw: PNG and SVG, the nearest points, an instant of a motion") {
     const TemporaryFolder folder;
     const std::string in = scene(folder), out = folder.file("run");
