@@ -40,7 +40,7 @@ Place place_at(const Curve& curve, double u) {
 
 // Between two places: more than at both, where the curve turns more than they say. There it is halved, towards the half that turns more:
 // at a kink the curvature grows with each half.
-Bend between(const Curve& curve, Place from, Place to, int side) {
+Bend bend_between(const Curve& curve, Place from, Place to, int side) {
     constexpr int most_halves = 20;
     constexpr double alike = 1.1;
     Bend out;
@@ -69,7 +69,7 @@ Bend sharpest_bend(const Curve& curve, int side) {
         const Place here = place_at(curve, static_cast<double>(k) / steps);
         take(out, side * here.curvature, here.point.position);
         if (steps > 1) {
-            const Bend sharper = between(curve, before, here, side);
+            const Bend sharper = bend_between(curve, before, here, side);
             take(out, sharper.curvature, sharper.place);
         }
         before = here;
