@@ -35,7 +35,7 @@ struct Deviation {
 
 /// Connectivity is fixed for life; a shape parameter moves `vertices` only.
 struct Mesh {
-    std::string name;   ///< of the file or generator, for messages
+    std::string name;   ///< of the file or part, for messages
     Matrix3X vertices;  ///< 3 x n, one column a vertex [m], no two equal (exactly welded)
     std::vector<Triangle> triangles;
     std::vector<Edge> edges;                ///< every edge of the triangles once, then the codimensional edges

@@ -106,6 +106,18 @@ PartCount read_count(const std::string& name, const JsonNode& node, const Counts
     return out;
 }
 
+parts::Facets read_facets(const JsonNode& node, const PartNumbers& numbers) {
+    parts::Facets out;
+    node.allow_keys({"segments", "chord", "lean"});
+    if (node["segments"].exists() && node["chord"].exists())
+        node["segments"].fail(ErrorCode::inconsistent, "`chord` says how far facets may be from what is round; `segments` goes without it");
+    out.segments = node["segments"].integer(fewest_circle_segments, most_circle_segments).value_or(out.segments);
+    out.chord = node["chord"].length(numbers.length_unit(), files::positive).value_or(0);
+    const std::string lean = node["lean"].choice({"cover", "within", "through"}).value_or("cover");
+    out.lean = lean == "within" ? parts::Lean::within : lean == "through" ? parts::Lean::through : parts::Lean::cover;
+    return out;
+}
+
 Errors count_faults(const Counts& given, const std::vector<PartCount>& counts, const std::string& part) {
     Errors errors;
     std::vector<std::string_view> known;
@@ -150,7 +162,7 @@ Result<PartFile> PartFile::parse(const std::string& text, const std::string& nam
         return document->errors();
     }
     if (!files::is_version(root["fettle_part"], format_version)) return document->errors();
-    root.allow_keys({"$schema", "fettle_part", "about", "units", "dimensions", "counts", "variables", "relations", "segments", "profiles",
+    root.allow_keys({"$schema", "fettle_part", "about", "units", "facets", "dimensions", "counts", "variables", "relations", "profiles",
                      "solids", "solid"});
     const auto unit = root["units"].choice({"um", "mm", "cm", "m", "in", "ft"});
 
@@ -159,7 +171,6 @@ Result<PartFile> PartFile::parse(const std::string& text, const std::string& nam
     contents->about = root["about"].string().value_or("");
     contents->numbers = PartNumbers(base::metres_per_unit(unit.value_or("mm")).value());
     PartNumbers& numbers = contents->numbers;
-    if (const auto segments = root["segments"].integer(fewest_circle_segments, most_circle_segments)) contents->facets.segments = *segments;
     if (root["dimensions"].exists() && !root["dimensions"].is_object()) (void)root["dimensions"].members();
     for (const std::string& key : keys_as_written(text, "dimensions"))
         contents->dimensions.push_back(read_dimension(key, root["dimensions"][key], numbers));
@@ -167,6 +178,7 @@ Result<PartFile> PartFile::parse(const std::string& text, const std::string& nam
     for (const std::string& key : keys_as_written(text, "counts"))
         contents->counts.push_back(read_count(key, root["counts"][key], counts, numbers));
     root.require("dimensions");
+    contents->facets = read_facets(root["facets"], numbers);
     Errors errors = count_faults(counts, contents->counts, contents->name);
     if (!errors.empty()) return errors;
     numbers.add_variables(root["variables"]);
@@ -231,11 +243,11 @@ Errors PartFile::with_profile(const std::string& name, const std::vector<double>
     return {};
 }
 
-Result<parts::DrawnPart> PartFile::drawn(const std::vector<double>& values, const parts::Facets& facets, const parts::Structure& structure,
-                                         const parts::DrawnOptions& options) const {
+Result<parts::DrawnPart> PartFile::drawn(const std::vector<double>& values, const std::optional<parts::Facets>& facets,
+                                         const parts::Structure& structure, const parts::DrawnOptions& options) const {
     Errors errors = faults(values);
     if (!errors.empty()) return errors;
-    parts::Drawing drawing(facets, structure);
+    parts::Drawing drawing(facets.value_or(contents_->facets), structure);
     std::vector<Number> dimensions;
     for (const double value : values) dimensions.push_back(drawing.dimension(value));
     Sheet sheet{drawing, contents_->numbers.values(std::move(dimensions)), {}, {}, 0};

@@ -21,6 +21,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,8 +77,7 @@ public:
     const std::vector<PartDimension>& dimensions() const;
     const std::vector<PartCount>& counts() const;  ///< `value`: as given
     const std::vector<PartRelation>& relations() const;
-    /// Of one for which nobody asks for others: as many segments of a circle as the file says.
-    const parts::Facets& facets() const;
+    const parts::Facets& facets() const;  ///< where who draws says nothing else
 
     /// What is wrong with these values, one for each dimension [SI]: not finite, not above 0, relations. `where`: the part's name and the
     /// dimension ("washer/bore"), or the relation's place.
@@ -85,7 +85,8 @@ public:
 
     /// The part at these values. Errors: faults(), those of drawing, with the place of what could not be drawn, a mesh that is no solid.
     /// A pure function; may be called from several threads.
-    Result<parts::DrawnPart> drawn(const std::vector<double>& values, const parts::Facets& facets = {},
+    /// @param facets  facets() if not given.
+    Result<parts::DrawnPart> drawn(const std::vector<double>& values, const std::optional<parts::Facets>& facets = {},
                                    const parts::Structure& structure = {}, const parts::DrawnOptions& options = {}) const;
 
     /// The file's `profiles`, by name.

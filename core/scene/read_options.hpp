@@ -17,9 +17,9 @@
 namespace fettle::core::scene {
 
 /// Makes the mesh of a `shape` body [m]. Errors: their `where` is replaced by the body's place in the file.
-using ShapeGenerator = std::function<base::Result<geometry::Mesh>(const ShapeSpec&)>;
+using ShapeMaker = std::function<base::Result<geometry::Mesh>(const ShapeSpec&)>;
 
-/// Which dimensions the part of a shape has, by name, and what quantity each is. Errors: as for ShapeGenerator.
+/// Which dimensions the part of a shape has, by name, and what quantity each is. Errors: as for ShapeMaker.
 using PartDimensions = std::function<base::Result<std::map<std::string, base::Dimension>>(const ShapeSpec&)>;
 
 /// A name that formulas of the file may use as if it were one of its variables: a design's parameter. Takes the place of the variable of
@@ -39,8 +39,8 @@ struct Replacement {
 
 struct ReadOptions {
     std::vector<std::string> mesh_dirs;      ///< also looked in for meshes; see find_mesh_file in mesh_files/find_mesh_file.hpp
-    ShapeGenerator shape_generator;          ///< empty: a body with `shape` is an error that says so
-    PartDimensions part_dimensions = {};     ///< of parts that are files; goes with shape_generator
+    ShapeMaker shape_maker;                  ///< empty: a body with `shape` is an error that says so
+    PartDimensions part_dimensions = {};     ///< of parts that are files; goes with shape_maker
     std::function<bool()> should_stop = {};  ///< optional, asked on any thread while a mesh is read that may take long: true ends it
     std::vector<FormulaInput> inputs = {};
     std::vector<Replacement> replacements = {};  ///< their document outlives the reading

@@ -82,7 +82,7 @@ struct Damping {
 
 /// How strictly a mesh is taken (model/check_scene.hpp).
 enum class MeshPolicy {
-    strict,    ///< a perfect solid or nothing: what generators make, and everything on request
+    strict,    ///< a perfect solid or nothing: what parts of files are, and everything on request
     tolerant,  ///< what does no harm to a rigid body is a warning: meshes of our own format
     lenient    ///< as the source paper's program: the reader has said what there is to say
 };
@@ -97,13 +97,12 @@ struct MeshProgram {
     bool operator==(const MeshProgram&) const = default;
 };
 
-/// A part that a generator or a program makes (design/shapes/); core knows and runs none of them, see read_options.hpp.
+/// A part that is made from dimensions, by its file or by a program (design/shapes/); core makes none, see read_options.hpp.
 struct ShapeSpec {
-    std::string generator;                     ///< its name; empty: a part's file or a program makes the part
+    std::string part;                          ///< of the library, a file, or the text of one; empty: a program makes the part
     std::map<std::string, double> dimensions;  ///< lengths [m], but for those that are listed below
     std::map<std::string, int> counts;         ///< numbers of teeth, holes, facets
     std::optional<MeshProgram> program = {};
-    std::string part = {};                 ///< of the library, a file, or the text of one; then `generator` is empty
     double chord = 0;                      ///< of a part: largest distance of a facet from what it stands for [m]; 0: not by this
     std::vector<std::string> angles = {};  ///< dimensions of a part that are no lengths: angles [rad], plain numbers
     std::vector<std::string> numbers = {};
@@ -115,7 +114,7 @@ struct Body {
     std::string where;  ///< file and JSON pointer, for messages
     BodyType type = BodyType::dynamic_body;
     geometry::Mesh mesh;             ///< vertices in the file's frame, scaled, [m]
-    std::optional<ShapeSpec> shape;  ///< what `mesh` was made from, if a generator or a program made it
+    std::optional<ShapeSpec> shape;  ///< what `mesh` was made from, if it was made from dimensions
     MeshPolicy mesh_policy = MeshPolicy::strict;
     double density = 1000;      ///< per what `mass_kind` says
     bool density_given = true;  ///< false: the file names none, and `density` stands for nothing (a static or kinematic body)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/index_rows.hpp"
@@ -47,6 +48,23 @@ const std::vector<std::string_view> body_keys{"name",
                                               "damping",
                                               "group",
                                               "split_components"};
+
+// What to write instead of the key `generator` of version 0.2, whose parts are files now.
+std::string in_place_of_generator(const std::string& name) {
+    const std::map<std::string, std::string> of_library{{"box", "box"}, {"pin", "cylinder"}, {"plate_with_hole", "plate_with_hole"}};
+    const std::map<std::string, std::string> of_examples{
+        {"crank", "slider_crank/crank"}, {"rod", "slider_crank/rod"},         {"piston", "slider_crank/piston"},
+        {"block", "slider_crank/block"}, {"base_plate", "four_bar/base"},     {"arm", "four_bar/arm"},
+        {"coupler", "four_bar/coupler"}, {"eccentric", "follower/eccentric"}, {"follower", "follower/follower"}};
+    const std::string begin = "there are no generators any more, parts are files: ";
+    if (const auto found = of_library.find(name); found != of_library.end())
+        return begin + "write \"part\": \"" + found->second + "\", a part of the library with the same dimensions";
+    if (const auto found = of_examples.find(name); found != of_examples.end()) {
+        const std::string file = found->second + ".part.json", own = file.substr(file.find('/') + 1);
+        return begin + "copy examples/" + file + " to this file's folder and write \"part\": \"" + own + "\"";
+    }
+    return begin + "write \"part\" and the name of one of the library (fettle shapes lists them) or of a file of your own, NAME.part.json";
+}
 
 // A part that a program makes: what runs it.
 scene::MeshProgram read_program(const files::JsonNode& node, const std::string& scene, double unit) {
@@ -251,9 +269,11 @@ void SceneBodies::make_shape(const files::JsonNode& node, scene::Body& body) {
         spec.chord = node["facets"].length(unit_, files::positive).value_or(0);
     } else if (node["solid"].exists()) {
         read_own_part(node, spec);
+    } else if (node["generator"].exists()) {
+        return node["generator"].fail(ErrorCode::unknown_key, in_place_of_generator(node["generator"].string().value_or("")));
     } else {
-        node.allow_keys({"generator", "part", "program", "solid", "dimensions", "counts"});
-        spec.generator = node.require("generator").string().value_or("");
+        node.allow_keys({"part", "program", "solid", "dimensions", "counts", "facets"});
+        node.require("part");
     }
     const std::size_t faults = document_.errors().size();
     for (const auto& [name, value] : node["counts"].members())
@@ -261,16 +281,13 @@ void SceneBodies::make_shape(const files::JsonNode& node, scene::Body& body) {
     if (!node["solid"].exists()) read_dimensions(node, spec);
     body.shape = spec;
     if (document_.errors().size() > faults) return;  // of numbers that nobody gave more faults would be told
-    if (spec.generator.empty() && spec.part.empty() && (!spec.program || spec.program->command.empty())) return;
-    if (!options_.shape_generator) {
-        node.fail(ErrorCode::unsupported, "shape \"" +
-                                              (spec.program        ? spec.program->command.front()
-                                               : spec.part.empty() ? spec.generator
-                                                                   : spec.part) +
-                                              "\" cannot be made here: this program was given no generators");
+    if (spec.part.empty() && (!spec.program || spec.program->command.empty())) return;
+    if (!options_.shape_maker) {
+        node.fail(ErrorCode::unsupported, "shape \"" + (spec.program ? spec.program->command.front() : spec.part) +
+                                              "\" cannot be made here: this program was given nothing that makes parts");
         return;
     }
-    auto made = options_.shape_generator(spec);
+    auto made = options_.shape_maker(spec);
     if (!made) return report(made.errors(), node);
     body.mesh = std::move(made).value();
 }
@@ -388,7 +405,7 @@ std::vector<scene::Body> SceneBodies::components(const files::JsonNode& node, sc
     return bodies;
 }
 
-/// Errors of meshes and generators know nothing of the file: say which body asked.
+/// Errors of meshes and parts know nothing of the file: say which body asked.
 void SceneBodies::report(const base::Errors& errors, const files::JsonNode& node) {
     for (const auto& error : errors) {
         const bool placed = error.where.empty() || error.where == node.where();

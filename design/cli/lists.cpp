@@ -18,7 +18,6 @@
 #include "fettle/design/reading/quantity_reader.hpp"
 #include "fettle/design/shapes/file_part.hpp"
 #include "fettle/design/shapes/part_library.hpp"
-#include "fettle/design/shapes/shape_generator.hpp"
 
 namespace fettle::design::cli {
 
@@ -53,32 +52,9 @@ int answer(const std::string& what, const std::vector<Entry>& entries, const std
     return exit_done;
 }
 
-std::string millimetres(double metres) { return formatted("%.6g", metres * 1e3); }
-
-Entry shape_entry(const shapes::GeneratorInfo& info) {
-    Entry entry{
-        info.name, "generator: " + info.description, "", {{"name", info.name}, {"from", "generator"}, {"description", info.description}}};
-    entry.facts["dimensions"] = Json::array();
-    for (const shapes::DimensionInfo& d : info.dimensions) {
-        const bool coordinate = d.kind == shapes::DimensionKind::coordinate;
-        entry.facts["dimensions"].push_back(
-            {{"name", d.name}, {"default", d.default_value}, {"kind", coordinate ? "coordinate" : "length"}, {"meaning", d.meaning}});
-        entry.details += formatted("  %-26s %9s mm  %s%s\n", d.name.c_str(), millimetres(d.default_value).c_str(), d.meaning.c_str(),
-                                   coordinate ? " (any sign)" : "");
-    }
-    entry.facts["relations"] = Json::array();
-    for (const shapes::DimensionLimit& limit : shapes::dimension_limits(info.name)) {
-        entry.facts["relations"].push_back(
-            {{"dimension", limit.dimension}, {"value", limit.value}, {"below", limit.limit}, {"reason", limit.reason}});
-        entry.details += "  " + limit.dimension + " is " + millimetres(limit.value) + " mm and must be below " + millimetres(limit.limit) +
-                         " mm" + (limit.reason.empty() ? "" : ", " + limit.reason) + "\n";
-    }
-    return entry;
-}
-
 Entry part_entry(const core::part_files::PartFile& part) {
     using core::part_files::PartDimensionKind;
-    Entry entry{part.name(), "part: " + part.about(), "", {{"name", part.name()}, {"from", "part"}, {"description", part.about()}}};
+    Entry entry{part.name(), part.about(), "", {{"name", part.name()}, {"description", part.about()}}};
     entry.facts["dimensions"] = Json::array();
     for (const core::part_files::PartDimension& d : part.dimensions()) {
         const std::string kind = core::part_files::name_of(d.kind);
@@ -101,23 +77,11 @@ Entry part_entry(const core::part_files::PartFile& part) {
     return entry;
 }
 
-Result<core::geometry::Mesh> mesh_of(const std::string& name) {
-    const auto& library = shapes::part_library();
-    const bool is_part = name.ends_with(core::part_files::part_file_ending) ||
-                         std::any_of(library.begin(), library.end(), [&](const auto& part) { return part.name == name; });
-    if (!is_part) {
-        auto shape = shapes::generate(name, {});
-        return shape ? Result<core::geometry::Mesh>(std::move(shape->mesh)) : Result<core::geometry::Mesh>(shape.errors());
-    }
-    const auto part = shapes::find_part(name);
-    if (!part) return part.errors();
-    const auto shape = shapes::FilePart::create(*part, {}, part->facets());
-    return shape ? description::drawn_mesh(**shape) : Result<core::geometry::Mesh>(shape.errors());
-}
-
 /// At its defaults, seen obliquely.
 Errors draw_shape(const std::string& name, const std::string& file) {
-    const auto mesh = mesh_of(name);
+    const auto part = shapes::FilePart::create(name);
+    if (!part) return part.errors();
+    const auto mesh = description::drawn_mesh(**part);
     if (!mesh) return mesh.errors();
     const bool png = file.ends_with(".png");
     if (!png && !file.ends_with(".svg")) return {{ErrorCode::unsupported, "--draw", "a picture is .png or .svg, found " + file}};
@@ -139,7 +103,6 @@ struct ShapesArguments {
 
 int run_shapes(const ShapesArguments& options, Console& console) {
     std::vector<Entry> entries;
-    for (const shapes::GeneratorInfo& info : shapes::generator_table()) entries.push_back(shape_entry(info));
     for (const shapes::LibraryPart& each : shapes::part_library())
         entries.push_back(part_entry(shapes::find_part(std::string(each.name)).value()));
     if (options.name.ends_with(core::part_files::part_file_ending)) {
@@ -210,7 +173,7 @@ Command add_list(CommandLine& program, const std::string& command, const std::st
 }  // namespace
 
 Command add_shapes(CommandLine& program) {
-    CommandLine app = program.command("shapes", "Parts of the library and generators: dimensions, defaults, relations, a drawing");
+    CommandLine app = program.command("shapes", "Parts of the library: dimensions, defaults, relations, a drawing");
     auto options = std::make_shared<ShapesArguments>();
     app.option("NAME", options->name, "One of them, or a file of your own (NAME.part.json), with all its dimensions (default: all)");
     app.option("--draw", options->draw, "Draw it at its defaults: .png or .svg");

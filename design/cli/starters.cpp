@@ -9,7 +9,7 @@ namespace fettle::design::cli {
 namespace {
 
 struct StarterFile {
-    const char *name, *text;
+    const char *starter, *name, *text;
 };
 
 // Made by design/cli/CMakeLists.txt.
@@ -20,9 +20,8 @@ constexpr StarterFile starter_files[] = {
 std::vector<Starter> collected() {
     std::vector<Starter> list;
     for (const StarterFile& file : starter_files) {
-        const std::string name = std::string(file.name).substr(0, std::string(file.name).find('.'));
-        auto found = std::find_if(list.begin(), list.end(), [&](const Starter& starter) { return starter.name == name; });
-        if (found == list.end()) found = list.insert(list.end(), {name, "", {}});
+        auto found = std::find_if(list.begin(), list.end(), [&](const Starter& starter) { return starter.name == file.starter; });
+        if (found == list.end()) found = list.insert(list.end(), {file.starter, "", {}});
         found->files.emplace_back(file.name, file.text);
         const auto json = nlohmann::json::parse(file.text, nullptr, false);
         if (found->description.empty() && json.contains("description")) found->description = json["description"].get<std::string>();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Scenes and designs to start from: those of examples/ and of design/cli/starters/, put into the program when it is built.
+/// Scenes, their own parts and designs to start from: those of examples/ and of design/cli/starters/, put into the program when it is
+/// built.
 #pragma once
 
 #include <string>
@@ -11,7 +12,7 @@ namespace fettle::design::cli {
 struct Starter {
     std::string name;                                        ///< "hinge"
     std::string description;                                 ///< the scene's own
-    std::vector<std::pair<std::string, std::string>> files;  ///< name and text: "hinge.scene.json", then its design if there is one
+    std::vector<std::pair<std::string, std::string>> files;  ///< name and text: "hinge.scene.json", part files, its design if there is one
 };
 /// Sorted by name.
 const std::vector<Starter>& starters();

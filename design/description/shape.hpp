@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A part whose vertices are a function of named dimensions: what a parameter of kind `dimension` moves. The generators and the parts of
-/// files of ../shapes implement it (shapes/generated_part.hpp, file_part.hpp). Add one: derive from Shape, and hand it to the design
-/// (design.hpp).
+/// A part whose vertices are a function of named dimensions: what a parameter of kind `dimension` moves. Parts of files implement it
+/// (shapes/file_part.hpp). Add one: derive from Shape, and hand it to the design (design.hpp).
 #pragma once
 
 #include <string>

@@ -8,8 +8,9 @@
 #include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/scene_records.hpp"
-#include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/design/shapes/file_part.hpp"
 #include "fettle/design/shapes/mesh_program.hpp"
+#include "fettle/design/shapes/part_library.hpp"
 
 namespace fettle::design::python {
 
@@ -17,7 +18,7 @@ namespace py = pybind11;
 using description::Shape;
 using description::ShapeDimension;
 using description::ShapeInstance;
-using shapes::GeneratedPart;
+using shapes::FilePart;
 
 std::shared_ptr<py::object> shared_object(py::handle object) {
     return {new py::object(py::reinterpret_borrow<py::object>(object)), [](py::object* held) {
@@ -227,10 +228,12 @@ std::map<std::string, double> named_dimensions(const Shape& shape) {
 std::shared_ptr<const Shape> shape_from_python(py::handle shape) {
     if (shape.is_none()) return nullptr;
     if (py::isinstance<OpaqueShape>(shape)) return shape.cast<const OpaqueShape&>().shape;
-    if (py::isinstance(shape, record_class("GeneratedPart"))) {
-        const auto generator = member_of<std::string>(shape, "GeneratedPart", "generator");
-        const auto dimensions = member_of<NamedNumbers>(shape, "GeneratedPart", "values");
-        return value_or_raise(GeneratedPart::create(generator, dimensions, {member_of<int>(shape, "GeneratedPart", "segments")}));
+    if (py::isinstance(shape, record_class("Part"))) {
+        const shapes::PartOptions options{member_of<core::part_files::Counts>(shape, "Part", "counts"),
+                                          member_of<double>(shape, "Part", "chord")};
+        check_at_least("part/chord", options.chord, 0);
+        return value_or_raise(
+            FilePart::create(member_of<std::string>(shape, "Part", "part"), member_of<NamedNumbers>(shape, "Part", "values"), options));
     }
     if (py::isinstance(shape, record_class("MeshShape"))) return std::make_shared<PythonMeshShape>(shape);
     if (py::isinstance(shape, record_class("ProgramShape")))
@@ -243,8 +246,8 @@ std::shared_ptr<const Shape> shape_from_python(py::handle shape) {
 py::object shape_to_python(const std::shared_ptr<const Shape>& shape) {
     if (!shape) return py::none();
     if (const auto* own = dynamic_cast<const PythonShape*>(shape.get())) return own->object();
-    if (const auto* part = dynamic_cast<const GeneratedPart*>(shape.get()))
-        return record_class("GeneratedPart")(part->generator(), named_dimensions(*part), part->options().segments);
+    if (const auto* part = dynamic_cast<const FilePart*>(shape.get()))
+        return record_class("Part")(part->part(), named_dimensions(*part), part->options().counts, part->options().chord);
     if (const auto* made = dynamic_cast<const PythonMeshShape*>(shape.get())) return made->object();
     if (const auto* part = dynamic_cast<const shapes::ProgramPart*>(shape.get()))
         return record_class("ProgramShape")(part->program(), named_dimensions(*part));
@@ -274,17 +277,17 @@ void bind_shapes(py::module_& module) {
         py::arg("shape"), py::arg("values") = py::dict(),
         "How a shape's derivative was found at these dimensions, and how exact it is; empty: it is exact.");
     module.def(
-        "generators",
+        "part_dimensions", [](const py::object& part) { return named_dimensions(*shape_from_python(part)); }, py::arg("part"),
+        "{dimension: value} of a part, SI: as it says, or else as its file does.");
+    module.def(
+        "parts",
         [] {
             py::dict table;
-            for (const shapes::GeneratorInfo& info : shapes::generator_table()) {
-                py::dict dimensions;
-                for (const auto& dimension : info.dimensions) dimensions[py::str(dimension.name)] = dimension.default_value;
-                table[py::str(info.name)] = dimensions;
-            }
+            for (const shapes::LibraryPart& each : shapes::part_library())
+                table[py::str(std::string(each.name))] = shapes::find_part(std::string(each.name)).value().about();
             return table;
         },
-        "{generator: {dimension: default [m]}}");
+        "{part: what it is} of the library.");
 }
 
 }  // namespace fettle::design::python

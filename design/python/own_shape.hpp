@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Shapes between Python and the library. A generator's part is fettle.GeneratedPart on both sides; an object with `dimensions()` and
+/// Shapes between Python and the library. A part of a file is fettle.Part on both sides; an object with `dimensions()` and
 /// `at()` (fettle.Shape) is a Shape of the library, called with the interpreter's lock, from several threads one after the other.
 #pragma once
 

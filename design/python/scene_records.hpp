@@ -63,8 +63,8 @@ FETTLE_RECORD(fettle::core::scene::Damping, "Damping", field("linear", &Type::li
 FETTLE_RECORD(fettle::core::scene::MeshProgram, "MeshProgram", path_field("command", &Type::command),
               path_field("directory", &Type::directory), field("format", &Type::format), field("unit", &Type::unit),
               field("time_limit", &Type::time_limit))
-FETTLE_RECORD(fettle::core::scene::ShapeSpec, "ShapeSpec", field("generator", &Type::generator), field("dimensions", &Type::dimensions),
-              field("counts", &Type::counts), field("program", &Type::program), field("part", &Type::part), field("chord", &Type::chord),
+FETTLE_RECORD(fettle::core::scene::ShapeSpec, "ShapeSpec", field("part", &Type::part), field("dimensions", &Type::dimensions),
+              field("counts", &Type::counts), field("program", &Type::program), field("chord", &Type::chord),
               field("angles", &Type::angles), field("numbers", &Type::numbers))
 FETTLE_RECORD(fettle::core::scene::Curve, "Curve", field("kind", &Type::kind), field("rate", &Type::rate), field("times", &Type::times),
               field("values", &Type::values), field("stop_time", &Type::stop_time))

@@ -7,6 +7,7 @@
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
+#include "fettle/core/part_files/part_file.hpp"
 
 namespace fettle::design::reading {
 
@@ -21,7 +22,8 @@ void make_numbers_equal(nlohmann::json& json) {
     for (auto& child : json) make_numbers_equal(child);
 }
 
-// Everything of a scene that is not in its own text: meshes, which come from files or generators.
+// Everything of a scene that is not in its own text: meshes, which come from files or are made from dimensions, and part files, which say
+// what becomes of them at other dimensions.
 void append_bytes(std::string& text, const void* data, size_t size) { text.append(static_cast<const char*>(data), size); }
 
 }  // namespace
@@ -53,6 +55,8 @@ std::string design_hash(const DesignFile& file) {
     for (const core::scene::Body& body : file.design.scene.bodies) {
         append_bytes(all, body.mesh.vertices.data(), static_cast<size_t>(body.mesh.vertices.size()) * sizeof(double));
         append_bytes(all, body.mesh.triangles.data(), body.mesh.triangles.size() * sizeof(core::geometry::Triangle));
+        if (!body.shape || !body.shape->part.ends_with(core::part_files::part_file_ending)) continue;
+        if (const Result<std::string> part = core::files::read_file(body.shape->part)) all += *part;
     }
     return core::files::hash_of(all);
 }

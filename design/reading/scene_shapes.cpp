@@ -6,7 +6,6 @@
 #include <string>
 
 #include "fettle/design/shapes/file_part.hpp"
-#include "fettle/design/shapes/generated_part.hpp"
 #include "fettle/design/shapes/mesh_program.hpp"
 #include "fettle/design/shapes/part_library.hpp"
 
@@ -22,28 +21,6 @@ MadeShape as_shape(const Result<std::shared_ptr<const Part>>& part) {
     return std::shared_ptr<const description::Shape>(*part);
 }
 
-// How its facets are cut is said with its counts.
-MadeShape part_of_file(const core::scene::ShapeSpec& spec) {
-    core::part_files::Counts counts = spec.counts;
-    const auto segments = counts.find("segments");
-    std::optional<int> asked;
-    if (segments != counts.end()) {
-        asked = segments->second;
-        if (*asked < core::part_files::fewest_circle_segments || *asked > core::part_files::most_circle_segments)
-            return Error{ErrorCode::out_of_range, "counts/segments", "segments is " + std::to_string(*asked) + "; allowed: from 8 to 720"};
-        if (spec.chord > 0)
-            return Error{ErrorCode::inconsistent, "counts/segments",
-                         "`facets` says how far facets may be from what is round; `segments` goes without it"};
-        counts.erase(segments);
-    }
-    auto file = shapes::find_part(spec.part, counts);
-    if (!file) return file.errors();
-    core::parts::Facets facets = file->facets();
-    facets.chord = spec.chord;
-    facets.segments = asked.value_or(facets.segments);
-    return as_shape(shapes::FilePart::create(std::move(file).value(), spec.dimensions, facets));
-}
-
 Result<std::map<std::string, core::base::Dimension>> dimensions_of_part(const core::scene::ShapeSpec& spec) {
     core::part_files::Counts counts = spec.counts;
     counts.erase("segments");
@@ -56,16 +33,7 @@ Result<std::map<std::string, core::base::Dimension>> dimensions_of_part(const co
 }
 
 MadeShape shape_of_spec(const core::scene::ShapeSpec& spec, Programs programs) {
-    if (!spec.part.empty()) return part_of_file(spec);
-    if (!spec.program) {
-        shapes::ShapeOptions options;
-        for (const auto& [name, value] : spec.counts) {
-            if (name != "segments")
-                return Error{ErrorCode::unknown_key, "counts/" + name, "unknown count \"" + name + "\"; the only one is \"segments\""};
-            options.segments = value;
-        }
-        return as_shape(shapes::GeneratedPart::create(spec.generator, spec.dimensions, options));
-    }
+    if (!spec.program) return as_shape(shapes::FilePart::create(spec.part, spec.dimensions, {spec.counts, spec.chord}));
     if (programs == Programs::refused) {
         const std::string name = spec.program->command.empty() ? "" : spec.program->command.front();
         return Error{ErrorCode::unsupported, "program",
@@ -83,7 +51,7 @@ core::scene::ReadOptions scene_read_options(const std::vector<std::string>& mesh
     core::scene::ReadOptions options;
     options.mesh_dirs = mesh_dirs;
     options.part_dimensions = dimensions_of_part;
-    options.shape_generator = [programs, made](const core::scene::ShapeSpec& spec) -> Result<core::geometry::Mesh> {
+    options.shape_maker = [programs, made](const core::scene::ShapeSpec& spec) -> Result<core::geometry::Mesh> {
         for (const MadePart& part : *made)
             if (part.spec == spec) return part.mesh;
         const auto shape = shape_of_spec(spec, programs);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Joins the scene's description of parts that are made (core/scene/scene.hpp, ShapeSpec) with the generators (shapes/generated_part.hpp),
-/// the parts of files (shapes/file_part.hpp) and the designer's own programs (shapes/mesh_program.hpp).
+/// Joins the scene's description of parts that are made (core/scene/scene.hpp, ShapeSpec) with the parts of files (shapes/file_part.hpp)
+/// and the designer's own programs (shapes/mesh_program.hpp).
 #pragma once
 
 #include <memory>
@@ -16,8 +16,7 @@ namespace fettle::design::reading {
 /// May a file's parts be made by the programs that it names? Never because the file says so: because the user does.
 enum class Programs { refused, allowed };
 
-/// A part that was made while a scene was read. Errors (unsupported): a program where programs are refused, a generator's count other than
-/// `segments`.
+/// A part that was made while a scene was read. Errors (unsupported): a program where programs are refused.
 struct MadePart {
     core::scene::ShapeSpec spec;
     std::shared_ptr<const description::Shape> shape;

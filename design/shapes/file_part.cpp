@@ -2,15 +2,18 @@
 #include "fettle/design/shapes/file_part.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/design/shapes/part_library.hpp"
 
 namespace fettle::design::shapes {
 
 using core::part_files::PartDimension;
 using core::part_files::PartFile;
 using core::parts::DrawnPart;
+using core::parts::Facets;
 
 namespace {
 
@@ -26,24 +29,56 @@ Errors unknown_dimensions(const PartFile& file, const std::map<std::string, doub
     return errors;
 }
 
+constexpr const char* segments_name = "segments";  // how facets are cut is said with the counts
+
+std::optional<Error> segments_fault(const PartOptions& options) {
+    constexpr int fewest = 8, most = 720;
+    const std::string where = std::string("counts/") + segments_name;
+    const auto segments = options.counts.find(segments_name);
+    if (segments == options.counts.end()) return std::nullopt;
+    if (segments->second < fewest || segments->second > most)
+        return Error{ErrorCode::out_of_range, where, "segments is " + std::to_string(segments->second) + "; allowed: from 8 to 720"};
+    if (options.chord > 0)
+        return Error{ErrorCode::inconsistent, where, "`facets` says how far facets may be from what is round; `segments` goes without it"};
+    return std::nullopt;
+}
+
+Facets facets_of(const PartFile& file, const PartOptions& options) {
+    Facets facets = file.facets();
+    const auto segments = options.counts.find(segments_name);
+    if (segments != options.counts.end()) {
+        facets.segments = segments->second;
+        facets.chord = 0;
+    }
+    if (options.chord > 0) facets.chord = options.chord;
+    return facets;
+}
+
 }  // namespace
 
-Result<std::shared_ptr<const FilePart>> FilePart::create(PartFile file, const std::map<std::string, double>& dimensions,
-                                                         const core::parts::Facets& facets) {
-    const Errors errors = unknown_dimensions(file, dimensions);
+Result<std::shared_ptr<const FilePart>> FilePart::create(const std::string& part, const std::map<std::string, double>& dimensions,
+                                                         const PartOptions& options) {
+    if (auto fault = segments_fault(options)) return std::move(*fault);
+    core::part_files::Counts counts = options.counts;
+    counts.erase(segments_name);
+    Result<PartFile> file = find_part(part, counts);
+    if (!file) return file.errors();
+    const Errors errors = unknown_dimensions(*file, dimensions);
     if (!errors.empty()) return errors;
-    const std::shared_ptr<FilePart> part(new FilePart(std::move(file)));
-    part->facets_ = facets;
+    const std::shared_ptr<FilePart> made(new FilePart(std::move(*file), part, options));
+    made->facets_ = facets_of(made->file_, options);
     std::vector<double> values;
-    for (const PartDimension& dimension : part->file_.dimensions()) {
+    for (const PartDimension& dimension : made->file_.dimensions()) {
         const auto given = dimensions.find(dimension.name);
         values.push_back(given == dimensions.end() ? dimension.value : given->second);
-        part->dimensions_.push_back({dimension.name, values.back()});
+        made->dimensions_.push_back({dimension.name, values.back()});
     }
-    Result<DrawnPart> drawn = part->file_.drawn(values, facets, {}, {.jacobian = false});
+    Result<DrawnPart> drawn = made->file_.drawn(values, made->facets_, {}, {.jacobian = false});
     if (!drawn) return drawn.errors();
-    part->structure_ = std::move(drawn->structure);
-    return std::shared_ptr<const FilePart>(part);
+    made->structure_ = std::move(drawn->structure);
+    made->drawn_ = std::move(drawn->mesh);
+    made->drawn_.deviation = drawn->deviation;
+    return std::shared_ptr<const FilePart>(made);
 }
 
 Result<description::ShapeInstance> FilePart::at(const std::vector<double>& values) const {
@@ -54,6 +89,7 @@ Result<description::ShapeInstance> FilePart::at(const std::vector<double>& value
 }
 
 Result<core::geometry::Mesh> FilePart::mesh(const std::vector<double>& values) const {
+    if (values == description::drawn_values(*this)) return drawn_;
     Result<DrawnPart> drawn = file_.drawn(values, facets_, structure_, {.jacobian = false});
     if (!drawn) return drawn.errors();
     drawn->mesh.deviation = drawn->deviation;

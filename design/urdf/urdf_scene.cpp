@@ -15,7 +15,7 @@
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/mesh_files/mesh_writer.hpp"
 #include "fettle/core/scene/inertial.hpp"
-#include "fettle/design/shapes/shape_generator.hpp"
+#include "fettle/design/shapes/file_part.hpp"
 
 namespace fettle::design::urdf {
 
@@ -53,10 +53,9 @@ Mesh sphere_mesh(double radius) {
     return core::geometry::make_mesh("sphere", x, triangles);
 }
 
-Result<Mesh> generated(const std::string& generator, const std::map<std::string, double>& dimensions) {
-    auto shape = shapes::generate(generator, dimensions);
-    if (!shape) return shape.errors();
-    return std::move(shape->mesh);
+Result<Mesh> part_mesh(const std::string& part, const std::map<std::string, double>& dimensions) {
+    const auto shape = shapes::FilePart::create(part, dimensions);
+    return shape ? description::drawn_mesh(**shape) : Result<Mesh>(shape.errors());
 }
 
 /// Where a mesh may be: as it is named, relative to the file; of package://NAME/x also NAME/x and x below each folder above it.
@@ -85,9 +84,9 @@ Result<std::string> find_mesh(std::string name, const ImportOptions& options) {
 Result<Mesh> mesh_of(const Geometry& geometry, const ImportOptions& options) {
     switch (geometry.kind) {
         case GeometryKind::box:
-            return generated("box", {{"size_x", geometry.size.x()}, {"size_y", geometry.size.y()}, {"size_z", geometry.size.z()}});
+            return part_mesh("box", {{"size_x", geometry.size.x()}, {"size_y", geometry.size.y()}, {"size_z", geometry.size.z()}});
         case GeometryKind::cylinder:
-            return generated("pin", {{"radius", geometry.radius}, {"length", geometry.length}});
+            return part_mesh("cylinder", {{"radius", geometry.radius}, {"length", geometry.length}});
         case GeometryKind::sphere:
             return sphere_mesh(geometry.radius);
         case GeometryKind::mesh:

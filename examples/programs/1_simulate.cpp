@@ -4,16 +4,17 @@
 
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/shapes/shape_generator.hpp"
+#include "fettle/design/shapes/file_part.hpp"
 
 namespace core = fettle::core;
 
-// A body with a generated box for its mesh. A static body has all its coordinates held.
+// A body with the library's box for its mesh. A static body has all its coordinates held.
 core::scene::Body box(const std::string& name, core::scene::BodyType type, double side, double height) {
     core::scene::Body body;
     body.name = name;
     body.type = type;
-    body.mesh = fettle::design::shapes::generate("box", {{"size_x", side}, {"size_y", side}, {"size_z", height}}).value().mesh;
+    const auto part = fettle::design::shapes::FilePart::create("box", {{"size_x", side}, {"size_y", side}, {"size_z", height}});
+    body.mesh = drawn_mesh(**part).value();
     if (type == core::scene::BodyType::static_body) body.prescribed.fill(core::scene::MotionCurve{});
     return body;
 }

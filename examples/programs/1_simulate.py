@@ -4,7 +4,7 @@ import fettle
 
 
 def box(side, height):
-    mesh, _ = fettle.GeneratedPart("box", {"size_x": side, "size_y": side, "size_z": height}).at({})
+    mesh, _ = fettle.Part("box", {"size_x": side, "size_y": side, "size_z": height}).at({})
     return mesh
 
 

@@ -7,7 +7,7 @@
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/shapes/shape_generator.hpp"
+#include "fettle/design/shapes/file_part.hpp"
 
 namespace core = fettle::core;
 
@@ -15,7 +15,8 @@ core::scene::Body box(const std::string& name, core::scene::BodyType type, const
     core::scene::Body body;
     body.name = name;
     body.type = type;
-    body.mesh = fettle::design::shapes::generate("box", {{"size_x", size.x()}, {"size_y", size.y()}, {"size_z", size.z()}}).value().mesh;
+    const auto part = fettle::design::shapes::FilePart::create("box", {{"size_x", size.x()}, {"size_y", size.y()}, {"size_z", size.z()}});
+    body.mesh = drawn_mesh(**part).value();
     if (type == core::scene::BodyType::static_body) body.prescribed.fill(core::scene::MotionCurve{});
     return body;
 }

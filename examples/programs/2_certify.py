@@ -5,7 +5,7 @@ import fettle
 
 
 def box(x, y, z):
-    mesh, _ = fettle.GeneratedPart("box", {"size_x": x, "size_y": y, "size_z": z}).at({})
+    mesh, _ = fettle.Part("box", {"size_x": x, "size_y": y, "size_z": z}).at({})
     return mesh
 
 

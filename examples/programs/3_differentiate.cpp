@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "fettle/design/gradient_audit/difference_check.hpp"
-#include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/design/shapes/file_part.hpp"
 
 namespace core = fettle::core;
 using namespace fettle::design::description;
@@ -40,7 +40,7 @@ int main() {
     table.pose.position = {0, 0, -0.005};
     brick.pose.position = {0.003, 0.001, 0.00512};
     const auto box = [](double x, double y, double z) {
-        return fettle::design::shapes::GeneratedPart::create("box", {{"size_x", x}, {"size_y", y}, {"size_z", z}}).value();
+        return fettle::design::shapes::FilePart::create("box", {{"size_x", x}, {"size_y", y}, {"size_z", z}}).value();
     };
     if (!add_part(design, table, box(0.06, 0.06, 0.01)) || !add_part(design, brick, box(0.02, 0.012, 0.01))) return 3;
     design.parameters = {{"length", 0.02, 0.015, 0.03, *fettle::find_unit("mm")}, {"speed", 0.7, 0.2, 1.0, *fettle::find_unit("rad/s")}};

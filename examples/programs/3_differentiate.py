@@ -24,7 +24,7 @@ class MeanHeight(fettle.Quantity):
 
 
 def box(x, y, z):
-    return fettle.GeneratedPart("box", {"size_x": x, "size_y": y, "size_z": z})
+    return fettle.Part("box", {"size_x": x, "size_y": y, "size_z": z})
 
 
 design = fettle.Design(scene=fettle.Scene(gravity=[0, 0, -9.81], timestep=0.005), steps=12)

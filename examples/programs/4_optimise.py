@@ -5,7 +5,7 @@ import numpy as np
 
 import fettle
 
-UNIT, _ = fettle.GeneratedPart("box", {"size_x": 2, "size_y": 2, "size_z": 0.01}).at({})
+UNIT, _ = fettle.Part("box", {"size_x": 2, "size_y": 2, "size_z": 0.01}).at({})
 
 
 class Peg(fettle.Shape):
@@ -27,7 +27,7 @@ design = fettle.Design(steps=1)
 wall = fettle.Body("wall", type="static", prescribed=fettle.held())
 wall.pose.position = [0.015, 0, 0]  # its face stands at x = 10 mm
 fettle.add_part(design, fettle.Body("peg"), Peg())
-fettle.add_part(design, wall, fettle.GeneratedPart("box", {"size_x": 0.01, "size_y": 0.04, "size_z": 0.04}))
+fettle.add_part(design, wall, fettle.Part("box", {"size_x": 0.01, "size_y": 0.04, "size_z": 0.04}))
 design.parameters = [
     fettle.Parameter("foot", 0.004, 0.002, 0.012, "mm"),
     fettle.Parameter("top", 0.005, 0.002, 0.012, "mm"),

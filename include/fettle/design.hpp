@@ -6,10 +6,10 @@
 #include "fettle/design/description/design.hpp"
 #include "fettle/design/description/quantity.hpp"
 #include "fettle/design/description/shape.hpp"
-// Parts that are generated: the shapes that are there, by name, and any Shape at its dimensions.
-#include "fettle/design/shapes/generated_part.hpp"
-#include "fettle/design/shapes/shape_generator.hpp"
-// Read from its file; scenes with parts that are generated.
+// Parts by their files: those of the library, by name, and one's own.
+#include "fettle/design/shapes/file_part.hpp"
+#include "fettle/design/shapes/part_library.hpp"
+// Read from its file; scenes with such parts.
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 // The quantities that are there.

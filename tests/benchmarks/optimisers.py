@@ -163,6 +163,7 @@ def bank(arguments, _):
             scene["variables"][rename(name)] = renamed(value)
         for body in renamed(bodies):
             body["name"] = rename(body["name"])
+            body["shape"]["part"] = os.path.join(folder, body["shape"]["part"])
             position = body.get("position", [0, 0, 0])
             body["position"] = [position[0] + 60 * copy, *position[1:]]
             scene["bodies"].append(body)

@@ -10,10 +10,10 @@ inline const char* bore_scene = R"({
   "fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.01,
   "bodies": [
     { "name": "plate", "type": "static",
-      "shape": { "generator": "plate_with_hole",
+      "shape": { "part": "plate_with_hole",
                  "dimensions": { "size_x": 30, "size_y": 30, "thickness": 5, "hole_radius": 5.4 }, "counts": { "segments": 32 } } },
     { "name": "pin", "type": "static", "density": 1000,
-      "shape": { "generator": "pin", "dimensions": { "radius": 5, "length": 20 }, "counts": { "segments": 32 } } }
+      "shape": { "part": "cylinder", "dimensions": { "radius": 5, "length": 20 }, "counts": { "segments": 32 } } }
   ]
 })";
 

@@ -15,12 +15,12 @@ inline const char* small_scene = R"({
   "contact": { "dhat": 0.1 },
   "bodies": [
     { "name": "table", "type": "kinematic",
-      "shape": { "generator": "box", "dimensions": { "size_x": 60, "size_y": 60, "size_z": 10 } },
+      "shape": { "part": "box", "dimensions": { "size_x": 60, "size_y": 60, "size_z": 10 } },
       "position": [0, 0, -5], "prescribed": { "ry": { "rate": 40 } } },
     { "name": "cube", "density": 1000, "angular_velocity": [20, 10, 0],
-      "shape": { "generator": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 } }, "position": [3, 1, 5.12] },
+      "shape": { "part": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 } }, "position": [3, 1, 5.12] },
     { "name": "wall", "type": "static",
-      "shape": { "generator": "box", "dimensions": { "size_x": 5, "size_y": 60, "size_z": 60 } }, "position": [40, 0, 0] }
+      "shape": { "part": "box", "dimensions": { "size_x": 5, "size_y": 60, "size_z": 60 } }, "position": [40, 0, 0] }
   ]
 })";
 

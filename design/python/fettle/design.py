@@ -3,7 +3,7 @@
 Shapes and quantities of one's own derive from Shape and Quantity.
 
     design = fettle.Design(scene=fettle.Scene(timestep=0.01), steps=50)
-    fettle.add_part(design, fettle.Body("pin"), fettle.GeneratedPart("pin", {"radius": 5e-3}))
+    fettle.add_part(design, fettle.Body("pin"), fettle.Part("cylinder", {"radius": 5e-3}))
     radius = fettle.Parameter("radius", "5mm", "4mm", "6mm", "mm")
     design.parameters.append(radius)
     design.set("/bodies/pin/shape/dimensions/radius", radius)
@@ -50,19 +50,17 @@ class Shape:
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class GeneratedPart(Record, Shape):
-    """A generator's part (fettle.generators() lists them); dimensions that are left out take their defaults."""
+class Part(Record, Shape):
+    """A part of the library (fettle.parts() lists them), or of a file of one's own, "spacer.part.json"; dimensions that are left out are as in
+    its file."""
 
-    generator: str
-    values: Dict[str, Number] = number("length", factory=dict)  #: [m]
-    segments: int = 24  #: of a full circle
+    part: str
+    values: Dict[str, Number] = number("length", factory=dict)  #: dimensions [m], angles [rad]
+    counts: Dict[str, int] = dataclasses.field(default_factory=dict)  #: teeth, slots, ...; segments of a full circle
+    chord: Number = number("length", 0.0)  #: how far facets may be from what is round [m]; 0: by the segments
 
     def dimensions(self) -> Dict[str, float]:
-        known = _fettle.generators()
-        if self.generator not in known:
-            message = f"there is no generator {self.generator!r}; {did_you_mean(self.generator, list(known))}"
-            raise Error([Fault("unknown_key", "generated part/generator", message)])
-        return {**known[self.generator], **self.values}
+        return _fettle.part_dimensions(self)
 
     def at(self, values: Dict[str, float]) -> Tuple[Mesh, Mapping[str, ArrayLike]]:
         return _fettle.shape_at(self, values)

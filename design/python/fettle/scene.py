@@ -105,13 +105,12 @@ class MeshProgram(Record):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class ShapeSpec(Record):
-    """What makes a body's mesh: a generator, a part file, or a program."""
+    """What makes a body's mesh: a part file, or a program."""
 
-    generator: str = ""  #: its name; empty: a part file or a program makes the part
+    part: str = ""  #: of the library, a file, or the text of one; empty: a program makes the part
     dimensions: Dict[str, Number] = number("length", factory=dict)  #: [m], but for those that are listed below, in SI
     counts: Dict[str, int] = dataclasses.field(default_factory=dict)
     program: Optional[MeshProgram] = None
-    part: str = ""  #: of the library, a file, or the text of one
     chord: Number = number("length", 0.0)  #: of a part: largest distance of a facet from what it stands for [m]; 0: by counts
     angles: List[str] = dataclasses.field(default_factory=list)  #: dimensions of a part that are angles [rad]
     numbers: List[str] = dataclasses.field(default_factory=list)  #: and those that are plain numbers

@@ -54,8 +54,8 @@ constexpr double pi = std::numbers::pi;
 TEST_CASE("part file: segments of a circle, where nobody asks for others") {
     const std::string disc = R"("solid": {"extrude": {"circle": 1}, "to": 1})";
     CHECK(PartFile::parse(part(disc), "a.part.json")->facets().segments == 48);
-    CHECK(PartFile::parse(part(R"("segments": 12, )" + disc), "a.part.json")->facets().segments == 12);
-    CHECK(is_told(reading_faults(part(R"("segments": 7, )" + disc)), "#/segments", "8"));
+    CHECK(PartFile::parse(part(R"("facets": {"segments": 12}, )" + disc), "a.part.json")->facets().segments == 12);
+    CHECK(is_told(reading_faults(part(R"("facets": {"segments": 7}, )" + disc)), "#/facets/segments", "8"));
 }
 
 TEST_CASE("part file: an offset that is undercut is cut, or refused where the file says so") {

@@ -209,7 +209,7 @@ TEST_CASE("Each wrong input gives its message and its place", "[scene]") {
         {with("/bodies/0/prescribed", {{"rz", {{"times", {0}}, {"values", {5}}}}}), ErrorCode::inconsistent,
          "#/bodies/0/prescribed/rz/values", "must be 0"},
         {with("/bodies/0/prescribed", {{"rw", json::object()}}), ErrorCode::unknown_key, "#/bodies/0/prescribed/rw", "did you mean `rx`?"},
-        {with("/bodies/0/shape", {{"generator", "pin"}}), ErrorCode::inconsistent, "#/bodies/0", "either"},
+        {with("/bodies/0/shape", {{"part", "pin"}}), ErrorCode::inconsistent, "#/bodies/0", "either"},
         {with("/units", "inch"), ErrorCode::out_of_range, "#/units", "in"},
         {with("/fettle_scene", 2), ErrorCode::out_of_range, "#/fettle_scene", "1"},
         {with("/timestep", 0), ErrorCode::out_of_range, "#/timestep", "greater than 0"},

@@ -273,12 +273,12 @@ TEST_CASE("A motion table is piecewise linear, constant outside, and stops", "[s
     CHECK(scene::motion_value(curve, 1.5) == 4.5);
 }
 
-TEST_CASE("Shapes are made by whoever has generators", "[scene]") {
+TEST_CASE("Shapes are made by whoever has parts", "[scene]") {
     const Workshop shop;
     json text = plain();
     text["bodies"][0].erase("mesh");
     text["bodies"][0]["shape"] =
-        json::parse(R"({"generator": "pin", "dimensions": {"radius": 2.5, "length": "1cm"}, "counts": {"facets": 32}})");
+        json::parse(R"({"part": "pin", "dimensions": {"radius": 2.5, "length": "1cm"}, "counts": {"facets": 32}})");
     SECTION("none here") {
         const auto errors = shop.read(text).errors();
         REQUIRE(errors.size() == 1);
@@ -287,8 +287,8 @@ TEST_CASE("Shapes are made by whoever has generators", "[scene]") {
     }
     SECTION("given") {
         scene::ReadOptions options;
-        options.shape_generator = [](const scene::ShapeSpec& spec) -> base::Result<geometry::Mesh> {
-            CHECK(spec.generator == "pin");
+        options.shape_maker = [](const scene::ShapeSpec& spec) -> base::Result<geometry::Mesh> {
+            CHECK(spec.part == "pin");
             const double r = spec.dimensions.at("radius");
             CHECK(r == 0.0025);
             CHECK(spec.counts.at("facets") == 32);
@@ -302,7 +302,7 @@ TEST_CASE("Shapes are made by whoever has generators", "[scene]") {
     }
     SECTION("none is asked for where a number or the unit is wrong, which alone is told") {
         scene::ReadOptions options;
-        options.shape_generator = [](const scene::ShapeSpec&) -> base::Result<geometry::Mesh> {
+        options.shape_maker = [](const scene::ShapeSpec&) -> base::Result<geometry::Mesh> {
             return base::Error{ErrorCode::out_of_range, "facets", "facets is 0"};
         };
         json many = text, unknown = text;
@@ -316,7 +316,7 @@ TEST_CASE("Shapes are made by whoever has generators", "[scene]") {
     }
     SECTION("that fails") {
         scene::ReadOptions options;
-        options.shape_generator = [](const scene::ShapeSpec&) -> base::Result<geometry::Mesh> {
+        options.shape_maker = [](const scene::ShapeSpec&) -> base::Result<geometry::Mesh> {
             return base::Error{ErrorCode::out_of_range, "radius", "too small"};
         };
         const auto errors = shop.read(text, options).errors();
@@ -352,7 +352,7 @@ TEST_CASE("The schema lists exactly the keys that the reader accepts", "[scene]"
     scene["bodies"][0]["type"] = "kinematic";
     scene["bodies"][0]["script"] = json::array({json::object()});
     scene["bodies"][0]["prescribed"] = {{"rz", json::object()}};
-    json shaped = with("/bodies/0/shape", {{"generator", "x"}});
+    json shaped = with("/bodies/0/shape", {{"part", "x"}});
     shaped["bodies"][0].erase("mesh");
     json made = shaped;  // what a part takes depends on who makes it
     made["bodies"][0]["shape"] = {{"program", {"make"}}};

@@ -23,13 +23,13 @@ using fettle::tests::support::run;
 const char* row_scene = R"({
   "fettle_scene": 1, "units": "mm", "timestep": 0.1, "end_time": 1,
   "bodies": [
-    { "name": "slide", "type": "kinematic", "shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } },
+    { "name": "slide", "type": "kinematic", "shape": { "part": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } },
       "prescribed": { "px": { "rate": -1 } } },
-    { "name": "pin1", "type": "static", "shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } },
+    { "name": "pin1", "type": "static", "shape": { "part": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } },
       "position": [10.5, 0, 0] },
-    { "name": "pin2", "type": "static", "shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } },
+    { "name": "pin2", "type": "static", "shape": { "part": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } },
       "position": [20.7, 0, 0] },
-    { "name": "spin", "type": "kinematic", "shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } },
+    { "name": "spin", "type": "kinematic", "shape": { "part": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } },
       "position": [33.7, 0, 0], "prescribed": { "rz": { "rate": 90 } } }
   ]
 })";

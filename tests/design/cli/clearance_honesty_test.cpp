@@ -25,7 +25,7 @@ using fettle::tests::support::contents;
 using fettle::tests::support::run;
 
 std::string box_body(const std::string& name, const std::string& type, const std::string& size, const std::string& position) {
-    return R"({ "name": ")" + name + R"(", "type": ")" + type + R"(", "shape": { "generator": "box", "dimensions": { "size_x": )" + size +
+    return R"({ "name": ")" + name + R"(", "type": ")" + type + R"(", "shape": { "part": "box", "dimensions": { "size_x": )" + size +
            R"(, "size_y": 10, "size_z": 10 } }, "position": )" + position + " }";
 }
 
@@ -89,11 +89,11 @@ TEST_CASE("clearance: why nothing was judged is told, joints or groups") {
     const auto message = [](const std::string& group, const std::string& joints) {
         const DesignFolder folder(small_design,
                                   R"({ "fettle_scene": 1, "units": "mm", "bodies": [{ "name": "a", "type": "static",)" + group +
-                                      R"("shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } } },
+                                      R"("shape": { "part": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } } },
                                          { "name": "b",)" +
                                       group +
                                       R"("position": [11, 0, 0], "density": 1000,
-            "shape": { "generator": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } } }])" +
+            "shape": { "part": "box", "dimensions": { "size_x": 10, "size_y": 10, "size_z": 10 } } }])" +
                                       joints + " }");
         return run("clearance " + folder.file("small.scene.json") + " --minimum 0.3mm --json").json().value("message", "");
     };

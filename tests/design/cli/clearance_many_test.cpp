@@ -25,7 +25,7 @@ std::string row() {
     double x = 0;
     for (int i = 0; i < cubes; ++i) {
         text += std::string(i > 0 ? "," : "") + R"({"name": "cube)" + std::to_string(i) + R"(", "type": "kinematic", "shape": )" +
-                R"({"generator": "box", "dimensions": {"size_x": 10, "size_y": 10, "size_z": 10}}, "position": [)" + std::to_string(x) +
+                R"({"part": "box", "dimensions": {"size_x": 10, "size_y": 10, "size_z": 10}}, "position": [)" + std::to_string(x) +
                 R"(, 0, 0], "prescribed": {"rx": {"rate": )" + std::to_string(5 + 10 * (i % 3)) + "}}}";
         x += i % 3 == 0 ? 10.5 : i % 3 == 1 ? 10.9 : 12;
     }

@@ -291,7 +291,7 @@ TEST_CASE("kinematic: where joints are not proven to have bodies there is no bou
         if (body["name"] == "left_hand") body["prescribed"] = {{"pz", {{"rate", 0}}}};
     scene["bodies"].push_back({{"name", "wall"},
                                {"type", "static"},
-                               {"shape", {{"generator", "box"}, {"dimensions", {{"size_x", 1}, {"size_y", 1}, {"size_z", 1}}}}},
+                               {"shape", {{"part", "box"}, {"dimensions", {{"size_x", 1}, {"size_y", 1}, {"size_z", 1}}}}},
                                {"position", {900, 0, 0}}});
     const DesignFolder folder(small_design, scene.dump());
     const std::string proof = folder.file("fit.certificate.json");

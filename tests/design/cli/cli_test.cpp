@@ -164,9 +164,9 @@ TEST_CASE("gradient --check tells which contacts are about to change") {
   "fettle_scene": 1, "units": "mm", "gravity": [0, 0, 0], "timestep": 0.001, "end_time": 0.003, "contact": { "dhat": 0.1 },
   "bodies": [
     { "name": "table", "type": "static", "position": [0, 0, -5],
-      "shape": { "generator": "box", "dimensions": { "size_x": 60, "size_y": 60, "size_z": 10 } } },
+      "shape": { "part": "box", "dimensions": { "size_x": 60, "size_y": 60, "size_z": 10 } } },
     { "name": "block", "density": 1000, "fixed": ["px", "pz", "rx", "ry", "rz"], "position": [0, 0, 5.12],
-      "shape": { "generator": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 } } }
+      "shape": { "part": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 } } }
   ]
 })");
     const Json changes = run("gradient " + folder.design() + " --check --json").json().at("contact_changes");

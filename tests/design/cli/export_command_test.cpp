@@ -21,8 +21,8 @@ std::string scene(const TemporaryFolder& folder, const std::string& gravity = "[
     return folder.write("fall.scene.json",
                         R"({"fettle_scene": 1, "units": "mm", "gravity": )" + gravity + R"(, "timestep": 0.002, "end_time": 0.006,
         "bodies": [
-            {"name": "low/er", "type": "static", "shape": {"generator": "box"}, "position": [0, 0, -10]},
-            {"name": "upper", "density": 1000, "shape": {"generator": "pin"}, "position": [1, 2, 11]}]})");
+            {"name": "low/er", "type": "static", "shape": {"part": "box"}, "position": [0, 0, -10]},
+            {"name": "upper", "density": 1000, "shape": {"part": "cylinder"}, "position": [1, 2, 11]}]})");
 }
 
 std::vector<std::string> names(const std::filesystem::path& folder) {
@@ -154,11 +154,11 @@ TEST_CASE("draw: PNG and SVG, the nearest points, an instant of a motion") {
     CHECK(worst.json()["worst"]["upper"].get<double>() < 0.001);
     CHECK(contents(folder.file("c.svg")).find("class=\"witness\"") != std::string::npos);
     folder.write("deep.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
-        {"name": "plate", "type": "static", "shape": {"generator": "box", "dimensions": {"size_x": 60, "size_y": 40, "size_z": 10}}},
+        {"name": "plate", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 60, "size_y": 40, "size_z": 10}}},
         {"name": "low", "type": "static", "position": [-15, 0, 14.5],
-         "shape": {"generator": "box", "dimensions": {"size_x": 12, "size_y": 12, "size_z": 20}}},
+         "shape": {"part": "box", "dimensions": {"size_x": 12, "size_y": 12, "size_z": 20}}},
         {"name": "deep", "type": "static", "position": [15, 0, 10],
-         "shape": {"generator": "box", "dimensions": {"size_x": 12, "size_y": 12, "size_z": 20}}}]})");
+         "shape": {"part": "box", "dimensions": {"size_x": 12, "size_y": 12, "size_z": 20}}}]})");
     const Answer deep = run("draw " + folder.file("deep.scene.json") + " --out " + folder.file("deep.svg") + " --json");
     CHECK(deep.json()["worst"]["b"] == "deep");  // the deepest of two
     CHECK(contents(folder.file("deep.svg")).find("plate:deep interference, ") != std::string::npos);

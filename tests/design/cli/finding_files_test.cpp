@@ -161,10 +161,10 @@ TEST_CASE("check files: other commands, faults, and what no pass may come of") {
 }
 
 TEST_CASE("check files: warnings are remarks, about their file, and errors where asked to be strict") {
-    const std::string body = "\"shape\": {\"generator\": \"box\", \"dimensions\": {\"size_x\": 40000, \"size_y\": 9, \"size_z\": 9}}";
+    const std::string body = "\"shape\": {\"part\": \"box\", \"dimensions\": {\"size_x\": 40000, \"size_y\": 9, \"size_z\": 9}}";
     const DesignFolder folder(small_design,
                               replaced(small_scene,
-                                       R"("shape": { "generator": "box", "dimensions": { "size_x": 5, "size_y": 60, "size_z": 60 } },)"
+                                       R"("shape": { "part": "box", "dimensions": { "size_x": 5, "size_y": 60, "size_z": 60 } },)"
                                        R"( "position": [40, 0, 0])",
                                        body + ", \"position\": [0, 0, 500]"));
     const std::string scene = folder.file("small.scene.json");

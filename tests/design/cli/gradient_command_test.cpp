@@ -22,9 +22,9 @@ const std::string turned_scene = R"({
   "contact": { "dhat": 3 },
   "bodies": [
     { "name": "wheel", "density": 1000, "torque": [0, 0, 0.002],
-      "shape": { "generator": "box", "dimensions": { "size_x": 80, "size_y": 20, "size_z": 10 } } },
+      "shape": { "part": "box", "dimensions": { "size_x": 80, "size_y": 20, "size_z": 10 } } },
     { "name": "rotor", "density": 1000, "torque": [0.001, 0, 0], "position": [0, 0, 200], "angular_velocity": [90, 200, 30],
-      "shape": { "generator": "box", "dimensions": { "size_x": 60, "size_y": 30, "size_z": 10 } } }
+      "shape": { "part": "box", "dimensions": { "size_x": 60, "size_y": 30, "size_z": 10 } } }
   ],
   "joints": [{ "name": "axle", "type": "revolute", "b": "wheel", "point": [0, 0, 0], "axis": [0, 0, 1], "limits": [-90, 6],
                "friction": 0.0005 }],

@@ -34,8 +34,8 @@ int steps_in(const std::filesystem::path& path) {
 
 std::string scene(const TemporaryFolder& folder) {
     return folder.write("spin.scene.json", R"({"fettle_scene": 1, "units": "mm", "gravity": [0, 0, -9.81], "timestep": 0.001, "bodies": [
-        {"name": "ground", "type": "static", "shape": {"generator": "box", "dimensions": {"size_x": 200, "size_y": 200}}, "position": [0, 0, -10.1]},
-        {"name": "pin", "density": 1000, "shape": {"generator": "pin"}, "position": [0, 0, 10.5], "angular_velocity": [40, 10, 5]}]})");
+        {"name": "ground", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 200, "size_y": 200}}, "position": [0, 0, -10.1]},
+        {"name": "pin", "density": 1000, "shape": {"part": "cylinder"}, "position": [0, 0, 10.5], "angular_velocity": [40, 10, 5]}]})");
 }
 
 /// Starts the program and kills it once its running file has this many steps. @return false if it ended before.

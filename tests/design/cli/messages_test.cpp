@@ -65,7 +65,7 @@ TEST_CASE("messages: options and words that are not taken name what was probably
 }
 
 TEST_CASE("messages: why nothing is judged") {
-    const std::string body = R"("density": 1000, "shape": {"generator": "box", "dimensions": {"size_x": 4, "size_y": 4, "size_z": 4}}})";
+    const std::string body = R"("density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 4, "size_y": 4, "size_z": 4}}})";
     const DesignFolder folder;
     const auto said = [&](const std::string& more, const std::string& words) {
         const std::string scene =
@@ -143,7 +143,7 @@ TEST_CASE("messages: files of another version, and a scene that is not there") {
 TEST_CASE("messages: a motor without a joint is told once, by what is missing") {
     const TemporaryFolder folder;
     const Answer answer = run("validate " + folder.write("motor.scene.json", R"({"fettle_scene": 1, "units": "mm",
-        "bodies": [{"name": "a", "shape": {"generator": "box", "dimensions": {"size_x": 1, "size_y": 1, "size_z": 1}}}],
+        "bodies": [{"name": "a", "shape": {"part": "box", "dimensions": {"size_x": 1, "size_y": 1, "size_z": 1}}}],
         "joints": [{"name": "hinge", "type": "revolute", "b": "a", "point": [0, 0, 0], "axis": [0, 0, 1]}],
         "motors": [{"name": "drive"}]})"),
                               true);

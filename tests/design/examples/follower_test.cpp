@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The eccentric with its follower against closed forms (design/shapes/cam_parts.hpp).
+// The eccentric with its follower against closed forms (examples/README.md).
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The four-bar linkage against trigonometry (design/shapes/linkage_parts.hpp).
+// The four-bar linkage against trigonometry (examples/README.md).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

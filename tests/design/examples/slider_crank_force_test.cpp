@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "fettle/tests/design/examples/example_scene.hpp"
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
@@ -15,6 +16,7 @@ namespace fettle::design::examples::slider_crank_force_test {
 namespace {
 
 using Json = nlohmann::json;
+using tests::design_support::scene_of_example;
 
 struct Drive {
     double time, torque;
@@ -38,8 +40,7 @@ std::vector<Drive> crank_drives(const std::string& path) {
 
 TEST_CASE("the slider-crank's torque does the work of the piston's force, within the play of its joints", "[slow]") {
     const tests::support::TemporaryFolder folder;
-    std::ifstream in("examples/slider_crank/slider_crank.scene.json");
-    Json scene = Json::parse(in);
+    Json scene = scene_of_example("slider_crank");
     const double r = 0.0135, l = 0.045, force = 20;
     // Twice the fits of the three joints that carry the force: how far the piston can be from where exact joints would hold it, and back.
     const double lost = 2 * 3 * 1e-4;

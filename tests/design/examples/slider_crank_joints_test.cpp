@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "fettle/tests/design/examples/example_scene.hpp"
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
@@ -17,6 +18,7 @@ namespace fettle::design::examples::slider_crank_joints_test {
 namespace {
 
 using Json = nlohmann::json;
+using tests::design_support::scene_of_example;
 constexpr double r = 0.0135, l = 0.045, force = 20;
 constexpr int steps = 205;
 
@@ -78,8 +80,7 @@ Turn simulated(const Json& scene, const std::string& table, const std::string& d
 }
 
 Json loaded_scene() {
-    std::ifstream in("examples/slider_crank/slider_crank.scene.json");
-    Json scene = Json::parse(in);
+    Json scene = scene_of_example("slider_crank");
     scene["integrator"] = "quasi_static";
     scene["bodies"][3]["force"] = {-force, 0, 0};
     return scene;

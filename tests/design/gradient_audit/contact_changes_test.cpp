@@ -21,11 +21,11 @@ CheckReport checked(const std::string& place, const std::string& parameter, cons
   "fettle_scene": 1, "units": "mm", "gravity": [0, 0, 0], "timestep": 0.001, "end_time": 0.003,
   "contact": { "dhat": 0.1, "kappa": 100 }, "friction": { "mu": 0.2 },
   "bodies": [
-    { "name": "table", "shape": { "generator": "box", "dimensions": { "size_x": 60, "size_y": 60, "size_z": 10 } },
+    { "name": "table", "shape": { "part": "box", "dimensions": { "size_x": 60, "size_y": 60, "size_z": 10 } },
       "position": [0, 0, -5], )" +
                               table + R"( },
     { "name": "block", "density": 1000, "fixed": ["px", "pz", "rx", "ry", "rz"],
-      "shape": { "generator": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 } }, )" +
+      "shape": { "part": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 } }, )" +
                               place + R"( }
   ]
 })";

@@ -11,7 +11,7 @@
 #include "fettle/design/quantities/marker_path.hpp"
 #include "fettle/design/quantities/mass.hpp"
 #include "fettle/design/quantities/stroke.hpp"
-#include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/design/shapes/file_part.hpp"
 #include "fettle/design/studies/optimise_design.hpp"
 #include "fettle/tests/design/small_problem.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
@@ -261,7 +261,7 @@ TEST_CASE("a design read from a file and one made in memory have the same bits")
     made.scene.dhat = 1e-4;
     made.steps = 20;
     const auto box = [](double x, double y, double z) {
-        return shapes::GeneratedPart::create("box", {{"size_x", x}, {"size_y", y}, {"size_z", z}}).value();
+        return shapes::FilePart::create("box", {{"size_x", x}, {"size_y", y}, {"size_z", z}}).value();
     };
     core::scene::Body table = held("table", core::scene::BodyType::kinematic_body);
     table.pose.position = Vector3(0, 0, -5e-3);

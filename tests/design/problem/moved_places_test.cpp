@@ -13,7 +13,7 @@
 #include "fettle/design/quantities/marker_speed.hpp"
 #include "fettle/design/quantities/mass.hpp"
 #include "fettle/design/quantities/stroke.hpp"
-#include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/design/shapes/file_part.hpp"
 #include "fettle/tests/design/linear_numbers.hpp"
 #include "fettle/tests/support/mechanisms.hpp"
 
@@ -144,7 +144,7 @@ Design shop() {
     box.group = 0;
     box.pose.position = Vector3(0, 2, 0);
     box.material = "brass";
-    const auto shape = shapes::GeneratedPart::create("box", {{"size_x", 0.3}, {"size_y", 0.02}, {"size_z", 0.04}});
+    const auto shape = shapes::FilePart::create("box", {{"size_x", 0.3}, {"size_y", 0.02}, {"size_z", 0.04}});
     REQUIRE(shape);
     REQUIRE(description::add_part(design, box, *shape));
     design.scene.friction.mu = 0.2;

@@ -261,7 +261,7 @@ def test_relations_as_formula_and_as_function_agree():
 
 
 def test_generated_parts_have_their_derivative():
-    part = fettle.GeneratedPart("crank")
+    part = fettle.Part("bell_crank")
     drawn = part.dimensions()
     mesh, jacobian = part.at({})
     step = 1e-6

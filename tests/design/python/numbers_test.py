@@ -50,7 +50,7 @@ def test_members_with_a_dimension_take_units():
             setattr(made, name, text)
             assert getattr(made, name) == pytest.approx(si, rel=1e-15), (kind, name)
         assert pickle.loads(pickle.dumps(made)) == made
-    part = fettle.GeneratedPart("box", {"size_x": "3mm"})
+    part = fettle.Part("box", {"size_x": "3mm"})
     assert part.values == {"size_x": 3e-3}
     assert fettle.MarkerPath("a", ["1mm", 0, 0], [["1mm", 0, 0], [0, "2mm", 0]]).targets == [[1e-3, 0, 0], [0, 2e-3, 0]]
     assert fettle.Stroke(1, [0, 0, 1], "30mm").target == 0.03
@@ -63,7 +63,7 @@ def test_a_wrong_unit_is_told_where_it_is_given():
     refused(lambda: fettle.Scene(timestep="soon"), "parse", "scene/timestep")
     body = fettle.Body("cube")
     refused(lambda: setattr(body, "density", "3 kg"), "wrong_type", "body `cube`/density", "a unit of mass, a density is expected")
-    refused(lambda: fettle.GeneratedPart("box", {"size_x": "3kg"}), "wrong_type", "generated part/values/size_x")
+    refused(lambda: fettle.Part("box", {"size_x": "3kg"}), "wrong_type", "part/values/size_x")
     refused(lambda: fettle.Parameter("height", "8kg", 0, 1, "mm"), "wrong_type", "parameter `height`/value")
     refused(lambda: fettle.Parameter("height", "8mm", 0, 1), "wrong_type", "parameter `height`/value")
 
@@ -126,7 +126,7 @@ def test_calls_take_units_and_names():
     assert np.array_equal(model.vertices("cube"), model.vertices(1))
     scene = fettle.Scene(bodies=[fettle.Body("cube", mesh=box(0.01, 0.01, 0.01))])
     assert fettle.build_model(scene, kappa="2N/mm").kappa == 2000
-    assert fettle.shape_at(fettle.GeneratedPart("box"), {"size_x": "3mm"})[0] == fettle.shape_at(fettle.GeneratedPart("box"), {"size_x": 3e-3})[0]
+    assert fettle.shape_at(fettle.Part("box"), {"size_x": "3mm"})[0] == fettle.shape_at(fettle.Part("box"), {"size_x": 3e-3})[0]
 
 
 def test_designs_name_bodies():

@@ -182,7 +182,7 @@ def test_misspelt_members():
         body.densty = 5
     with pytest.raises(AttributeError, match="there are place, formula"):
         fettle.BoundNumber().xyz = 1
-    for made in (fettle.GeneratedPart("box"), fettle.FunctionShape(None, {}), fettle.Design(), fettle.PairRequest()):
+    for made in (fettle.Part("box"), fettle.FunctionShape(None, {}), fettle.Design(), fettle.PairRequest()):
         with pytest.raises(AttributeError, match="no member"):
             made.mine = 1
     with pytest.raises(AttributeError, match="Scene has no member 'gravitty'; did you mean 'gravity'"):
@@ -223,11 +223,11 @@ def test_two_of_one_name():
             fettle.build_model(scene)
 
 
-def test_generators_and_dimensions():
-    refused(fettle.GeneratedPart("bix").dimensions, "unknown_key", "generated part/generator", "did you mean 'box'?")
-    refused(lambda: fettle.shape_at(fettle.GeneratedPart("box", {"size_x": NAN})), "not_finite", "generated part/values")
-    refused(lambda: fettle.shape_at(fettle.GeneratedPart("box"), {"size_q": 1e-3}), "unknown_key", "size_q", "size_x")
-    refused(lambda: fettle.shape_at(fettle.GeneratedPart("box"), {"size_x": NAN}), "not_finite", "size_x")
+def test_parts_and_dimensions():
+    refused(fettle.Part("bix").dimensions, "unknown_key", "bix", "box")
+    refused(lambda: fettle.shape_at(fettle.Part("box", {"size_x": NAN})), "not_finite", "part/values")
+    refused(lambda: fettle.shape_at(fettle.Part("box"), {"size_q": 1e-3}), "unknown_key", "size_q", "size_x")
+    refused(lambda: fettle.shape_at(fettle.Part("box"), {"size_x": NAN}), "not_finite", "size_x")
 
 
 def test_an_evaluation_error_has_errors():

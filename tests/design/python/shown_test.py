@@ -36,7 +36,7 @@ def test_a_repr_is_of_some_lines(fall):
     problem = fettle.DesignProblem(tilted_plate())
     at = problem.evaluate(problem.values)
     outcome = fettle.optimise(problem)
-    wheel = fettle.GeneratedPart("crank").at({})[0]
+    wheel = fettle.Part("eccentric").at({})[0]
     scene = fettle.Scene(bodies=[fettle.Body(f"body number {k} of the scene", mesh=wheel) for k in range(100)])
     for value in (
         simulation, simulation.report, simulation.outputs, simulation.outputs[0], simulation.report.steps, at, outcome, outcome.report,

@@ -10,7 +10,7 @@
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
-#include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/design/shapes/file_part.hpp"
 #include "fettle/tests/design/linear_numbers.hpp"
 #include "fettle/tests/support/mechanisms.hpp"
 
@@ -295,7 +295,7 @@ namespace {
 
 // A lever that hangs on an axle with a spring, friction and a stop that it lies against, and whose length is a parameter.
 Design turning_lever(bool area_weighted) {
-    const auto shape = shapes::GeneratedPart::create("box", {{"size_x", 0.3}, {"size_y", 0.02}, {"size_z", 0.02}});
+    const auto shape = shapes::FilePart::create("box", {{"size_x", 0.3}, {"size_y", 0.02}, {"size_z", 0.02}});
     REQUIRE(shape);
     Design design;
     design.scene = scene_of({}, 0.01);

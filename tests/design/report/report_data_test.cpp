@@ -370,9 +370,9 @@ TEST_CASE("report: simulate and clearance leave one beside their results, and re
 TEST_CASE("report: how deep two parts are in each other, how much they share, and where") {
     const DesignFolder folder;
     folder.write("shared.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
-        {"name": "plate", "type": "static", "shape": {"generator": "box", "dimensions": {"size_x": 60, "size_y": 40, "size_z": 10}}},
+        {"name": "plate", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 60, "size_y": 40, "size_z": 10}}},
         {"name": "pin", "type": "static", "position": [0, 0, 10],
-         "shape": {"generator": "box", "dimensions": {"size_x": 12, "size_y": 12, "size_z": 20}}}]})");
+         "shape": {"part": "box", "dimensions": {"size_x": 12, "size_y": 12, "size_z": 20}}}]})");
     const std::string out = folder.file("shared");
     CHECK(run("clearance " + folder.file("shared.scene.json") + " --out " + out).code == 1);
     const Json data = data_of(contents(out + "/report.html")), pair = data["pairs"][0];
@@ -395,9 +395,9 @@ TEST_CASE("report: how deep two parts are in each other, how much they share, an
 TEST_CASE("report: over which area two parts touch, and no distance of theirs") {
     const DesignFolder folder;
     folder.write("touch.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
-        {"name": "plate", "type": "static", "shape": {"generator": "box", "dimensions": {"size_x": 60, "size_y": 40, "size_z": 10}}},
+        {"name": "plate", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 60, "size_y": 40, "size_z": 10}}},
         {"name": "pin", "type": "static", "position": [0, 0, 15],
-         "shape": {"generator": "box", "dimensions": {"size_x": 12, "size_y": 12, "size_z": 20}}}]})");
+         "shape": {"part": "box", "dimensions": {"size_x": 12, "size_y": 12, "size_z": 20}}}]})");
     const std::string out = folder.file("touch"), command = "clearance " + folder.file("touch.scene.json") + " --out " + out;
     for (const bool allowed : {false, true}) {
         CHECK(run(command + (allowed ? " --allow-touch plate:pin" : " --minimum 0.3mm")).code == (allowed ? 0 : 1));
@@ -555,7 +555,7 @@ TEST_CASE("report: of an optimisation, an interference is what is one, not what 
         folder.write("cased.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
             {"name": "case", "type": "static", "mesh": "case.obj"},
             {"name": "part", "type": "static", "density": 1000,
-             "shape": {"generator": "box", "dimensions": {"size_x": 4, "size_y": 4, "size_z": 4}}}]})");
+             "shape": {"part": "box", "dimensions": {"size_x": 4, "size_y": 4, "size_z": 4}}}]})");
         folder.write("cased.design.json", R"({"fettle_design": 1, "scene": "cased.scene.json", "units": "mm",
             "parameters": [{"name": "place", "value": 0, "lower": -1, "upper": 1}],
             "set": {"/bodies/part/position": ["= place", 0, 0]},

@@ -181,6 +181,9 @@ TEST_CASE("part library: volumes in closed form") {
         const double slot = d["travel"] + 2 * d["clearance"];
         return (pi * outer * outer + 2 * outer * far - 2 * pi * r * r - 2 * r * slot) * d["thickness"];
     });
+    check("box", {}, [](auto d) { return d["size_x"] * d["size_y"] * d["size_z"]; });
+    check("cylinder", {}, [](auto d) { return pi * std::pow(d["radius"], 2) * d["length"]; });
+    check("plate_with_hole", {}, [](auto d) { return (d["size_x"] * d["size_y"] - pi * std::pow(d["hole_radius"], 2)) * d["thickness"]; });
     check("eccentric", {},
           [](auto d) { return pi * (std::pow(d["radius"], 2) - std::pow(d["shaft_radius"] + d["clearance"], 2)) * d["thickness"]; });
     check("pin", {}, [](auto d) {
@@ -561,10 +564,10 @@ TEST_CASE("part library: helical gears of opposite hands mesh from face to face"
 TEST_CASE("part library: what is asked for by a wrong name") {
     CHECK(find_part("geneva_whel").errors().front().message.find("geneva_wheel") != std::string::npos);
     CHECK(find_part("none.part.json").errors().front().code == ErrorCode::file_not_found);
-    const auto washer = FilePart::create(part("washer"), {{"shaft_radius", 4e-3}});
+    const auto washer = FilePart::create("washer", {{"shaft_radius", 4e-3}});
     REQUIRE(washer);
     CHECK((*washer)->dimensions().front().value == 4e-3);
-    CHECK(FilePart::create(part("washer"), {{"shaft_radios", 4e-3}}).errors().front().where == "washer/shaft_radios");
+    CHECK(FilePart::create("washer", {{"shaft_radios", 4e-3}}).errors().front().where == "washer/shaft_radios");
     const Values values{4e-3, 0.2e-3, 2e-3, 1e-3};
     const auto at = (*washer)->at(values);
     REQUIRE(at);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Parts from anything that makes meshes: velocities against the generators' exact ones, rounding, another cut of triangles, refusals.
+/// Parts from anything that makes meshes: velocities against the exact ones of files, rounding, another cut of triangles, refusals.
 #include "fettle/design/shapes/rebuilt_shape.hpp"
 
 #include <atomic>
@@ -9,9 +9,10 @@
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/mass.hpp"
-#include "fettle/design/shapes/generated_part.hpp"
+#include "fettle/design/shapes/file_part.hpp"
 #include "fettle/design/shapes/mesh_rounding.hpp"
 #include "fettle/design/shapes/mesh_velocity.hpp"
+#include "fettle/tests/design/shapes/example_parts.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 
 namespace fettle::design::shapes::rebuilt_shape_test {
@@ -31,9 +32,9 @@ Mesh printed(Mesh mesh, int digits) {
     return mesh;
 }
 
-std::shared_ptr<const GeneratedPart> crank() { return GeneratedPart::create("crank", {}, {.segments = 24}).value(); }
+std::shared_ptr<const FilePart> crank() { return FilePart::create(tests::design_support::example_part("crank")).value(); }
 
-RebuiltShape rebuilt(const std::shared_ptr<const GeneratedPart>& part, int digits) {
+RebuiltShape rebuilt(const std::shared_ptr<const FilePart>& part, int digits) {
     return RebuiltShape(part->dimensions(),
                         [part, digits](const Values& values) -> Result<Mesh> { return printed(part->mesh(values).value(), digits); },
                         {.unit = 1e-3});
@@ -67,7 +68,7 @@ Mesh restless_box(double x, double y, double z) {
 
 }  // namespace
 
-TEST_CASE("the velocity of a rebuilt part is the generator's, to what its digits allow") {
+TEST_CASE("the velocity of a rebuilt part is the exact one, to what its digits allow") {
     const auto part = crank();
     const description::ShapeInstance exact = description::as_drawn(*part).value();
     for (const int digits : {6, 9, 17}) {
@@ -182,7 +183,7 @@ TEST_CASE("nothing is built twice") {
     CHECK(built == 1 + 4 * 2);
 }
 
-TEST_CASE("a design of a rebuilt part has the gradient of the generator's") {
+TEST_CASE("a design of a rebuilt part has the gradient of the exact one's") {
     const auto design_of = [](const std::shared_ptr<const description::Shape>& shape) {
         description::Design design;
         core::scene::Body peg, wall;
@@ -191,7 +192,7 @@ TEST_CASE("a design of a rebuilt part has the gradient of the generator's") {
         wall.prescribed.fill(core::scene::MotionCurve{});
         wall.pose.position = Vector3(0.03, 0, 0);
         REQUIRE(add_part(design, peg, shape));
-        REQUIRE(add_part(design, wall, GeneratedPart::create("box", {{"size_x", 0.01}, {"size_y", 0.05}, {"size_z", 0.05}}).value()));
+        REQUIRE(add_part(design, wall, FilePart::create("box", {{"size_x", 0.01}, {"size_y", 0.05}, {"size_z", 0.05}}).value()));
         design.steps = 1;
         design.parameters = {{"radius", 0.006, 0.004, 0.01, *find_unit("mm")}};
         REQUIRE(set_number(design, "/bodies/0/shape/dimensions/radius", "radius").empty());
@@ -200,7 +201,7 @@ TEST_CASE("a design of a rebuilt part has the gradient of the generator's") {
             {"apart", {.lower = 1e-3}, std::make_shared<quantities::Clearance>(quantities::ClearanceRange{.a = 0, .b = 1})}};
         return problem::DesignProblem::create(std::move(design)).value();
     };
-    const auto part = GeneratedPart::create("pin", {{"radius", 0.006}, {"length", 0.02}}).value();
+    const auto part = FilePart::create("cylinder", {{"radius", 0.006}, {"length", 0.02}}).value();
     const auto made = std::make_shared<RebuiltShape>(
         part->dimensions(), [part](const Values& values) -> Result<Mesh> { return printed(part->mesh(values).value(), 9); },
         RebuiltOptions{.unit = 1e-3});

@@ -78,7 +78,7 @@ TEST_CASE("URDF: names that files or ids are made of stay apart, both ways") {
     const std::vector<std::string> names{"a/b", "a_b", "A_B", "world", "..", "a_b_2"};
     for (std::size_t i = 0; i < names.size(); ++i)
         bodies += std::string(i ? ", " : "") + R"({"name": ")" + names[i] + R"(", "type": "static", "position": [)" +
-                  std::to_string(200 * i) + R"(, 0, 0], "shape": {"generator": "box", "dimensions": {"size_x": )" + std::to_string(i + 1) +
+                  std::to_string(200 * i) + R"(, 0, 0], "shape": {"part": "box", "dimensions": {"size_x": )" + std::to_string(i + 1) +
                   "}}}";
     const auto scene = core::scene_files::read_scene(
         folder.write("a.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [)" + bodies + "]}"), reading::scene_read_options());
@@ -280,8 +280,8 @@ TEST_CASE("URDF out: inertia about the centre of mass, joints that it has not ar
     const TemporaryFolder folder;
     const auto scene = [&](const std::string& joints) {
         return folder.write("a.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
-            {"name": "bar", "density": 1000, "shape": {"generator": "box", "dimensions": {"size_x": 100, "size_y": 20, "size_z": 10}}},
-            {"name": "other", "density": 1000, "shape": {"generator": "box"}, "position": [200, 0, 0]}], "joints": [)" +
+            {"name": "bar", "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 100, "size_y": 20, "size_z": 10}}},
+            {"name": "other", "density": 1000, "shape": {"part": "box"}, "position": [200, 0, 0]}], "joints": [)" +
                                                 joints + "]}");
     };
     const std::string pivot = R"({"name": "pivot", "type": "revolute", "b": "bar", "point": [-50, 0, 0], "axis": [0, 0, 1]})";
