@@ -51,6 +51,7 @@ py::object mesh_to_python(core::geometry::Mesh mesh) {
     members["loose_edges"] = index_rows<2>(loose_edges(mesh));
     members["shell_names"] = mesh.shell_names;
     members["vertices"] = rows_of(std::move(mesh.vertices));
+    members["deviation"] = mesh.deviation;
     return record_class("Mesh")(**members);
 }
 
@@ -61,6 +62,7 @@ core::geometry::Mesh mesh_from_python(py::handle source) {
     mesh.vertices = columns_of(source.attr("vertices"), place + "/vertices", "a mesh has vertices of shape (n, 3)");
     mesh.triangles = rows_from<3>(source.attr("triangles"), place + "/triangles", "a mesh has triangles of shape (m, 3)");
     mesh.shell_names = member_of<std::vector<std::string>>(source, "Mesh", "shell_names");
+    mesh.deviation = member_of<std::optional<core::geometry::Deviation>>(source, "Mesh", "deviation");
     const auto edges = rows_from<2>(source.attr("loose_edges"), place + "/loose_edges", "a mesh has loose edges of shape (k, 2)");
     check_indices(mesh.triangles, mesh.vertices.cols(), place + "/triangles", "a triangle of a mesh");
     check_indices(edges, mesh.vertices.cols(), place + "/loose_edges", "a loose edge of a mesh");

@@ -9,7 +9,7 @@
 
 using namespace fettle::design::description;
 using fettle::Matrix3X;
-using fettle::Vector3;
+using fettle::design::shapes::FilePart;
 
 // A frustum about the origin, 10 mm high: half widths at the foot and at the top. Vertices are linear in both.
 class Peg : public Shape {
@@ -17,8 +17,7 @@ public:
     const std::vector<ShapeDimension>& dimensions() const override { return dimensions_; }
     fettle::Result<ShapeInstance> at(const std::vector<double>& d) const override {
         if (!(d[0] > 0 && d[1] > 0)) return fettle::Error{fettle::ErrorCode::out_of_range, "foot", "a peg's widths are above 0"};
-        const auto unit = fettle::design::shapes::FilePart::create("box", {{"size_x", 2}, {"size_y", 2}, {"size_z", 0.01}}).value();
-        ShapeInstance part{drawn_mesh(*unit).value(), {}};
+        ShapeInstance part{drawn_mesh(*FilePart::create("box", {{"size_x", 2}, {"size_y", 2}, {"size_z", 0.01}}).value()).value(), {}};
         part.jacobian.assign(2, Matrix3X::Zero(3, part.mesh.vertices.cols()));
         for (Eigen::Index i = 0; i < part.mesh.vertices.cols(); ++i) {
             const std::size_t end = part.mesh.vertices(2, i) < 0 ? 0 : 1;
@@ -39,7 +38,7 @@ int main() {
     wall.type = fettle::core::scene::BodyType::static_body;
     wall.prescribed.fill(fettle::core::scene::MotionCurve{});
     wall.pose.position = {0.015, 0, 0};  // its face stands at x = 10 mm
-    const auto block = fettle::design::shapes::FilePart::create("box", {{"size_x", 0.01}, {"size_y", 0.04}, {"size_z", 0.04}});
+    const auto block = FilePart::create("box", {{"size_x", 0.01}, {"size_y", 0.04}, {"size_z", 0.04}});
     if (!block || !add_part(design, peg, std::make_shared<Peg>()) || !add_part(design, wall, *block)) return 3;
     design.steps = 1;
     design.parameters = {{"foot", 0.004, 0.002, 0.012, *fettle::find_unit("mm")}, {"top", 0.005, 0.002, 0.012, *fettle::find_unit("mm")}};

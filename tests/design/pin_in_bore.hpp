@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A pin in the bore of a plate, both at rest: where the pin stands are two parameters. Play is 0.4 mm less the distance from the centre.
+/// A pin in the bore of a plate, both at rest: where the pin stands are two parameters. Play is 0.426 mm, from flats to flats, less the
+/// distance from the centre.
 #pragma once
 
 #include <string>
@@ -11,7 +12,7 @@ inline const char* bore_scene = R"({
   "bodies": [
     { "name": "plate", "type": "static",
       "shape": { "part": "plate_with_hole",
-                 "dimensions": { "size_x": 30, "size_y": 30, "thickness": 5, "hole_radius": 5.4 }, "counts": { "segments": 32 } } },
+                 "dimensions": { "size_x": 30, "size_y": 30, "thickness": 5, "hole_radius": 5.4524 }, "counts": { "segments": 32 } } },
     { "name": "pin", "type": "static", "density": 1000,
       "shape": { "part": "cylinder", "dimensions": { "radius": 5, "length": 20 }, "counts": { "segments": 32 } } }
   ]

@@ -30,6 +30,16 @@ def _indices(columns: int) -> Any:
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
+class Deviation(Record):
+    """How far a round part reaches out of its mesh, and stays inside of it, at most."""
+
+    outside: Number = number("length", 0.0)  #: [m]
+    inside: Number = number("length", 0.0)  #: [m]
+    outside_is_proven: bool = True
+    inside_is_proven: bool = True
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Mesh(Record):
     """Triangles, counter-clockwise seen from outside; perhaps loose edges. Equal vertices are one (`read_mesh` welds them)."""
 
@@ -38,6 +48,7 @@ class Mesh(Record):
     triangles: NDArray[np.int32] = dataclasses.field(default_factory=_indices(3))  #: (m, 3)
     loose_edges: NDArray[np.int32] = dataclasses.field(default_factory=_indices(2))  #: (k, 2), of no triangle
     shell_names: List[str] = dataclasses.field(default_factory=list)  #: one per shell; empty: "name/0", ...
+    deviation: Optional[Deviation] = None  #: of a part that was drawn; None: the mesh stands for nothing but itself
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)

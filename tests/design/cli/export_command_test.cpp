@@ -22,7 +22,7 @@ std::string scene(const TemporaryFolder& folder, const std::string& gravity = "[
                         R"({"fettle_scene": 1, "units": "mm", "gravity": )" + gravity + R"(, "timestep": 0.002, "end_time": 0.006,
         "bodies": [
             {"name": "low/er", "type": "static", "shape": {"part": "box"}, "position": [0, 0, -10]},
-            {"name": "upper", "density": 1000, "shape": {"part": "cylinder"}, "position": [1, 2, 11]}]})");
+            {"name": "upper", "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 10, "size_y": 10}}, "position": [1, 2, 11]}]})");
 }
 
 std::vector<std::string> names(const std::filesystem::path& folder) {

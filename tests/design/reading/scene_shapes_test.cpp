@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <numbers>
 
 #include "fettle/core/scene/place.hpp"
@@ -75,6 +76,24 @@ TEST_CASE("scene shapes: faults of parts, with their place") {
     CHECK(is_told(read(folder, scene(R"({"part": "ring.part.json", "counts": {"segments": 8}, "facets": 1})")), "/shape", "`facets`"));
     CHECK(is_told(read(folder, scene(R"({"solid": {"extrude": {"circle": "= bor"}, "to": 5}})", R"({"bore": "3mm"})")), "/shape",
                   "/solid/extrude/circle: "));
+}
+
+TEST_CASE("scene shapes: the key of former generators is told what to write instead") {
+    const TemporaryFolder folder;
+    for (const auto& [name, words] : std::vector<std::pair<std::string, std::string>>{
+             {"box", R"(write "part": "box")"},
+             {"pin", R"(write "part": "cylinder")"},
+             {"plate_with_hole", R"(write "part": "plate_with_hole")"},
+             {"base_plate", R"(copy examples/four_bar/base.part.json to this file's folder and write "part": "base.part.json")"},
+             {"crank", "copy examples/slider_crank/crank.part.json"},
+             {"mine", "fettle shapes lists them"}}) {
+        const auto scene_of_old = read(folder, scene(R"({"generator": ")" + name + R"(", "dimensions": {"size_x": 4}})"));
+        CHECK(scene_of_old.errors().size() == 1);
+        CHECK(is_told(scene_of_old, "/shape/generator", words));
+    }
+    for (const char* file : {"slider_crank/block", "slider_crank/crank", "slider_crank/rod", "slider_crank/piston", "four_bar/base",
+                             "four_bar/arm", "four_bar/coupler", "follower/eccentric", "follower/follower"})
+        CHECK(std::filesystem::exists(FETTLE_SOURCE_DIR "/examples/" + std::string(file) + ".part.json"));
 }
 
 TEST_CASE("scene shapes: a design moves a part's dimensions") {
