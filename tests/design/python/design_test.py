@@ -260,7 +260,18 @@ def test_relations_as_formula_and_as_function_agree():
         fettle.DesignProblem(design)
 
 
-def test_generated_parts_have_their_derivative():
+def test_a_part_of_a_file_is_one_of_the_library_or_of_ones_own():
+    assert {"box", "cylinder", "geneva_wheel"} <= set(fettle.parts()) and all(fettle.parts().values())
+    crank = fettle.Part(str(EXAMPLES / "slider_crank" / "crank.part.json"), {"crank_radius": "14mm"})
+    assert crank.dimensions()["crank_radius"] == 14e-3 and crank.dimensions()["disc_top"] == pytest.approx(-2.4e-3)
+    few, many = (fettle.Part("cylinder", counts={"segments": n}).at({})[0] for n in (8, 24))
+    assert (len(few.vertices), len(many.vertices)) == (16, 48) and few.deviation.inside > many.deviation.inside > 0
+    assert fettle.Part("cylinder", chord="1um").at({})[0].deviation.inside < 1.001e-6
+    with pytest.raises(fettle.Error, match="there is no part"):
+        fettle.Part("cilinder").at({})
+
+
+def test_parts_of_files_have_their_derivative():
     part = fettle.Part("bell_crank")
     drawn = part.dimensions()
     mesh, jacobian = part.at({})
