@@ -48,4 +48,21 @@ TEST_CASE("a rewritten design reads back bit for bit, from another folder, and h
     CHECK(design_hash(*read_design(other_optimiser.design())) == design_hash(*design));
 }
 
+TEST_CASE("a design's hash is another when its part says something else, even if what is drawn at the start is the same") {
+    const auto hash_of = [](const std::string& side) {
+        const DesignFolder folder(small_design,
+                                  replaced(small_scene, R"("part": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 })",
+                                           R"("part": "cube.part.json", "dimensions": { "size_x": 20, "size_z": 10 })"));
+        folder.write("cube.part.json", R"({"fettle_part": 1, "dimensions": {"size_x": 20, "size_z": 10},
+            "solid": {"extrude": {"rectangle": ["= size_x", ")" +
+                                           side + R"("]}, "from": "= -size_z / 2", "to": "= size_z / 2"}})");
+        const Result<DesignFile> design = read_design(folder.design());
+        INFO(all(design.errors()));
+        REQUIRE(design);
+        return design_hash(*design);
+    };
+    CHECK(hash_of("= 12") == hash_of("= 12"));
+    CHECK(hash_of("= 12") != hash_of("= 2 + size_z"));
+}
+
 }  // namespace fettle::design::reading::design_text_test
