@@ -11,10 +11,10 @@
 #include <variant>
 #include <vector>
 
+#include "fettle/core/geometry/range.hpp"
 #include "fettle/core/parts/facets.hpp"
 #include "fettle/core/parts/jet.hpp"
 #include "fettle/core/parts/point.hpp"
-#include "fettle/core/parts/range.hpp"
 
 namespace fettle::core::parts {
 
@@ -44,8 +44,8 @@ struct Law {
     std::function<std::array<Jet<Number>, 2>(const Jet<Number>&)> jet;
     std::function<std::array<Jet<double>, 2>(const Jet<double>&)> bend;
     /// Over a stretch of the parameter; and with more derivatives, which an offset needs.
-    std::function<std::array<Jet<Range>, 2>(const Jet<Range>&)> ranges;
-    std::function<std::array<Jet<Jet<Range>>, 2>(const Jet<Jet<Range>>&)> higher_ranges;
+    std::function<std::array<Jet<geometry::Range>, 2>(const Jet<geometry::Range>&)> ranges;
+    std::function<std::array<Jet<Jet<geometry::Range>>, 2>(const Jet<Jet<geometry::Range>>&)> higher_ranges;
 
     Law() = default;
     template <class Function>
@@ -54,8 +54,8 @@ struct Law {
         point = [shared](const Number& t) { return (*shared)(t); };
         jet = [shared](const Jet<Number>& t) { return (*shared)(t); };
         bend = [shared](const Jet<double>& t) { return (*shared)(t); };
-        ranges = [shared](const Jet<Range>& t) { return (*shared)(t); };
-        higher_ranges = [shared](const Jet<Jet<Range>>& t) { return (*shared)(t); };
+        ranges = [shared](const Jet<geometry::Range>& t) { return (*shared)(t); };
+        higher_ranges = [shared](const Jet<Jet<geometry::Range>>& t) { return (*shared)(t); };
     }
 
     /// Bound over a range of the parameter of the second derivative's part that is square to a chord within the range [m / parameter^2],

@@ -12,6 +12,8 @@
 namespace fettle::core::parts {
 namespace {
 
+using geometry::Range;
+
 constexpr double full_turn = 2 * std::numbers::pi;
 constexpr int most_facets = 100'000;
 

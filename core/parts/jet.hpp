@@ -12,7 +12,7 @@
 
 namespace fettle::core::parts {
 
-/// @tparam T  Number: derivatives are recorded as well; double: at the present values of all dimensions; Range (range.hpp): all values
+/// @tparam T  Number: derivatives are recorded as well; double: at the present values of all dimensions; geometry::Range: all values
 ///            over a stretch of the parameter; a Jet: up to the fourth derivative.
 template <class T>
 struct Jet {

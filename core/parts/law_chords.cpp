@@ -10,6 +10,7 @@
 namespace fettle::core::parts {
 namespace {
 
+using geometry::Range;
 using geometry::upper;
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
@@ -33,7 +34,7 @@ RangePoint over(const Law& law, double low, double high) { return law.ranges(Jet
 
 // Upper bound of the length of a vector whose coordinates are at most so large.
 double length_bound(double x, double y) { return upper(upper(std::sqrt(upper(upper(x * x) + upper(y * y))))); }
-double diagonal(const Range& x, const Range& y) { return length_bound(x.interval.width(), y.interval.width()); }
+double diagonal(const Range& x, const Range& y) { return length_bound(x.interval().width(), y.interval().width()); }
 
 Cell cell_of(const Law& law, double low, double high) {
     Cell cell{low, high, over(law, low, high)};
@@ -42,10 +43,9 @@ Cell cell_of(const Law& law, double low, double high) {
 }
 
 bool is_known(const Cell& cell) {
+    const auto is_smooth = [](const Range& x) { return x.is_bounded() && !x.switches && !x.has_gaps; };
     for (const Jet<Range>& x : cell.law)
-        if (x.value.switches || x.first.switches || !x.value.is_bounded() || !x.first.is_bounded() || x.second.switches ||
-            !x.second.is_bounded())
-            return false;
+        if (!is_smooth(x.value) || !is_smooth(x.first) || !is_smooth(x.second)) return false;
     return true;
 }
 
@@ -64,7 +64,7 @@ Switch switch_over(const Law& law, double low, double high, const std::vector<Ce
         for (const Cell& cell : cells) all[k] = hull(all[k], cell.law[k].value);
         out.slope[k] = (end[k].value - start[k].value) / (Range(high) - Range(low));
     }
-    out.gap = diagonal(all[0], all[1]);
+    out.gap = all[0].has_gaps || all[1].has_gaps ? no_bound : diagonal(all[0], all[1]);
     return out;
 }
 
@@ -145,10 +145,10 @@ ChordDeviation chord_deviation(const Law& law, double low, double high, int coun
         [&](const Cell& cell) {
             const auto& [x, y] = cell.law;
             bend = std::max(bend, cell.bend);
-            turn = std::max(turn, cell.bend / hypot(x.first, y.first).low());
+            turn = std::max(turn, cell.bend / hypot(x.first, y.first).low);
             const Range side = x.first * y.second - y.first * x.second;
-            left = left && side.low() >= 0;
-            right = right && side.high() <= 0;
+            left = left && side.low >= 0;
+            right = right && side.high <= 0;
         },
         [&](const std::vector<Cell>& run) {
             const double from = run.front().low, to = run.back().high;

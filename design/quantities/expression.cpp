@@ -6,7 +6,7 @@
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/text.hpp"
-#include "fettle/design/quantities/enclosure.hpp"
+#include "fettle/core/geometry/range.hpp"
 #include "fettle/design/quantities/own_formula.hpp"
 
 namespace fettle::design::quantities {
@@ -84,8 +84,9 @@ Measurement Expression::value(const Simulated& simulated) const {
     const std::vector<double> values = inputs<double>(simulated, [&](int part) { return at(part).value; });
     out.value = out.lower = out.upper = core::expression::value_of<double>(formula_, values);
     if (exact) return out;
-    const auto bounds = inputs<Enclosure>(simulated, [&](int part) { return Enclosure(at(part).lower, at(part).upper); });
-    const Enclosure found = core::expression::value_of<Enclosure>(formula_, bounds);
+    const auto bounds =
+        inputs<core::geometry::Range>(simulated, [&](int part) { return core::geometry::Range(at(part).lower, at(part).upper); });
+    const core::geometry::Range found = core::expression::value_of<core::geometry::Range>(formula_, bounds);
     out.lower = std::min(found.low, out.value);
     out.upper = std::max(found.high, out.value);
     return out;
