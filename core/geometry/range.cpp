@@ -177,9 +177,7 @@ Range atan2(const Range& y, const Range& x) {
         const auto [least, most] = at_corners(y, x, [](double a, double b) { return std::atan2(a, b); });
         return around(least, most).marked_as(y).marked_as(x);
     }
-    Range turn = Range(-half_turn.high, half_turn.high).marked_as(y).marked_as(x);
-    turn.switches = true;
-    return turn;
+    return with_gaps(Range(-half_turn.high, half_turn.high).marked_as(y).marked_as(x));
 }
 
 Range abs(const Range& a) {

@@ -4,8 +4,9 @@
 /// contract: where nothing is known on a side (a quotient by 0, the logarithm of 0) the bound there is infinite.
 ///
 /// Two marks go with it, and pass on to all that is computed from it:
-///  - `switches`: among the operands' numbers is a place at which abs, minimum, maximum, choose or atan2 changes sides;
-///  - `has_gaps`: for some of them an operation is not defined (the root of a negative number). The interval is that of the others.
+///  - `switches`: among the operands' numbers is a place at which abs, minimum, maximum or choose changes sides;
+///  - `has_gaps`: for some of them an operation is not defined (the root of a negative number; the interval is that of the others), or it
+///    jumps there by itself (atan2).
 #pragma once
 
 #include "fettle/core/geometry/interval.hpp"

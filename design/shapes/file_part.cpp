@@ -32,12 +32,14 @@ Errors unknown_dimensions(const PartFile& file, const std::map<std::string, doub
 constexpr const char* segments_name = "segments";  // how facets are cut is said with the counts
 
 std::optional<Error> segments_fault(const PartOptions& options) {
-    constexpr int fewest = 8, most = 720;
+    using core::part_files::fewest_circle_segments, core::part_files::most_circle_segments;
     const std::string where = std::string("counts/") + segments_name;
     const auto segments = options.counts.find(segments_name);
     if (segments == options.counts.end()) return std::nullopt;
-    if (segments->second < fewest || segments->second > most)
-        return Error{ErrorCode::out_of_range, where, "segments is " + std::to_string(segments->second) + "; allowed: from 8 to 720"};
+    if (segments->second < fewest_circle_segments || segments->second > most_circle_segments)
+        return Error{ErrorCode::out_of_range, where,
+                     "segments is " + std::to_string(segments->second) + "; allowed: from " + std::to_string(fewest_circle_segments) +
+                         " to " + std::to_string(most_circle_segments)};
     if (options.chord > 0)
         return Error{ErrorCode::inconsistent, where, "`facets` says how far facets may be from what is round; `segments` goes without it"};
     return std::nullopt;

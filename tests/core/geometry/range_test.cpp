@@ -107,7 +107,7 @@ TEST_CASE("ranges of narrow operands are narrow, and those of which nothing is k
 
 TEST_CASE("marks say where an operation changes sides or is not defined, and pass on") {
     const Range x(-1, 2), positive(1, 2);
-    for (const Range& found : {abs(x), minimum(x, 1.0), maximum(x, positive), choose(x, 1.0, 2.0), atan2(x, -positive)}) {
+    for (const Range& found : {abs(x), minimum(x, 1.0), maximum(x, positive), choose(x, 1.0, 2.0)}) {
         CHECK(found.switches);
         CHECK((2.0 * found + 1.0).switches);
         CHECK_FALSE(found.has_gaps);
@@ -117,7 +117,7 @@ TEST_CASE("marks say where an operation changes sides or is not defined, and pas
         CHECK_FALSE(found.switches);
         CHECK_FALSE(found.has_gaps);
     }
-    for (const Range& found : {sqrt(x), log(x), asin(x), acos(x), pow(x, 0.5), pow(x, positive), sqrt(-positive)}) {
+    for (const Range& found : {sqrt(x), log(x), asin(x), acos(x), pow(x, 0.5), pow(x, positive), sqrt(-positive), atan2(x, -positive)}) {
         CHECK(found.has_gaps);
         CHECK(sin(found).has_gaps);
     }
