@@ -72,7 +72,7 @@ public:
     }
 
     std::vector<std::vector<Vector6>> take() { return std::move(out_); }
-    std::vector<VectorX> take_multipliers() { return std::move(multipliers_); }
+    StepTangents take_within() { return std::move(within_); }
 
 private:
     std::vector<Vector6> tangents(int t) const {
@@ -176,8 +176,10 @@ private:
                 return StepSolver::unsolved(trajectory_, t);
             }
         }
-        multipliers_.push_back(multiplier_dot_);
+        within_.multipliers.push_back(multiplier_dot_);
+        within_.lags.push_back(lag_dot_);
         advance(t, end_dot);
+        within_.velocities.push_back(velocities_dot_);
         return {};
     }
 
@@ -185,14 +187,14 @@ private:
     // @return whether there is a solution.
     bool solve(int t, const LinearisedStep& step, StepChange& change, std::vector<Matrix34>& end_dot) {
         const std::size_t n = model_.bodies.size();
-        const std::vector<Matrix34> lag_dot = end_dot;
+        lag_dot_ = end_dot;
         change.r.resize(n);
         for (std::size_t i = 0; i < n; ++i) {
             change.r[i] = core::kinematics::rotation_derivatives(step.points[i].rotation_vector);
             end_dot[i] = known_change(t, i, change.r[i]);
         }
         contact::PoseGradientTangent energy = adjoint::energy::terms_tangent(
-            step.end(), {end_dot, change.pose_hat_dot, change.slip_dot, poses_dot_, poses_before_dot_, moments_dot_, areas_dot_, lag_dot},
+            step.end(), {end_dot, change.pose_hat_dot, change.slip_dot, poses_dot_, poses_before_dot_, moments_dot_, areas_dot_, lag_dot_},
             direction_);
         VectorX row_dot;
         if (step.rows.count() > 0)
@@ -271,19 +273,20 @@ private:
     std::vector<Matrix34> poses_before_dot_, velocities_before_dot_;  // at the start of the one before
     std::vector<Matrix34> accelerations_dot_;                         // Newmark
     std::vector<std::vector<Vector6>> out_;
-    std::vector<VectorX> multipliers_;
+    StepTangents within_;
     VectorX multiplier_dot_;                                // of the round at hand
+    std::vector<Matrix34> lag_dot_;                         // the same
     std::shared_ptr<const contact::LaggedContacts> known_;  // at the end of the step before
 };
 
 }  // namespace
 
 Result<std::vector<std::vector<Vector6>>> tangent_sweep(const Model& model, const Trajectory& trajectory, const ModelTangent& direction,
-                                                        std::vector<VectorX>* multipliers) {
+                                                        StepTangents* within) {
     if (Errors errors = check_differentiable(model, trajectory); !errors.empty()) return errors;
     TangentSweep sweep(model, trajectory, direction);
     if (Errors errors = sweep.run(); !errors.empty()) return errors;
-    if (multipliers != nullptr) *multipliers = sweep.take_multipliers();
+    if (within != nullptr) *within = sweep.take_within();
     return sweep.take();
 }
 

@@ -83,8 +83,16 @@ Pairing backwards(const Model& model, const adjoint::ModelGradient& gradient, co
 
 struct Motion {
     std::vector<std::vector<Vector6>> poses;
-    std::vector<VectorX> multipliers;
+    adjoint::stepper::StepTangents within;
 };
+
+// Of what a seed has of some steps, or of none.
+double within_steps(const std::vector<std::vector<Matrix34>>& bars, const std::vector<std::vector<Matrix34>>& dots) {
+    double sum = 0;
+    for (size_t t = 0; t < bars.size(); ++t)
+        for (size_t i = 0; i < bars[t].size(); ++i) sum += bars[t][i].cwiseProduct(dots[t][i]).sum();
+    return sum;
+}
 
 double forwards(const adjoint::TrajectoryGradient& seed, const Trajectory& trajectory, const Motion& motion) {
     double sum = 0;
@@ -92,8 +100,8 @@ double forwards(const adjoint::TrajectoryGradient& seed, const Trajectory& traje
         for (size_t i = 0; i < motion.poses[t].size(); ++i)
             sum += seed.pose_bar[t][i].cwiseProduct(motion_matrix(motion.poses[t][i], trajectory.poses[t][i].rotation)).sum();
     for (size_t t = 0; t < seed.multiplier_bar.size(); ++t)
-        if (seed.multiplier_bar[t].size() > 0) sum += seed.multiplier_bar[t].dot(motion.multipliers[t]);
-    return sum;
+        if (seed.multiplier_bar[t].size() > 0) sum += seed.multiplier_bar[t].dot(motion.within.multipliers[t]);
+    return sum + within_steps(seed.velocity_bar, motion.within.velocities) + within_steps(seed.lag_bar, motion.within.lags);
 }
 
 // Of the objective and of each constraint: what depends on the motion.
@@ -134,7 +142,7 @@ SweepAgreement compare_sweeps(const problem::DesignProblem& problem, const probl
     for (int d = 0; d < directions; ++d) {
         const ModelTangent direction = random_direction(model, count_of(trajectory.steps), random);
         Motion motion;
-        auto poses = adjoint::stepper::tangent_sweep(model, trajectory, direction, &motion.multipliers);
+        auto poses = adjoint::stepper::tangent_sweep(model, trajectory, direction, &motion.within);
         if (!poses) {
             out.failure = poses.errors().front().message;
             return out;

@@ -277,12 +277,12 @@ TEST_CASE("what joints and motors carry: backwards, forwards and differences agr
         const auto gradients = reverse_sweep(scene.model, trajectory, {seed});
         REQUIRE(gradients);
         const auto check = [&](const ModelTangent& direction, const auto& at_model, const std::string& what) {
-            std::vector<VectorX> multipliers_dot;
-            const auto tangents = tangent_sweep(scene.model, trajectory, direction, &multipliers_dot);
+            StepTangents within;
+            const auto tangents = tangent_sweep(scene.model, trajectory, direction, &within);
             REQUIRE(tangents);
             const double backwards =
                 pairing(scene, (*gradients)[0], direction) + mechanism_pairing((*gradients)[0].mechanism, direction.mechanism);
-            const double forwards = pairing(seed, trajectory, *tangents) + weighted(seed.multiplier_bar, multipliers_dot);
+            const double forwards = pairing(seed, trajectory, *tangents) + weighted(seed.multiplier_bar, within.multipliers);
             const auto at = [&](double s) {
                 const core::model::Model model = at_model(s);
                 const core::stepper::Trajectory there = run(model, scene.steps, true).trajectory;
