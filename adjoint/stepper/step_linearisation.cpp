@@ -96,7 +96,9 @@ Errors StepSolver::check_balance(const core::stepper::Trajectory& trajectory, in
         std::ostringstream message;
         message << "the step at t = " << trajectory.time_start + t * trajectory.timestep << " s has no derivative: '" << body.name
                 << "' is out of balance by " << g.norm() / size
-                << " of the forces on it. Was the trajectory simulated for gradients, from this model?";
+                << " of the forces on it, too much to be differentiated. A lower `velocity_tolerance` may help, or `implicit_euler` in "
+                   "place of "
+                   "`quasi_static` (a trajectory from elsewhere: simulate it for gradients, from this model)";
         return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t), message.str()}};
     }
     return {};
@@ -108,7 +110,7 @@ Errors StepSolver::check_rows(const core::stepper::Trajectory& trajectory, int t
     if (gap <= met * step.problem.model->diagonal) return {};
     std::ostringstream message;
     message << "the step at t = " << trajectory.time_start + t * trajectory.timestep << " s has no derivative: joints or motors are " << gap
-            << " m from being met. Was the trajectory simulated for gradients, from this model?";
+            << " m from being met, too much to be differentiated (a trajectory from elsewhere: simulate it for gradients, from this model)";
     return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t), message.str()}};
 }
 

@@ -59,7 +59,10 @@ constexpr std::array table{Unit{"1", Dimension::number, 1, 1},
                            Unit{"kg/m^3", Dimension::density, 1, 1},
                            Unit{"g/cm^3", Dimension::density, 1000, 1},
                            Unit{"N/m", Dimension::stiffness, 1, 1},
-                           Unit{"N/mm", Dimension::stiffness, 1000, 1}};
+                           Unit{"N/mm", Dimension::stiffness, 1000, 1},
+                           Unit{"N m/rad", Dimension::angular_stiffness, 1, 1},
+                           Unit{"N mm/rad", Dimension::angular_stiffness, 1, 1000},
+                           Unit{"N mm/deg", Dimension::angular_stiffness, 1, 1000 * degree}};
 
 std::string allowed_text(Dimension dimension) { return "allowed units: " + unit_names(dimension); }
 
@@ -108,9 +111,9 @@ const Unit* find_unit(std::string_view name) {
 }
 
 std::string_view dimension_name(Dimension dimension) {
-    constexpr std::array<std::string_view, 15> names{"number", "length",        "area",         "volume",  "angle",
-                                                     "time",   "mass",          "force",        "torque",  "energy",
-                                                     "speed",  "angular speed", "acceleration", "density", "stiffness"};
+    constexpr std::array<std::string_view, 16> names{"number",       "length",  "area",      "volume",           "angle", "time",
+                                                     "mass",         "force",   "torque",    "energy",           "speed", "angular speed",
+                                                     "acceleration", "density", "stiffness", "angular stiffness"};
     return names.at(static_cast<std::size_t>(dimension));
 }
 

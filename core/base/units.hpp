@@ -26,7 +26,8 @@ enum class Dimension {
     angular_speed,
     acceleration,
     density,
-    stiffness
+    stiffness,
+    angular_stiffness  ///< of a spring about an axis
 };
 
 /// One unit is numerator/denominator in SI, both whole where that is possible: such a quantity is rounded once only.

@@ -11,10 +11,10 @@ namespace {
 
 constexpr double close_enough = 1e-9;  // exponents such as 1/3 are rounded
 
-constexpr std::array all_dimensions{Dimension::number,       Dimension::length,  Dimension::area,     Dimension::volume,
-                                    Dimension::angle,        Dimension::time,    Dimension::mass,     Dimension::force,
-                                    Dimension::torque,       Dimension::energy,  Dimension::speed,    Dimension::angular_speed,
-                                    Dimension::acceleration, Dimension::density, Dimension::stiffness};
+constexpr std::array all_dimensions{Dimension::number,       Dimension::length,  Dimension::area,      Dimension::volume,
+                                    Dimension::angle,        Dimension::time,    Dimension::mass,      Dimension::force,
+                                    Dimension::torque,       Dimension::energy,  Dimension::speed,     Dimension::angular_speed,
+                                    Dimension::acceleration, Dimension::density, Dimension::stiffness, Dimension::angular_stiffness};
 
 }  // namespace
 
@@ -51,6 +51,8 @@ DimensionPowers powers_of(Dimension dimension) {
             return {{-3, 1, 0, 0}};
         case Dimension::stiffness:
             return {{0, 1, -2, 0}};
+        case Dimension::angular_stiffness:
+            return {{2, 1, -2, -1}};
     }
     return {};
 }

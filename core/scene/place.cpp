@@ -271,7 +271,7 @@ std::vector<Row> make_table() {
         rows.insert(rows.end(),
                     {{list, "point_a/*", [](const Item& i) -> Numbers { return &i.a().point; }, is<length>, has_no_point},
                      {list, "point_b/*", [](const Item& i) -> Numbers { return &i.b().point; }, is<length>, has_no_point},
-                     {list, "stiffness", of_forces<&F::stiffness>, is<stiffness, number>, has_no_spring, Range::positive},
+                     {list, "stiffness", of_forces<&F::stiffness>, is<stiffness, angular_stiffness>, has_no_spring, Range::positive},
                      {list, "rest", of_forces<&F::rest>, is<length, angle>, has_no_rest},
                      {list, "preload", of_forces<&F::preload>, is<force, torque>, has_no_preload},
                      {list, "damping", of_forces<&F::damping>, is<number>, has_no_damping, Range::positive},

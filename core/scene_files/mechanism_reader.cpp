@@ -32,7 +32,7 @@ struct CoordinateUnit {
         return node.quantity(is_angle ? base::Dimension::torque : base::Dimension::force, 1, range);
     }
     std::optional<double> read_stiffness(const JsonNode& node) const {
-        return node.quantity(is_angle ? base::Dimension::number : base::Dimension::stiffness, 1, files::not_negative);
+        return node.quantity(is_angle ? base::Dimension::angular_stiffness : base::Dimension::stiffness, 1, files::not_negative);
     }
 };
 

@@ -26,6 +26,12 @@ VectorX values_of(const std::vector<Parameter>& parameters) {
     return p;
 }
 
+VectorX references_of(const std::vector<Parameter>& parameters) {
+    VectorX p(parameters.size());
+    for (Eigen::Index k = 0; k < p.size(); ++k) p[k] = parameters[k].reference.value_or(parameters[k].value);
+    return p;
+}
+
 namespace {
 
 std::string told(double si, const Unit& unit) {

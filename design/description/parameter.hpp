@@ -2,6 +2,7 @@
 /// Design parameters: the numbers that an optimiser may change. What follows from them in the scene: Design::numbers (design.hpp).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,13 @@ struct Parameter {
     std::string name;
     double value = 0, lower = 0, upper = 0;  ///< SI
     Unit unit = {};                          ///< that people read it in; trial values are those that a file in it can hold exactly
+    /// Where settings that the scene leaves open (of contact, of tolerances) are chosen, the same for all values; none: `value`. A design
+    /// that was found keeps those of the one that the search began with, so that it is simulated as it was.
+    std::optional<double> reference = {};
 };
 
 VectorX values_of(const std::vector<Parameter>& parameters);
+VectorX references_of(const std::vector<Parameter>& parameters);
 std::vector<std::string> names_of(const std::vector<Parameter>& parameters);
 /// The parameters as what formulas may name; numbers without a unit count in SI.
 core::expression::Scope scope_of(const std::vector<Parameter>& parameters);

@@ -62,6 +62,12 @@ Design with_plain_places(Design design) {
     return design;
 }
 
+Errors at_reference(Errors errors) {
+    for (Error& error : errors)
+        error.message = "at the parameters' `reference` values: " + error.message + "; leave these out, and settings are chosen at `value`";
+    return errors;
+}
+
 std::string name_of(const description::ObjectiveTerm& term) { return "objective `" + term.name + "`"; }
 std::string name_of(const description::Constraint& constraint) { return "constraint `" + constraint.name + "`"; }
 
@@ -98,10 +104,15 @@ Result<DesignProblem> DesignProblem::create(Design design) {
     const Errors errors = check_design(design, *model);
     if (!errors.empty()) return errors;
     DesignProblem problem;
+    problem.warnings_ = model->warnings;
+    if (const VectorX reference = description::references_of(design.parameters); reference != description::values_of(design.parameters)) {
+        const Result<MovedScene> moved = move_scene(design, reference, SceneDerivative::not_wanted);
+        model = moved ? core::model::build_model(moved->scene, options) : moved.errors();
+        if (!model) return at_reference(model.errors());
+    }
     for (const core::model::Body& body : model->bodies) problem.reference_points_.push_back(body.reference_point);
     problem.kappa_ = model->kappa;
     problem.term_scales_ = term_scales_of(*model);
-    problem.warnings_ = model->warnings;
     if (model->proximal_weight > 0) problem.proximal_weight_ = model->proximal_weight;
     // Their defaults are functions of the scene's size, which parameters change.
     design.scene.dhat = model->dhat;

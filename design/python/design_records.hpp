@@ -73,7 +73,7 @@ public:
 }  // namespace pybind11::detail
 
 FETTLE_RECORD(fettle::design::description::Parameter, "Parameter", field("name", &Type::name), field("value", &Type::value),
-              field("lower", &Type::lower), field("upper", &Type::upper), field("unit", &Type::unit))
+              field("lower", &Type::lower), field("upper", &Type::upper), field("unit", &Type::unit), field("reference", &Type::reference))
 FETTLE_RECORD(fettle::design::description::Bounds, "Bounds", field("lower", &Type::lower), field("upper", &Type::upper),
               field("margin", &Type::margin), field("unit", &Type::unit))
 FETTLE_RECORD(fettle::design::description::ObjectiveTerm, "ObjectiveTerm", field("name", &Type::name), field("weight", &Type::weight),

@@ -34,6 +34,9 @@ std::string design_text(const DesignFile& file, const VectorX& values, const std
         const description::Parameter& parameter = file.design.parameters[k];
         auto& entry = json["parameters"][k];
         const double value = values[k];
+        if (value != parameter.value && !entry.contains("reference"))
+            entry["reference"] =
+                entry.contains("value") ? entry["value"] : nlohmann::ordered_json(description::from_si(parameter.value, parameter.unit));
         // A value at a bound is written as the bound is: a neighbour with the same SI value could lie outside.
         entry["value"] = value == parameter.lower   ? entry["lower"]
                          : value == parameter.upper ? entry["upper"]

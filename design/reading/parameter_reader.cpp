@@ -20,7 +20,7 @@ std::vector<std::string_view> parameter_unit_names() {
     std::vector<std::string_view> names;
     for (const Dimension dimension :
          {Dimension::length, Dimension::angle, Dimension::speed, Dimension::angular_speed, Dimension::acceleration, Dimension::force,
-          Dimension::torque, Dimension::stiffness, Dimension::density, Dimension::number}) {
+          Dimension::torque, Dimension::stiffness, Dimension::angular_stiffness, Dimension::density, Dimension::number}) {
         for (const Unit& unit : units()) {
             if (unit.dimension == dimension) names.push_back(unit.name);
         }
@@ -44,7 +44,7 @@ public:
 
     Parameter read(const JsonNode& node) {
         Parameter parameter;
-        node.allow_keys({"name", "description", "value", "lower", "upper", "unit", "moves"});
+        node.allow_keys({"name", "description", "value", "lower", "upper", "unit", "reference", "moves"});
         if (!node.is_object()) return parameter;
         node["description"].string();
         read_name(node.require("name"), parameter);
@@ -100,6 +100,7 @@ private:
                                                             node["lower"].shown() + ", " + node["upper"].shown() + "]" +
                                                             in_unit(parameter.unit));
         }
+        if (node["reference"].exists()) parameter.reference = read(node["reference"]);
         parameter.value = value.value_or(0);
         parameter.lower = lower.value_or(0);
         parameter.upper = upper.value_or(0);

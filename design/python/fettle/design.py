@@ -389,9 +389,11 @@ class Parameter(Record, _Arithmetic):
     lower: Number = number("unit", 0.0)
     upper: Number = number("unit", 0.0)
     unit: str = ""
+    reference: Optional[Number] = number("unit", None)  #: where settings that the scene leaves open are chosen; None: at `value`
 
     def __post_init__(self) -> None:
-        self.value, self.lower, self.upper = self.value, self.lower, self.upper  # now that the unit is known
+        # Now that the unit is known.
+        self.value, self.lower, self.upper, self.reference = self.value, self.lower, self.upper, self.reference
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)

@@ -335,7 +335,7 @@ class Scene(Record):
 
 _OF_COORDINATE = {
     "length": {"rate": "speed", "stiffness": "stiffness", "preload": "force", "friction": "force"},
-    "angle": {"rate": "angular_speed", "stiffness": "", "preload": "torque", "friction": "torque"},
+    "angle": {"rate": "angular_speed", "stiffness": "angular_stiffness", "preload": "torque", "friction": "torque"},
 }
 _COORDINATES = {"revolute": "angle", "screw": "angle", "prismatic": "length", "cylindrical": "length"}
 _EFFORTS = {"length": "force", "angle": "torque"}

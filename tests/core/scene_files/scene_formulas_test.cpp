@@ -45,7 +45,7 @@ const std::string everything = R"json({
   ],
   "joints": [
     { "name": "hinge", "type": "revolute", "a": "base", "b": "first", "point": [1, "= half", 2], "axis": ["= a", 0.2, 1],
-      "limits": ["= -phi", "= 2 * phi"], "friction": "= a * 0.01 N m", "stiffness": "= 3 * a", "rest": "= phi / 2", "damping": "= a / 50" },
+      "limits": ["= -phi", "= 2 * phi"], "friction": "= a * 0.01 N m", "stiffness": "= 3 * a * 1 N m/rad", "rest": "= phi / 2", "damping": "= a / 50" },
     { "name": "own", "type": "prismatic", "a": "first", "b": "second", "point_a": ["= l", 1, 2], "axis_a": [0, "= a", 1],
       "stiffness": "= 100 * a * 1 N/m", "preload": "= a * 1 N", "limits": ["= -l", "= l"] },
     { "name": "screw", "type": "screw", "b": "second", "point_b": [0, "= half", 0], "axis_b": [0, 0, "= 1 + a"], "pitch": "= l / 10" },

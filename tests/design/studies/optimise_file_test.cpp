@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "fettle/design/reading/design_text.hpp"
 #include "fettle/tests/design/small_problem.hpp"
 #include "fettle/tests/support/text.hpp"
 
@@ -50,6 +51,34 @@ TEST_CASE("a simulated design, killed and resumed, ends the same, bit for bit", 
     const VectorX values = values_of(final->design.parameters);
     const auto again = problem::DesignProblem::create(final->design)->evaluate(values);
     CHECK(again.objective == whole->outcome.report.best.objective);
+}
+
+TEST_CASE("a design that was found has the settings of the one that the search began with", "[design]") {
+    const DesignFolder folder;
+    const reading::DesignFile file = file_of(folder);
+    const problem::DesignProblem first = problem_of(folder);
+    VectorX found = values_of(file.design.parameters);
+    found[0] *= 1.2;
+    found[3] *= 0.6;  // what decides about the stiffness of contact: the cube's weight
+    std::filesystem::create_directories(folder.path / "out");
+    const std::string path = (folder.path / "out" / "design.final.json").string();
+    std::ofstream(path) << reading::design_text(file, found, (folder.path / "out").string());
+
+    const auto read = reading::read_design(path);
+    REQUIRE(read);
+    CHECK(values_of(read->design.parameters) == found);
+    CHECK(description::references_of(read->design.parameters) == values_of(file.design.parameters));
+    const auto again = problem::DesignProblem::create(read->design);
+    REQUIRE(again);
+    CHECK(again->kappa() == first.kappa());
+    CHECK(again->evaluate(found).objective == first.evaluate(found).objective);
+
+    // Written again, it keeps them; without them, it has others.
+    const std::string second = reading::design_text(*read, values_of(file.design.parameters), (folder.path / "out").string());
+    CHECK(second.find("\"reference\": 1000") != std::string::npos);
+    reading::DesignFile other = *read;
+    for (description::Parameter& parameter : other.design.parameters) parameter.reference.reset();
+    CHECK(problem::DesignProblem::create(other.design)->kappa() != first.kappa());
 }
 
 }  // namespace fettle::design::studies::optimise_file_test
