@@ -95,7 +95,7 @@ TEST_CASE("places are what files say, by number or by name, each in its dimensio
     check("/bodies/pin/turn/1", 0, Dimension::angle);
     check("/bodies/0/shape/dimensions/size_y", 0.03, Dimension::length);
     check("/bodies/pin/prescribed/rz/rate", 40 * degree, Dimension::angular_speed);
-    check("/joints/hinge/stiffness", 2, Dimension::number);
+    check("/joints/hinge/stiffness", 2, Dimension::angular_stiffness);
     check("/joints/slide/stiffness", 300, Dimension::stiffness);
     check("/joints/hinge/preload", 1, Dimension::torque);
     check("/joints/0/limits/0", -90 * degree, Dimension::angle);

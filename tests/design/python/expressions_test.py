@@ -115,7 +115,7 @@ def test_every_number_of_a_mechanism_may_be_a_formula():
     scene = fettle.Scene(bodies=[lever, weight], gravity=[0, 0, "-9.81m/s^2"], timestep=0.002)
     of = scene.mechanism
     of.joints = [fettle.Joint("hinge", b=fettle.Attachment("lever", point=[mm, 0, 0]),
-                              forces=fettle.CoordinateForces(stiffness=size * 2, limits=[size * "-30deg", "30deg"], damping=0.01 * size)),
+                              forces=fettle.CoordinateForces(stiffness=size * "2 N m/rad", limits=[size * "-30deg", "30deg"], damping=0.01 * size)),
                  fettle.Joint("slide", kind="prismatic", a=fettle.Attachment(point=[0, 0.1, 0]), b=fettle.Attachment("weight"))]
     of.springs = [fettle.Spring("stay", a=fettle.Attachment(point=[0, 0, 0.1 * size * "1 m"]), b=fettle.Attachment("lever", point=["2cm", 0, 0]),
                                 forces=fettle.CoordinateForces(stiffness=size * "20 N/m", rest="5cm"))]

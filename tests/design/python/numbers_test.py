@@ -80,7 +80,7 @@ def test_units_of_coordinates_are_those_of_their_joint():
     assert fettle.build_model(jointed(limits=["-30deg", "30deg"], friction="2 N mm"))
     refused(lambda: fettle.build_model(jointed(limits=["-3mm", "3mm"])), "wrong_type", "joint `hinge`/forces/limits", "angle is expected")
     refused(lambda: fettle.build_model(jointed(friction="2 N")), "wrong_type", "joint `hinge`/forces/friction", "torque is expected")
-    refused(lambda: fettle.build_model(jointed(stiffness="2 N/m")), "wrong_type", "joint `hinge`/forces/stiffness", "in SI")
+    refused(lambda: fettle.build_model(jointed(stiffness="2 N/m")), "wrong_type", "joint `hinge`/forces/stiffness", "angular stiffness is expected")
     scene = jointed()
     scene.mechanism.motors.append(fettle.Motor("drive", joint="hinge", curve=fettle.Curve(rate="60rpm")))
     assert fettle.build_model(scene)
