@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/answers/check_faults.hpp"
 #include "fettle/design/description/constraint.hpp"
 
 namespace fettle::design::answers {
@@ -139,8 +140,9 @@ Json contact_changes_json(const Design& design, const CheckReport& report) {
 
 }  // namespace
 
-Json check_json(const Design& design, const CheckReport& report) {
+Json check_json(const Design& design, const CheckReport& report, double limit) {
     Json json;
+    json["check_faults"] = check_faults(report, limit);
     Json rows = Json::array();
     for (const CheckRow& row : report.rows) {
         const double factor = parameter_unit(design, row.parameter);

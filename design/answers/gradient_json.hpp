@@ -24,6 +24,7 @@ nlohmann::ordered_json not_evaluated_json(const problem::DesignEvaluation& evalu
 nlohmann::ordered_json values_json(const description::Design& design, const problem::DesignEvaluation& evaluation);
 
 /// What --check adds.
-nlohmann::ordered_json check_json(const description::Design& design, const gradient_audit::CheckReport& report);
+/// @param limit  Of the verdict (check_faults.hpp). Contract: > 0
+nlohmann::ordered_json check_json(const description::Design& design, const gradient_audit::CheckReport& report, double limit);
 
 }  // namespace fettle::design::answers

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/design/answers/check_faults.hpp"
 #include "fettle/design/answers/gradient_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
@@ -258,12 +259,9 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
     int code = exit_done;
     if (options.check) {
         const CheckReport report = run_check(*problem, values, evaluation, options, console);
-        json.update(answers::check_json(design, report));
-        text += check_text(design, report);
-        const bool resolved =
-            std::all_of(report.rows.begin(), report.rows.end(), [](const CheckRow& row) { return row.resolved && row.kink == 0; });
-        const bool good = report.largest_relative_error <= options.check_limit && resolved && report.failures.empty() &&
-                          !report.interrupted && report.sweeps.failure.empty() && report.sweeps.disagreement <= options.check_limit;
+        json.update(answers::check_json(design, report, options.check_limit));
+        text += check_text(design, report) + answers::verdict_text(report, options.check_limit);
+        const bool good = json.at("check_faults").empty();
         if (!good) code = exit_undecided;
         if (!good) json["status"] = report.interrupted ? "interrupted" : "check_failed";
     }
@@ -278,16 +276,20 @@ Command add_gradient(CommandLine& program, const CommonOptions& common) {
     auto options = std::make_shared<GradientArguments>();
     app.option("DESIGN", options->path, "Design, taken at its values").required();
     const Option check = app.flag("--check", options->check, "Compare all gradients with central differences of whole simulations");
-    app.option("--check-limit", options->check_limit, "Largest relative error that passes (default 1e-5); else exit code 2")
-        .above(0)
-        .needs(check);
+    app.option("--check-limit", options->check_limit, "Largest relative error that passes (default 1e-5)").above(0).needs(check);
     app.option("--check-parameters", options->check_parameters,
                "Check only this many parameters, those that the objective depends on most in shares of their ranges (default: all)")
         .at_least(1)
         .needs(check);
     app.closing_words(
         "Example:  fettle gradient examples/slider_crank/slider_crank.design.json --check\n"
-        "Gradients are per unit of each parameter as the design has it; values are SI, the objective a plain number.");
+        "Gradients are per unit of each parameter as the design has it; values are SI, the objective a plain number.\n"
+        "Exit code 2: the design cannot be evaluated, or the check fails; the last line says why:\n"
+        "  - derivatives of the same simulation, taken backwards and forwards, differ by more than the limit or cannot be compared;\n"
+        "  - a gradient and its difference disagree by more than the limit, for a parameter or along the gradient;\n"
+        "  - a quantity has a kink (another slope above than below); noise hides more than the limit;\n"
+        "  - simulations beside the design fail, so that a parameter is not checked; it was interrupted.\n"
+        "What to do in each case: docs/recipes.md, \"When gradient --check fails\".");
     return {app, [options, &common](Console& console) { return run_gradient(*options, common, console); }};
 }
 

@@ -93,4 +93,20 @@ TEST_CASE("gradient --check counts in the design's units, as the lines above it 
     CHECK(answer.says(" [mm/s] "));  // a constraint's, in the table and in that of noise and tolerance
 }
 
+TEST_CASE("gradient --check ends with its verdict and every cause") {
+    const DesignFolder folder(turned_design, turned_scene);
+    const Answer passed = run("gradient " + folder.design() + " --check --check-parameters 1");
+    CAPTURE(passed.out);
+    CHECK(passed.code == 0);
+    CHECK(passed.out.ends_with("\ncheck passed (limit 1e-05)\n"));
+    const Answer failed = run("gradient " + folder.design() + " --check --check-parameters 1 --check-limit 1e-30 --json");
+    CAPTURE(failed.out);
+    CHECK(failed.code == 2);
+    const nlohmann::json told = failed.json();
+    CHECK(told.at("status") == "check_failed");
+    REQUIRE_FALSE(told.at("check_faults").empty());
+    CHECK(told.at("check_faults").at(0).get<std::string>().find("backwards and forwards differ by ") == 0);
+    CHECK(run("gradient --help").says("Exit code 2: "));
+}
+
 }  // namespace fettle::design::cli::gradient_command_test
