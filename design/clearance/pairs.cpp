@@ -2,12 +2,15 @@
 #include "fettle/design/clearance/pairs.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <sstream>
 #include <unordered_map>
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/quantities/process_presets.hpp"
 
 namespace fettle::design::clearance {
@@ -32,7 +35,8 @@ std::vector<std::string> split(const std::string& text, char at) {
 
 class Selector {
 public:
-    Selector(const Model& model, const PairOptions& options, bool moves) : model_(model), options_(options), moves_(moves) {}
+    Selector(const Model& model, const PairOptions& options, bool moves, const BodyPairs& wanted)
+        : model_(model), options_(options), moves_(moves), wanted_(wanted) {}
 
     Result<PairSelection> select() {
         for (size_t i = 0; i < model_.bodies.size(); ++i) bodies_.push_back({model_.bodies[i].name, {static_cast<int>(i)}, false});
@@ -218,6 +222,7 @@ private:
 
     // Patterns of --pairs ask for whatever they match.
     bool is_judged(int i, int j) const {
+        if (std::binary_search(wanted_.begin(), wanted_.end(), std::pair<int, int>(std::minmax(i, j)))) return true;
         if (!options_.pairs.empty() || !moves_) return !is_one_group(i, j);
         return judged_by_default(model_, i, j);
     }
@@ -286,8 +291,6 @@ private:
             if (!found) return;
             preset = *found;
         }
-        const bool some =
-            std::any_of(selection_.pairs.begin(), selection_.pairs.end(), [](const PairSpec& p) { return !p.required_by.empty(); });
         for (PairSpec& pair : selection_.pairs) {
             if (!pair.required_by.empty()) continue;
             pair.minimum = 0;
@@ -301,10 +304,6 @@ private:
                 errors_.insert(errors_.end(), required.errors().begin(), required.errors().end());
                 pair.minimum = required ? *required : 0;
                 pair.required_by = "--process " + options_.process;
-            } else if (some) {
-                fail("--minimum", ErrorCode::missing_key,
-                     "what does " + name + " need? say --minimum 0.3mm, --process fdm, or --pairs " + name + "=0.3mm");
-                return;
             }
         }
     }
@@ -324,6 +323,7 @@ private:
     const Model& model_;
     const PairOptions& options_;
     bool moves_;
+    const BodyPairs& wanted_;
     std::vector<Unit> bodies_, groups_, units_;  // units: rows of the report by default
     PairSelection selection_;
     std::unordered_map<std::string, size_t> places_;  // in selection_.pairs while it grows, by key()
@@ -332,8 +332,23 @@ private:
 
 }  // namespace
 
-Result<PairSelection> select_pairs(const Model& model, const PairOptions& options, bool moves) {
-    return Selector(model, options, moves).select();
+BodyPairs design_pairs(const description::Design& design) {
+    BodyPairs pairs;
+    const std::function<void(const description::Quantity*)> add = [&](const description::Quantity* quantity) {
+        if (const auto* clearance = dynamic_cast<const quantities::Clearance*>(quantity))
+            pairs.emplace_back(std::minmax(clearance->range().a, clearance->range().b));
+        if (const auto* expression = dynamic_cast<const quantities::Expression*>(quantity))
+            for (const quantities::NamedQuantity& part : expression->parts()) add(part.quantity.get());
+    };
+    for (const description::ObjectiveTerm& term : design.objective) add(term.quantity.get());
+    for (const description::Constraint& constraint : design.constraints) add(constraint.quantity.get());
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+}
+
+Result<PairSelection> select_pairs(const Model& model, const PairOptions& options, bool moves, const BodyPairs& wanted) {
+    return Selector(model, options, moves, wanted).select();
 }
 
 bool judged_by_default(const core::model::Model& model, int a, int b) {

@@ -3,7 +3,9 @@
 ///   as assembled, or where nothing moves: every pair but those of one group of the scene, whatever types they have, and what a joint joins
 ///   over a motion: every pair that may collide; where nothing is dynamic, every pair of which one moves; the others are looked at for a
 ///   clash only
-///   --pairs A:B,C:D      bodies or groups by name; `*` stands for any letters (pin*:plate); A:B=0.4mm has a minimum of its own
+///   of a design: those that its objective or its constraints are about too, whatever joins them (design_pairs)
+///   --pairs A:B,C:D      bodies or groups by name; `*` stands for any letters (pin*:plate); A:B=0.4mm has a minimum of its own, and of
+///                        one without any, where --minimum and --process give none, only the distance is wanted
 ///   --ignore A:B,...     the same without minimum; order of the two does not matter
 ///   --allow-touch A:B    they may touch: no minimum applies to them, and what is deeper than rounding is still a clash; A:B=0.02mm: up to
 ///                        that depth. A pair that is named so is judged
@@ -12,10 +14,12 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/model/model.hpp"
+#include "fettle/design/description/design.hpp"
 
 namespace fettle::design::clearance {
 
@@ -49,11 +53,18 @@ struct PairSelection {
     std::vector<PairSpec> left_out;    ///< neither judged by default nor named: only their clashes are reported
 };
 
+/// Two bodies by their indices, the lesser first; sorted, each once.
+using BodyPairs = std::vector<std::pair<int, int>>;
+
+/// The bodies whose clearance a design's objective or constraints are about, by themselves or within an expression.
+BodyPairs design_pairs(const description::Design& design);
+
 /// Without any minimum only distances are wanted, and no pair has one.
-/// @param moves  over a motion, or over ranges of joints; false: as assembled
-/// Errors: names that are not there (with the nearest that is), a pair of a thing with itself, no minimum for a pair where others have one,
-/// a pair that may touch and is not there, or has a minimum of its own.
-Result<PairSelection> select_pairs(const core::model::Model& model, const PairOptions& options, bool moves);
+/// @param moves   over a motion, or over ranges of joints; false: as assembled
+/// @param wanted  judged where no pairs are named, and matched by patterns, whatever joins them
+/// Errors: names that are not there (with the nearest that is), a pair of a thing with itself, a pair that may touch and is not there, or
+/// has a minimum of its own.
+Result<PairSelection> select_pairs(const core::model::Model& model, const PairOptions& options, bool moves, const BodyPairs& wanted = {});
 
 /// Are these two judged over a motion when no pairs are named? Those that may collide; where nothing is dynamic, those of which one moves;
 /// where nothing moves, all; but never those of one group, nor what a joint joins.

@@ -210,6 +210,7 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
     }
     subject.warnings = std::move(loaded->warnings);
     subject.scene_path = loaded->scene_path;
+    if (loaded->problem != nullptr) subject.wanted = design_pairs(loaded->problem->design());
     if (subject.ranges) return subject;
     const auto& bodies = subject.model.bodies;
     const bool all_scripted = std::all_of(bodies.begin(), bodies.end(), core::stepper::is_scripted);

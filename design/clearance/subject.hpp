@@ -11,6 +11,7 @@
 #include "fettle/core/clearance/range_clearance.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
+#include "fettle/design/clearance/pairs.hpp"
 
 namespace fettle::design::clearance {
 
@@ -24,6 +25,7 @@ struct Subject {
     std::string scene_path;
     std::optional<core::clearance::JointedPath> joints;  ///< that hold the bodies at all times, without dynamics; nothing: the path is all
     std::optional<core::clearance::JointRanges> ranges;  ///< in place of a path
+    BodyPairs wanted;                                    ///< of a design: those that it is about, which are judged whatever joins them
     std::string incomplete;                              ///< why the motion is not whole; empty: it is, or there is none
     std::vector<std::string> warnings;                   ///< of the files
     std::vector<std::string> notes;                      ///< what the reader of a report should know

@@ -319,6 +319,10 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, i
         if (told == explain) break;
         if (!pair.least.is_far) text += "\n" + formatted("%d. ", ++told) + explained(pair, subject, lengths);
     }
+    if (told > 0 && subject.source == clearance::SubjectSource::trajectory)
+        text +=
+            "\nno line is about round surfaces: a trajectory holds the meshes alone; give the scene or design (with --motion), only they "
+            "know the surfaces that facets stand for\n";
     text += "\n" + summary(report, subject);
     const auto far = std::count_if(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.least.is_far; });
     if (far > 0)

@@ -97,13 +97,58 @@ TEST_CASE("clearance: usage that is wrong is refused with what to do") {
     refused("--minimum 1mm --pairs 'x*:pin1'", "no name matches");
     refused("--minimum 1mm --pairs slide:slide", "with itself");
     refused("--minimum 1mm --pairs slide:pin1=1", "without a unit");
-    refused("--pairs slide:pin1=1mm,slide:pin2", "what does slide:pin2 need?");
     refused("--minimum 1mm --group frame", "write name=a,b,c");
     refused("--minimum 1mm --group slide=pin1", "is a body's name already");
     refused("--minimum 1mm --group f=pin1 --group g=pin1", "is in both");
     refused("--minimum 1mm --motion --kinematic", "");
     refused("--minimum 1mm --poses " + folder.file("none.csv"), "none.csv");
     refused("--minimum 1mm --baseline " + folder.file("none.json"), "none.json");
+}
+
+TEST_CASE("clearance --explain of a trajectory says why no line is about round surfaces") {
+    const RowFolder folder;
+    REQUIRE(run("simulate " + folder.scene() + " --steps 2 --out " + folder.file("run")).code == 0);
+    const std::string why = "no line is about round surfaces: a trajectory holds the meshes alone; give the scene or design";
+    CHECK(run("clearance " + folder.file("run") + " --explain").says(why));
+    CHECK_FALSE(run("clearance " + folder.file("run")).says(why));
+    CHECK_FALSE(run("clearance " + folder.scene() + " --explain").says(why));
+}
+
+TEST_CASE("clearance: a pair without a minimum beside one that has its own is measured") {
+    const RowFolder folder;
+    const Answer answer = run("clearance " + folder.scene() + " --json --pairs slide:pin1=0.1mm,pin1:pin2");
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+    CHECK(answer.pair("slide", "pin1")["minimum"] == 1e-4);
+    CHECK(answer.pair("pin1", "pin2")["minimum"].is_null());
+    CHECK(answer.pair("pin1", "pin2")["lower"].get<double>() == Approx(2e-4).margin(1e-6));
+}
+
+TEST_CASE("clearance: pairs that a design is about are judged, whatever joins them") {
+    const char* const joined_scene = R"({"fettle_scene": 1, "units": "mm", "timestep": 0.1, "end_time": 1, "bodies": [
+        {"name": "slide", "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 10, "size_y": 10}}},
+        {"name": "pin1", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 10, "size_y": 10}}, "position": [10.5, 0, 0]},
+        {"name": "pin2", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 10, "size_y": 10}}, "position": [20.7, 0, 0]},
+        {"name": "spin", "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 10, "size_y": 10}}, "position": [33.7, 0, 0]}],
+        "joints": [{"name": "axle", "type": "revolute", "a": "pin1", "b": "slide", "point": [5, 0, 0], "axis": [0, 0, 1]},
+                   {"name": "other", "type": "revolute", "a": "pin2", "b": "spin", "point": [30, 0, 0], "axis": [0, 0, 1]}]})";
+    const auto design_of = [](const std::string& constraint) {
+        return R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+            "parameters": [{"name": "place", "value": 33.7, "lower": 33, "upper": 35}], "set": {"/bodies/3/position/0": "= place"},
+            "quantities": {"gap": {"type": "play", "a": "slide", "b": "pin1"}},
+            "objective": [{"type": "play", "a": "pin1", "b": "pin2", "weight": 1}], "constraints": [)" +
+               constraint + "]}";
+    };
+    for (const char* constraint : {R"({"type": "clearance", "a": "slide", "b": "pin1", "minimum": 0.1})",
+                                   R"({"type": "expression", "name": "twice", "expression": "2 * gap", "lower": "0.1mm"})"}) {
+        const DesignFolder folder(design_of(constraint), joined_scene);
+        const Answer answer = run("clearance --json " + folder.design());
+        CAPTURE(answer.out);
+        CHECK(answer.pair("slide", "pin1")["lower"].get<double>() == Approx(5e-4).margin(1e-6));
+        const Json uncovered = answer.json()["uncovered"];
+        CHECK(uncovered.size() == 1);  // the other joint's
+        CHECK(run("clearance --json " + folder.file("small.scene.json")).json()["uncovered"].size() == 2);
+    }
 }
 
 TEST_CASE("clearance: process presets, per side, by size of the parts") {
