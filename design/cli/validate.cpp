@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// fettle validate FILE: is this scene, design, trajectory or mesh usable? Every fault, by name and place.
+/// fettle validate FILE: is this scene, design, part, trajectory or mesh usable? Every fault, by name and place.
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "fettle/core/part_files/part_file.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/solids/mesh_judgement.hpp"
@@ -41,9 +42,15 @@ std::string without_metres(std::string text) {
     return text;
 }
 
-Verdict validate_mesh_file(const std::string& path, bool strict) {
+// @param unit  Of a file that states none; empty: its places are numbers.
+Verdict validate_mesh_file(const std::string& path, const std::string& unit, bool strict) {
     Verdict verdict;
-    Result<core::geometry::Mesh> mesh = core::mesh_files::read_mesh(path, {1, true, interrupted});
+    const Result<double> metres = unit.empty() ? Result<double>(1.0) : core::base::metres_per_unit(unit, "--unit");
+    if (!metres) {
+        verdict.errors = metres.errors();
+        return verdict;
+    }
+    Result<core::geometry::Mesh> mesh = core::mesh_files::read_mesh(path, {*metres, true, interrupted});
     if (!mesh) {
         verdict.errors = mesh.errors();
         return verdict;
@@ -56,7 +63,7 @@ Verdict validate_mesh_file(const std::string& path, bool strict) {
         verdict.errors = std::move(found.errors);
         verdict.warnings.insert(verdict.warnings.end(), found.warnings.begin(), found.warnings.end());
     }
-    const bool has_unit = core::mesh_files::states_its_unit(path);
+    const bool has_unit = !unit.empty() || core::mesh_files::states_its_unit(path);
     if (!has_unit) {
         for (std::string& warning : verdict.warnings) warning = without_metres(warning);
         for (Error& error : verdict.errors) error.message = without_metres(error.message);
@@ -69,8 +76,9 @@ Verdict validate_mesh_file(const std::string& path, bool strict) {
     verdict.facts["unit"] = has_unit ? Json("mm") : Json(nullptr);
     verdict.facts["size"] = {size.x(), size.y(), size.z()};
     verdict.facts["volume"] = volume;
-    verdict.text = formatted("  size %.6g x %.6g x %.6g%s, volume %.6g%s\n", size.x(), size.y(), size.z(), has_unit ? " mm" : "", volume,
-                             has_unit ? " mm^3" : "; the file states no unit: in a scene it is that of `mesh_unit` or `units`");
+    verdict.text =
+        formatted("  size %.6g x %.6g x %.6g%s, volume %.6g%s\n", size.x(), size.y(), size.z(), has_unit ? " mm" : "", volume,
+                  has_unit ? " mm^3" : "; the file states no unit: in a scene it is that of `mesh_unit` or `units`, here of --unit");
     return verdict;
 }
 
@@ -115,35 +123,40 @@ Verdict validate_model(const std::string& path, FileKind kind, const CommonOptio
 }
 
 struct ValidateArguments {
-    std::string path, trajectory, minimum;
+    std::string path, unit, trajectory, minimum;
 };
 
 int run_validate(const ValidateArguments& options, const CommonOptions& common, Console& console) {
     const std::string& path = options.path;
     const FileKind kind = file_kind(path);
-    if (kind == FileKind::certificate) return validate_certificate({path, options.trajectory, options.minimum}, common, console);
+    if (kind == FileKind::certificate && options.unit.empty())
+        return validate_certificate({path, options.trajectory, options.minimum}, common, console);
     Errors not_taken;
+    if (!options.unit.empty() && kind != FileKind::mesh)
+        not_taken.push_back({ErrorCode::inconsistent, "--unit", "is for meshes; this file states its own unit"});
     for (const auto& [option, value] : {std::pair{"--minimum", options.minimum}, {"--trajectory", options.trajectory}})
-        if (!value.empty())
+        if (!value.empty() && kind != FileKind::certificate)
             not_taken.push_back({ErrorCode::inconsistent, option, std::string("is for a certificate; use fettle clearance")});
     if (!not_taken.empty()) return console.input_errors(not_taken);
     if (core::records::is_poses_file(path))
         return console.input_errors(
             {{ErrorCode::unsupported, path, "poses are checked with their scene: fettle clearance SCENE --poses FILE"}});
-    const Verdict verdict = kind == FileKind::mesh         ? validate_mesh_file(path, common.strict)
+    const Verdict verdict = kind == FileKind::mesh         ? validate_mesh_file(path, options.unit, common.strict)
                             : kind == FileKind::trajectory ? validate_trajectory(path)
                                                            : validate_model(path, kind, common);
     if (!verdict.errors.empty()) return console.input_errors(verdict.errors);
     const char* kinds[] = {"scene", "design", "trajectory", "mesh"};
+    const bool is_part = kind == FileKind::scene && path.ends_with(core::part_files::part_file_ending);
+    const char* const kind_name = is_part ? "part" : kinds[static_cast<int>(kind)];
     Json json;
     json["status"] = "ok";
-    json["kind"] = kinds[static_cast<int>(kind)];
+    json["kind"] = kind_name;
     json.update(verdict.facts);
     json["warnings"] = verdict.warnings;
     tell_warnings(console, verdict.warnings, path);
-    console.found({path, CheckOutcome::passed, "valid", std::string("a valid ") + kinds[static_cast<int>(kind)], path});
+    console.found({path, CheckOutcome::passed, "valid", std::string("a valid ") + kind_name, path});
     const std::string doubts = verdict.warnings.empty() ? "" : ", with " + core::base::counted(verdict.warnings.size(), "warning");
-    console.result(json, path + ": a valid " + kinds[static_cast<int>(kind)] + doubts + "\n" + verdict.text);
+    console.result(json, path + ": a valid " + kind_name + doubts + "\n" + verdict.text);
     return exit_done;
 }
 
@@ -151,11 +164,12 @@ int run_validate(const ValidateArguments& options, const CommonOptions& common, 
 
 Command add_validate(CommandLine& program, const CommonOptions& common) {
     CommandLine app =
-        program.command("validate", "Checks a scene, design, trajectory, certificate or mesh, and lists every fault with its place");
+        program.command("validate", "Checks a scene, design, part, trajectory, certificate or mesh, and lists every fault with its place");
     auto options = std::make_shared<ValidateArguments>();
     app.option("FILE", options->path,
-               "Scene, design, trajectory, certificate (.json) or mesh (" + core::mesh_files::mesh_extensions() + ")")
+               "Scene, design, part, trajectory, certificate (.json) or mesh (" + core::mesh_files::mesh_extensions() + ")")
         .required();
+    app.option("--unit", options->unit, "Unit of a mesh that states none: mm, um, cm, m, in, ft");
     app.option("--trajectory", options->trajectory,
                "For a certificate: the path that it is about (default: FILE's name, .trajectory.json)");
     app.option("--minimum", options->minimum, "For a certificate: do its bounds meet this clearance, per side, with its unit: 0.3mm");

@@ -86,6 +86,11 @@ TEST_CASE("validate: a mesh without a unit is not told in metres") {
     CHECK(answer.code == 0);
     CHECK(answer.says("size 60 x 40 x 12, volume 28800; the file states no unit"));
     CHECK(run("validate --json " + box).json().at("unit").is_null());
+    CHECK(run("validate --unit cm " + box).says("size 600 x 400 x 120 mm, volume 2.88e+07 mm^3"));
+    CHECK(run("validate --unit cm --json " + box).json().at("unit") == "mm");
+    CHECK(run("validate --unit mn " + box, true).says("--unit"));
+    const std::string scene = folder.write("a.scene.json", scene_of("mm", "1240"));
+    CHECK(run("validate --unit mm " + scene, true).says("is for meshes"));
     open.triangles.resize(6);
     const Answer faulty = run("validate --json " + folder.write("open.obj", obj_of(open)));
     CHECK(faulty.code == 3);
@@ -164,6 +169,14 @@ TEST_CASE("the README of scenes shows keys that are read") {
     const Answer answer = run("validate " + folder.write("a.scene.json", text.substr(begin, end - begin)), true);
     CAPTURE(answer.out);
     CHECK(answer.code == 0);
+}
+
+TEST_CASE("validate: a part file is a part") {
+    const Folder folder;
+    const std::string file = folder.write("rod.part.json", R"({"fettle_part": 1, "dimensions": {"long": 5},
+        "solid": {"extrude": {"circle": 1}, "to": "= long"}})");
+    CHECK(run("validate " + file).says(": a valid part"));
+    CHECK(run("validate --json " + file).json().at("kind") == "part");
 }
 
 }  // namespace fettle::design::cli::validate_command_test
