@@ -65,12 +65,11 @@ std::vector<Pose> poses_at(const Trajectory& trajectory, double time) {
     return trajectory.poses.back();
 }
 
-std::vector<core::clearance::PairRequest> judged_pairs(const core::model::Model& model) {
+std::vector<core::clearance::PairRequest> judged_pairs(const core::model::Model& model, const std::vector<int>& shown) {
     std::vector<core::clearance::PairRequest> requests;
-    const int count = count_of(model.bodies);
-    for (int a = 0; a < count; ++a)
-        for (int b = a + 1; b < count; ++b)
-            if (clearance::judged_by_default(model, a, b)) requests.push_back({a, b});
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        for (std::size_t j = i + 1; j < shown.size(); ++j)
+            if (clearance::judged_by_default(model, shown[i], shown[j])) requests.push_back({shown[i], shown[j]});
     return requests;
 }
 
@@ -99,13 +98,14 @@ PairClearance deepest_of(const core::model::Model& model, const Trajectory& traj
     return *std::max_element(measured.begin(), measured.end(), [&](const auto& x, const auto& y) { return depth(x) < depth(y); });
 }
 
-std::optional<PairClearance> find_worst(const core::model::Model& model, const Trajectory& trajectory, bool motion) {
+std::optional<PairClearance> find_worst(const core::model::Model& model, const std::vector<int>& shown, const Trajectory& trajectory,
+                                        bool motion) {
     core::clearance::ClearanceOptions options;
     options.motion = motion;
     options.measure_overlap = options.sample_nodes = false;
     options.tolerance = 1e-4 * model.diagonal;
     options.should_stop = interrupted;
-    const auto pairs = core::clearance::certify_clearance(model, trajectory, judged_pairs(model), options);
+    const auto pairs = core::clearance::certify_clearance(model, trajectory, judged_pairs(model, shown), options);
     const PairClearance* worst = worst_of(pairs);
     if (worst == nullptr) return std::nullopt;
     return worst->is_clash() ? deepest_of(model, trajectory, pairs, options) : *worst;
@@ -130,12 +130,13 @@ Errors time_faults(const DrawArguments& options, const Trajectory& path) {
     return {{ErrorCode::out_of_range, "--time", known + formatted("; found %.6g s", *options.time)}};
 }
 
-Instant instant_of(const DrawArguments& options, const clearance::Subject& subject) {
+Instant instant_of(const DrawArguments& options, const ShownMotion& shown) {
+    const clearance::Subject& subject = shown.subject;
     const Trajectory& path = subject.trajectory;
     const bool motion = !path.steps.empty();
     Instant out;
     if (options.worst && motion) {
-        out.worst = find_worst(subject.model, path, true);
+        out.worst = find_worst(subject.model, shown.bodies, path, true);
         out.time = out.worst ? instant_of(*out.worst) : core::stepper::time_at(path, 0);
         out.poses = poses_at(path, out.time);
         return out;
@@ -148,7 +149,7 @@ Instant instant_of(const DrawArguments& options, const clearance::Subject& subje
     still.times.clear();
     still.time_start = out.time;
     still.poses = {out.poses};
-    out.worst = find_worst(subject.model, still, false);
+    out.worst = find_worst(subject.model, shown.bodies, still, false);
     return out;
 }
 
@@ -175,7 +176,7 @@ int run_draw(const DrawArguments& options, const CommonOptions& common, Console&
     const auto view = exports::projection_view(options.view, shown->assembly.up, "--view");
     if (!view) return console.input_errors(view.errors());
     if (const Errors errors = time_faults(options, shown->subject.trajectory); !errors.empty()) return console.input_errors(errors);
-    const Instant instant = instant_of(options, shown->subject);
+    const Instant instant = instant_of(options, *shown);
     exports::PictureOptions picture_options;
     picture_options.view = *view;
     picture_options.width = size->first;
@@ -183,7 +184,7 @@ int run_draw(const DrawArguments& options, const CommonOptions& common, Console&
     const bool motion = !shown->subject.trajectory.steps.empty();
     picture_options.title = !options.title.empty() ? options.title : shown->stem + (motion ? formatted(", t = %.6g s", instant.time) : "");
     if (instant.worst && !options.plain) picture_options.marker = marker_of(*instant.worst, shown->subject.model);
-    const exports::Picture picture = exports::draw_picture(shown->assembly, instant.poses, picture_options);
+    const exports::Picture picture = exports::draw_picture(shown->assembly, only(shown->bodies, instant.poses), picture_options);
     const Errors errors = core::files::write_file_atomically(options.out, png ? exports::png_bytes(picture) : exports::svg_text(picture));
     if (!errors.empty()) return console.input_errors(errors);
     Json json{{"status", "ok"},       {"out", options.out},     {"time", instant.time},

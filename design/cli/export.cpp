@@ -117,13 +117,17 @@ Errors arrange_errors(const ExportArguments& options) {
 Errors export_series(const ShownMotion& shown, const Plan& plan, const exports::FileSink& sink) {
     const std::string name = plan.one_file ? plan.stem + ".csv" : "poses.csv";
     const fs::path temporary = plan.folder / name;
-    Errors errors = core::records::write_poses(temporary, shown.subject.trajectory, shown.subject.model,
-                                               answers::unit_name(shown.subject.model.length_unit));
+    core::model::Model model = shown.subject.model;
+    core::stepper::Trajectory path = shown.subject.trajectory;
+    model.bodies = only(shown.bodies, model.bodies);
+    for (auto& poses : path.poses) poses = only(shown.bodies, poses);
+    Errors errors = core::records::write_poses(temporary, path, model, answers::unit_name(shown.subject.model.length_unit));
     if (!errors.empty()) return errors;
     const Result<std::string> written = core::files::read_file(temporary);
     if (!written) return written.errors();
     errors = sink(name, *written);
     if (plan.one_file) return errors;
+    if (shown.bodies.size() < shown.subject.model.bodies.size()) return errors;  // the tables are about all
     for (const char* table : {"steps.csv", "contacts.csv", "drives.csv", "joints.csv"}) {
         const fs::path from = fs::path(shown.file).parent_path() / table;
         std::error_code code;
@@ -156,6 +160,9 @@ Errors name_in_certificate(const ShownMotion& shown, const std::vector<std::pair
 int run_export_urdf(const ExportArguments& options, const CommonOptions& common, Console& console) {
     if (const Errors errors = reading::not_wanted(options.shown.path, file_kind(options.shown.path), "scene"); !errors.empty())
         return console.input_errors(errors);
+    if (!options.shown.bodies.empty())
+        return console.input_errors(
+            {{ErrorCode::unsupported, "--bodies", "a robot (.urdf) is written whole: its joints need their bodies"}});
     const Result<core::scene::Scene> scene =
         core::scene_files::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
     if (!scene) return console.input_errors(scene.errors());
@@ -226,8 +233,13 @@ Result<std::vector<DrawnBody>> drawn_bodies(const ExportArguments& options, cons
 /// A file for each profile of each body; of one profile alone the file that --to names.
 int run_export_profiles(const ExportArguments& options, const CommonOptions& common, Console& console) {
     const std::string format = profile_format(options);
-    const auto bodies = drawn_bodies(options, common);
+    auto bodies = drawn_bodies(options, common);
     if (!bodies) return console.input_errors(bodies.errors());
+    std::vector<std::string> body_names;
+    for (const DrawnBody& body : *bodies) body_names.push_back(body.name);
+    const auto shown = shown_bodies(options.shown.bodies, body_names);
+    if (!shown) return console.input_errors(shown.errors());
+    *bodies = only(*shown, *bodies);
     std::vector<std::pair<std::string, std::string>> drawings;  // file names, texts
     core::files::UniqueNames names("_", true);
     for (const DrawnBody& body : *bodies) {
@@ -352,7 +364,7 @@ Command add_export(CommandLine& program, const CommonOptions& common) {
         "Lengths: millimetres in 3mf, stl and obj, metres and Y up in glb, metres in vtu. An exported certificate then names\n"
         "these files, and fettle validate says \"stale\" when one has changed.\n"
         "Example:  fettle export out --to out/motion.glb                       a run's folder: animated\n"
-        "          fettle export fit.certificate.json --to print.3mf --arrange plate\n"
+        "          fettle export fit.certificate.json --to print.3mf --arrange plate --bodies pin,plate\n"
         "          fettle export SCENE --to parts --format stl --arrange separate --in-place   for a check by fettle clearance parts "
         "--unit mm");
     return {app, [options, &common](Console& console) { return run_export(*options, common, console); }};

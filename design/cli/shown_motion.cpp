@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/cli/shown_motion.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 #include "fettle/core/certificate/certificate.hpp"
+#include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/clearance/certificate_files.hpp"
 #include "fettle/design/clearance/mesh_parts.hpp"
 #include "fettle/design/cli/inputs.hpp"
@@ -56,11 +60,33 @@ void take_gravity(const CommonOptions& common, clearance::Subject& subject) {
 
 }  // namespace
 
+Result<std::vector<int>> shown_bodies(const std::string& wanted, const std::vector<std::string>& bodies) {
+    std::vector<int> shown;
+    Errors errors;
+    std::vector<bool> is_shown(bodies.size(), wanted.empty());
+    std::istringstream names(wanted);
+    for (std::string name; std::getline(names, name, ',');) {
+        const auto at = std::find(bodies.begin(), bodies.end(), name);
+        if (at != bodies.end()) {
+            is_shown[at - bodies.begin()] = true;
+            continue;
+        }
+        const std::vector<std::string_view> known(bodies.begin(), bodies.end());
+        errors.push_back(
+            {ErrorCode::out_of_range, "--bodies", "there is no body \"" + name + "\"; " + core::files::did_you_mean(name, known)});
+    }
+    if (!errors.empty()) return errors;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        if (is_shown[i]) shown.push_back(static_cast<int>(i));
+    return shown;
+}
+
 void add_shown_options(CommandLine& app, ShownOptions& options) {
     app.option(
            "FILE", options.path,
            "Scene or design (as assembled), part file, trajectory, certificate (its path), mesh, or a folder (of a run, or with meshes)")
         .required();
+    app.option("--bodies", options.bodies, "Only these, by their names with commas (default: all)");
     app.option("--unit", options.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
     app.option("--trajectory", options.trajectory, "For a certificate: the path that it is about (default: beside it)");
     app.option("--up", options.up, "The world's up: x, -x, y, -y, z, -z (default: against gravity; z where that is not known)")
@@ -82,9 +108,14 @@ Result<ShownMotion> load_shown(const ShownOptions& options, const CommonOptions&
     begin_to_read(*file);
     Result<clearance::Subject> subject = clearance::read_subject(subject_options, input_options(common), watch);
     if (!subject) return subject.errors();
+    Result<std::vector<int>> bodies = shown_bodies(options.bodies, answers::body_names(subject->model));
+    if (!bodies) return bodies.errors();
+    shown.bodies = *std::move(bodies);
     shown.subject = std::move(*subject);
     take_gravity(common, shown.subject);
     shown.assembly = exports::assembly_of(shown.subject.model, shown.subject.trajectory);
+    shown.assembly.parts = only(shown.bodies, shown.assembly.parts);
+    for (exports::Keyframe& keyframe : shown.assembly.keyframes) keyframe.poses = only(shown.bodies, keyframe.poses);
     if (!options.up.empty()) {
         const int axis = options.up.back() - 'x';
         shown.assembly.up = (options.up.size() > 1 ? -1.0 : 1.0) * Vector3::Unit(axis);

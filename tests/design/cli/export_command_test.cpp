@@ -171,4 +171,22 @@ TEST_CASE("draw: PNG and SVG, the nearest points, an instant of a motion") {
         CHECK(run("draw " + in + " " + wrong).code == 3);
 }
 
+TEST_CASE("export and draw: only some bodies") {
+    const TemporaryFolder folder;
+    const std::string in = scene(folder), out = folder.file("run");
+    REQUIRE(run("simulate " + in + " --out " + out).code == 0);
+    REQUIRE(run("export " + out + " --to " + folder.file("some") + " --bodies upper --format 3mf,csv,glb").code == 0);
+    CHECK(names(folder.path / "some") == std::vector<std::string>{"poses.csv", "run.3mf", "run.glb"});
+    CHECK(run("validate " + folder.file("some/run.3mf") + " --json").json()["size"] == nlohmann::json({10, 10, 20}));
+    const std::string poses = contents(folder.file("some/poses.csv"));
+    CHECK(poses.find(",upper,") != std::string::npos);
+    CHECK(poses.find("low/er") == std::string::npos);
+    CHECK(run("export " + in + " --to " + folder.file("x.stl") + " --bodies uper", true).says("did you mean \"upper\"?"));
+    CHECK(run("export " + in + " --to " + folder.file("x.urdf") + " --bodies upper").code == 3);
+    const Answer alone = run("draw " + out + " --worst --bodies upper --json --out " + folder.file("x.svg"));
+    CHECK(alone.code == 0);
+    CHECK(alone.json()["worst"].is_null());
+    CHECK(run("draw " + in + " --bodies lower,upper --out " + folder.file("y.svg"), true).says("low/er"));
+}
+
 }  // namespace fettle::design::cli::export_command_test
