@@ -44,6 +44,8 @@ struct TrueBounds {
 /// From the bounds of the meshes and how far these are from the parts (geometry::Deviation). Nothing: neither side has such a mesh, or the
 /// meshes have no proven distance.
 std::optional<TrueBounds> true_bounds(const Subject& subject, const ReportedPair& pair);
+/// The same of two bodies of a model. Nothing for bodies that touch or pass through each other, too.
+std::optional<TrueBounds> true_bounds(const core::model::Model& model, const core::clearance::PairClearance& pair);
 
 struct ClearanceReport {
     std::vector<ReportedPair> pairs;  ///< worst first

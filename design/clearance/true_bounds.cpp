@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "fettle/design/clearance/report.hpp"
 
@@ -21,18 +22,14 @@ Deviation deviation_of(const core::model::Body& body) {
     return out;
 }
 
-}  // namespace
-
-std::optional<TrueBounds> true_bounds(const Subject& subject, const ReportedPair& pair) {
-    const bool is_apart = pair.finding != Finding::clash && pair.finding != Finding::touching && !pair.least.is_far;
-    const std::vector<PairClearance> members = pair.members.empty() ? std::vector{pair.least} : pair.members;
+std::optional<TrueBounds> bounds_of(const core::model::Model& model, std::span<const PairClearance> members) {
     constexpr double infinity = std::numeric_limits<double>::infinity(), up = 1 + 0x1p-51;
     TrueBounds out{infinity, infinity, true, true};
     bool is_drawn = false;
     for (const PairClearance& member : members) {
-        const core::model::Body &a = subject.model.bodies[member.a], &b = subject.model.bodies[member.b];
+        const core::model::Body &a = model.bodies[member.a], &b = model.bodies[member.b];
         is_drawn = is_drawn || a.mesh.deviation || b.mesh.deviation;
-        if (!is_apart || !member.is_bounded) return std::nullopt;
+        if (!member.is_bounded) return std::nullopt;
         const Deviation da = deviation_of(a), db = deviation_of(b);
         out.lower = std::min(out.lower, std::max(0.0, std::nextafter(member.lower - up * (da.out + db.out), 0.0)));
         out.upper = std::min(out.upper, up * (member.upper + up * (da.in + db.in)));
@@ -41,6 +38,18 @@ std::optional<TrueBounds> true_bounds(const Subject& subject, const ReportedPair
     }
     if (!is_drawn) return std::nullopt;
     return out;
+}
+
+}  // namespace
+
+std::optional<TrueBounds> true_bounds(const Subject& subject, const ReportedPair& pair) {
+    if (pair.finding == Finding::clash || pair.finding == Finding::touching || pair.least.is_far) return std::nullopt;
+    return bounds_of(subject.model, pair.members.empty() ? std::span(&pair.least, 1) : std::span(pair.members));
+}
+
+std::optional<TrueBounds> true_bounds(const core::model::Model& model, const PairClearance& pair) {
+    if (pair.is_clash() || pair.touch || pair.is_far) return std::nullopt;
+    return bounds_of(model, std::span(&pair, 1));
 }
 
 }  // namespace fettle::design::clearance

@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/text.hpp"
+#include "fettle/design/clearance/report.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/description/requirement_text.hpp"
+#include "fettle/design/quantities/clearance.hpp"
 
 namespace fettle::design::cli {
 
@@ -42,6 +44,31 @@ std::string play_advice(const OptimiseOutcome& outcome) {
     return "a real mechanism may do either, depending on where its parts lie in their fits. What to do: put into the scene what decides\n"
            "that (gravity, friction, a spring or load that presses the parts to one side) and tune again; or make the fits tighter; or\n"
            "allow for both numbers in what is required\n";
+}
+
+// Clearances that the meshes have and the round surfaces, for which facets stand, are not proven to have.
+std::string round_surfaces_text(const Design& design, const problem::DesignEvaluation& final) {
+    if (!final.model) return {};
+    std::string text;
+    for (size_t i = 0; i < final.constraints.size(); ++i) {
+        const auto& [name, bounds, quantity] = design.constraints[i];
+        const description::Measurement& measured = final.constraints[i];
+        const bool is_clearance = dynamic_cast<const quantities::Clearance*>(quantity.get()) != nullptr;
+        if (!is_clearance || !measured.clearance || description::violation(bounds, measured) > 0) continue;
+        const auto round = clearance::true_bounds(*final.model, *measured.clearance);
+        if (!round || (round->lower >= bounds.lower && round->lower_is_proven)) continue;
+        const std::string unit = description::unit_name(design.constraints[i]);
+        const auto at_least = [&, per = bounds.unit](double lower) {
+            return description::proven_bound_text(lower, description::Towards::down, per, unit);
+        };
+        text += "note: " + name + ": proven at least " + at_least(measured.lower) + " for the meshes, but at least " +
+                at_least(round->lower) + (round->lower_is_proven ? "" : ", which is not proven,") +
+                " for the round surfaces that their facets stand for; required " + description::required_text(bounds, unit) + "\n";
+    }
+    if (text.empty()) return {};
+    return text +
+           "what to do: require more by the difference of the two, or ask for finer facets (`facets` of a shape); fettle clearance\n"
+           "with the design shows both numbers (--explain)\n";
 }
 
 std::string share_text(double gain, double objective) {
@@ -161,6 +188,7 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
                 console.coloured(met ? "met" : "VIOLATED", met) + (measured.fault.empty() ? "" : ": " + measured.fault) + "\n";
     }
     text += relations_text(design, outcome.final.relations, console);
+    text += round_surfaces_text(design, outcome.final);
     text += by_models_text(design, outcome, console) + play_advice(outcome);
     text += run.repair ? verdict_text(design, report.optimality, "the squared change", report.best.objective)
                        : verdict_text(design, report.optimality, "the objective", objective);

@@ -204,6 +204,27 @@ TEST_CASE("optimise: \"ipopt\" is Ipopt's own optimiser, \"sqp\" the one that a 
     CHECK(run("optimisers").says("the default"));
 }
 
+TEST_CASE("optimise notes what is proven of the meshes, and not of the round surfaces") {
+    const char* scene = R"({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.01, "bodies": [
+        {"name": "plate", "type": "static", "shape": {"part": "plate_with_hole", "dimensions": {"hole_radius": 5}, "counts": {"segments": 24}}},
+        {"name": "pin", "type": "static", "shape": {"part": "rod.part.json", "dimensions": {"radius": 4.5}}}]})";
+    const char* design = R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+        "parameters": [{"name": "radius", "value": 4.5, "lower": 4, "upper": 4.9}], "set": {"/bodies/1/shape/dimensions/radius": "= radius"},
+        "objective": [{"type": "play", "a": "pin", "b": "plate"}],
+        "constraints": [{"type": "clearance", "a": "pin", "b": "plate", "minimum": 0.2}]})";
+    const std::string rod = R"({"fettle_part": 1, "facets": {"segments": 24, "lean": "LEAN"}, "dimensions": {"radius": 4.5},
+        "solid": {"extrude": {"circle": "= radius"}, "from": -20, "to": 20}})";
+    for (const std::string lean : {"within", "cover"}) {
+        const DesignFolder folder(design, scene);
+        folder.write("rod.part.json", replaced(rod, "LEAN", lean));
+        const Answer answer = run("optimise " + folder.design() + " --no-report");
+        CAPTURE(lean, answer.out);
+        CHECK(answer.code == 0);
+        CHECK(answer.says("for the round surfaces that their facets stand for") == (lean == "within"));
+        CHECK(answer.says("what to do: require more") == (lean == "within"));
+    }
+}
+
 TEST_CASE("gradient and optimise: keys, exit codes, resume", "[slow]") {
     const DesignFolder folder;
     const Answer gradient = run("gradient " + folder.design() + " --check --json");
