@@ -120,8 +120,9 @@ def arguments() -> argparse.ArgumentParser:
 
 def progress_line(done: int, of: int, result: Dict[str, Any]) -> str:
     objective = result.get("objective")
-    told = result.get("reason", "") if objective is None else f"objective {objective:.6g}"
-    return f"{done}/{of} {result['status']}{': ' if told else ''}{told}"
+    reason = result.get("reason", "")
+    told = f", objective {objective:.6g}" if objective is not None else f": {reason}" if reason else ""
+    return f"design {done} of {of} is {result['status']}{told}"
 
 
 def run(options: argparse.Namespace) -> int:
@@ -163,7 +164,10 @@ def answer(found: Exploration, options: argparse.Namespace, unwritten: Sequence[
             told["unwritten"] = [dataclasses.asdict(fault) for fault in unwritten]
         put(json.dumps(told, allow_nan=False))
     else:
-        text = f"the best has the objective {best['objective']:.6g}" if best else "none meets every requirement"
+        text = "none meets every requirement"
+        if best:
+            met = len(found.best(len(found)))
+            text = f"{met} meet{'s' if met == 1 else ''} every requirement, the best with the objective {best['objective']:.6g}"
         if unwritten and best:
             text += ", at " + ", ".join(f"{name} {value:.9g}" for name, value in best["parameters"].items()) + " (SI)"
         if not unwritten:

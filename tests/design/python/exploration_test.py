@@ -307,9 +307,19 @@ def test_progress_says_why(tmp_path):
     lines = []
     sweep = {"foot": [-1e-3, 8e-3]}
     found = fettle.explore(design, str(tmp_path / "a.jsonl"), sweep=sweep, workers=1, progress=lambda *at: lines.append(progress_line(*at)))
-    assert lines[0].startswith("1/2 unusable: ") and "above 0" in lines[0]
-    assert "objective -" in lines[1]
+    assert lines[0].startswith("design 1 of 2 is unusable: ") and "above 0" in lines[0]
+    assert lines[1].startswith(f"design 2 of 2 is {found.results[1]['status']}, objective -")
     assert repr(found) == f"Exploration(2 designs: 1 unusable, 1 {found.results[1]['status']})"
+
+
+def test_the_answer_counts_the_designs_that_meet_every_requirement(tmp_path, capsys):
+    out = tmp_path / "out.jsonl"
+    code = main(["explore", str(short_file(tmp_path)), "--out", str(out), "--samples", "2", "--workers", "1", "--quiet"])
+    met = sum(json.loads(line)["violation"] <= 0 for line in out.read_text().splitlines() if '"violation"' in line)
+    text = capsys.readouterr().out
+    assert text.startswith(f"2 designs in {out}; ")
+    assert (code == 0) == (met > 0)
+    assert (f"{met} meet{'s' if met == 1 else ''} every requirement, the best with the objective " if met else "none meets") in text
 
 
 def test_what_is_raised_leaves_no_file(tmp_path):
