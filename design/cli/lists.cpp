@@ -2,6 +2,8 @@
 /// fettle shapes, quantities, joints, optimisers: what there is, from the tables that the readers themselves use.
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/clearance/clearance.hpp"
@@ -52,7 +54,43 @@ int answer(const std::string& what, const std::vector<Entry>& entries, const std
     return exit_done;
 }
 
-Entry part_entry(const core::part_files::PartFile& part) {
+// The names in a formula or comparison.
+std::set<std::string> names_in(const std::string& formula) {
+    static const std::regex name("[A-Za-z_][A-Za-z_0-9]*");
+    return {std::sregex_token_iterator(formula.begin(), formula.end(), name), std::sregex_token_iterator()};
+}
+
+struct PartVariable {
+    std::string name, formula, about;
+};
+
+// The file's variables that the relations are made of, also by way of others, in its order.
+// @param text  of the file. Contract: it has been read as a part.
+std::vector<PartVariable> relation_variables(const std::string& text, const core::part_files::PartFile& part) {
+    const Json file = Json::parse(text, nullptr, false, true);
+    if (!file.is_object() || !file.contains("variables")) return {};
+    const Json& variables = file.at("variables");
+    std::set<std::string> used;
+    std::vector<std::string> open;
+    for (const core::part_files::PartRelation& relation : part.relations()) open.push_back(relation.check);
+    while (!open.empty()) {
+        const std::set<std::string> names = names_in(open.back());
+        open.pop_back();
+        for (const std::string& name : names)
+            if (variables.contains(name) && variables.at(name).is_string() && used.insert(name).second)
+                open.push_back(variables.at(name).get<std::string>());
+    }
+    std::vector<PartVariable> list;
+    for (const auto& [name, formula] : variables.items()) {
+        if (used.count(name) == 0) continue;
+        const Json about = variables.value("# " + name, Json(""));
+        list.push_back({name, formula.get<std::string>(), about.is_string() ? about.get<std::string>() : ""});
+    }
+    return list;
+}
+
+// @param text  of its file
+Entry part_entry(const core::part_files::PartFile& part, const std::string& text) {
     using core::part_files::PartDimensionKind;
     Entry entry{part.name(), part.about(), "", {{"name", part.name()}, {"description", part.about()}}};
     entry.facts["dimensions"] = Json::array();
@@ -73,6 +111,13 @@ Entry part_entry(const core::part_files::PartFile& part) {
     for (const core::part_files::PartRelation& relation : part.relations()) {
         entry.facts["relations"].push_back({{"check", relation.check}, {"or", relation.otherwise}});
         entry.details += "  " + relation.check + (relation.otherwise.empty() ? "" : ", or " + relation.otherwise) + "\n";
+    }
+    entry.facts["variables"] = Json::array();
+    for (const PartVariable& variable : relation_variables(text, part)) {
+        if (entry.facts["variables"].empty()) entry.details += "  where\n";
+        entry.facts["variables"].push_back({{"name", variable.name}, {"formula", variable.formula}, {"meaning", variable.about}});
+        entry.details +=
+            "    " + variable.name + " " + variable.formula + (variable.about.empty() ? "" : "  (" + variable.about + ")") + "\n";
     }
     return entry;
 }
@@ -104,11 +149,13 @@ struct ShapesArguments {
 int run_shapes(const ShapesArguments& options, Console& console) {
     std::vector<Entry> entries;
     for (const shapes::LibraryPart& each : shapes::part_library())
-        entries.push_back(part_entry(shapes::find_part(std::string(each.name)).value()));
+        entries.push_back(part_entry(shapes::find_part(std::string(each.name)).value(), std::string(each.text)));
     if (options.name.ends_with(core::part_files::part_file_ending)) {
         const auto part = shapes::find_part(options.name);
         if (!part) return console.input_errors(part.errors());
-        entries = {part_entry(*part)};
+        const Result<std::string> text = core::files::read_file(options.name);
+        if (!text) return console.input_errors(text.errors());
+        entries = {part_entry(*part, *text)};
         entries.front().name = options.name;
     }
     const bool known = std::any_of(entries.begin(), entries.end(), [&](const Entry& entry) { return entry.name == options.name; });

@@ -54,6 +54,15 @@ TEST_CASE("Lists: a shape is drawn, and its relations are told") {
     CHECK(contents(folder.file("box.svg")).find("box, default dimensions") != std::string::npos);
     CHECK(run("shapes geneva_wheel --draw " + folder.file("wheel.svg")).code == 0);
     CHECK(run("shapes geneva_wheel").says("or the slots break into the bore"));
+    // Variables that relations use, also by way of others, and no others.
+    const Answer gear = run("shapes spur_gear");
+    CHECK(gear.says("\n    cutter_depth = "));
+    CHECK(gear.says("\n    pitch_radius = module * teeth / 2\n"));
+    const std::string used = folder.write("used.part.json", R"({"fettle_part": 1, "dimensions": {"long": 5},
+        "variables": {"half": "= long / 2", "# half": "of it", "third": "= long / 3", "most": "= 4 * half"},
+        "relations": [{"check": "long < most + 1mm"}], "solid": {"extrude": {"circle": 1}, "to": "= third"}})");
+    CHECK(run("shapes " + used).says("  where\n    half = long / 2  (of it)\n    most = 4 * half\n"));
+    CHECK(run("shapes --json " + used).json()["shapes"][0]["variables"].size() == 2);
     const std::string own = folder.write("rod.part.json", R"({"fettle_part": 1, "dimensions": {"long": 5},
         "solid": {"extrude": {"circle": 1}, "to": "= long"}})");
     CHECK(run("shapes " + own + " --draw " + folder.file("rod.svg")).code == 0);
