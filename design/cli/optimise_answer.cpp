@@ -67,6 +67,7 @@ std::string round_surfaces_text(const Design& design, const problem::DesignEvalu
     }
     if (text.empty()) return {};
     return text +
+           "(a body's largest deviation from its round surfaces counts, wherever it is)\n"
            "what to do: require more by the difference of the two, or ask for finer facets (`facets` of a shape); fettle clearance\n"
            "with the design shows both numbers (--explain)\n";
 }

@@ -217,7 +217,7 @@ TEST_CASE("optimise notes what is proven of the meshes, and not of the round sur
     for (const std::string lean : {"within", "cover"}) {
         const DesignFolder folder(design, scene);
         folder.write("rod.part.json", replaced(rod, "LEAN", lean));
-        const Answer answer = run("optimise " + folder.design() + " --no-report");
+        const Answer answer = run("optimise " + folder.design() + " --no-report --out " + folder.file("out"));
         CAPTURE(lean, answer.out);
         CHECK(answer.code == 0);
         CHECK(answer.says("for the round surfaces that their facets stand for") == (lean == "within"));
