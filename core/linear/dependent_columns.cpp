@@ -131,9 +131,12 @@ std::vector<DependentColumn> dependent_columns(Sparse matrix, double share) {
         if (lengths[j] > 0) matrix.col(j) /= lengths[j];
     }
     matrix.makeCompressed();
-    if (matrix.cols() == 0) return {};
-    const RankFactor factor = factorise(matrix, share);
     std::vector<DependentColumn> out;
+    if (matrix.nonZeros() == 0) {  // each is a sum of nothing
+        for (int j = 0; j < matrix.cols(); ++j) out.push_back({j, {}});
+        return out;
+    }
+    const RankFactor factor = factorise(matrix, share);
     const Sparse independent = factor.r.topLeftCorner(factor.rank, factor.rank);
     for (Eigen::Index j = factor.rank; j < matrix.cols(); ++j) {
         DependentColumn& dependent = out.emplace_back();

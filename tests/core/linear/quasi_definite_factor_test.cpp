@@ -162,4 +162,15 @@ TEST_CASE("rows that are sums of others are found, with what they are sums of", 
     CHECK(constraint::without(more, found).count() == 12);
 }
 
+TEST_CASE("rows of bodies that cannot move depend on nothing", "[constraint]") {
+    std::mt19937_64 random(5);
+    const System s = ring(3, 2, random);
+    FreeDofs none;
+    for (int body = 0; body < 3; ++body) none.add_body([](int) { return false; });
+    const std::vector<constraint::DependentRow> found = constraint::dependent_rows(s.hessian.diagonal, none, s.rows);
+    REQUIRE(count_of(found) == s.rows.count());
+    for (const constraint::DependentRow& row : found) CHECK(row.on.empty());
+    CHECK(constraint::without(s.rows, found).count() == 0);
+}
+
 }  // namespace fettle::core::linear::quasi_definite_factor_test
