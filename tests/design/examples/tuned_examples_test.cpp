@@ -46,9 +46,9 @@ public:
 TEST_CASE("where an optimiser stopped short, the design is called feasible, not optimal, and what could move is named", "[slow]") {
     auto file = read_design("examples/slider_crank/slider_crank.design.json", {});
     REQUIRE(file);
-    // Where an interior-point method ends that knows nothing of how rough the stroke is, moved by 0.02 mm in journal_radius and 0.03 in
-    // rod_length, so that the motion within the play leaves rod and block their millimetre.
-    const double millimetres[] = {5.122, 4.13335901529852, 3.1247302191549657, 14.341425183377662, 41.357, 20.647, 9.78168131970727};
+    // Where an interior-point method ends that knows nothing of how rough the stroke is, moved by 0.02 mm in journal_radius, 0.04 in
+    // rod_length and 0.03 in piston_length, so that the motion within the play leaves rod and block their millimetre.
+    const double millimetres[] = {5.122, 4.13335901529852, 3.1247302191549657, 14.341425183377662, 41.367, 20.677, 9.78168131970727};
     const auto problem = DesignProblem::create(std::move(file->design));
     REQUIRE(problem);
     auto seen = fettle::design::problem::optimiser_problem(*problem);
