@@ -28,6 +28,11 @@ using fettle::tests::support::contents;
 using fettle::tests::support::run;
 using fettle::tests::support::TemporaryFolder;
 
+// Of a SARIF result: the file that it is about.
+std::string uri_of(const Json& result) {
+    return result.at("locations")[0].at("physicalLocation").at("artifactLocation").at("uri").get<std::string>();
+}
+
 // Every tag is closed by its own, attributes are quoted, and no character stands that XML has not.
 bool is_well_formed(const std::string& xml) {
     std::vector<std::string> open;
@@ -175,13 +180,7 @@ TEST_CASE("check files: warnings are remarks, about their file, and errors where
         CHECK(all.answer.json().at("warnings").dump().find("its size is 40 m") != std::string::npos);
         REQUIRE(all.results().size() == 1);
         CHECK(all.results()[0].at("ruleId") == "warning");
-        CHECK(all.results()[0]
-                  .at("locations")[0]
-                  .at("physicalLocation")
-                  .at("artifactLocation")
-                  .at("uri")
-                  .get<std::string>()
-                  .ends_with("small.scene.json"));
+        CHECK(uri_of(all.results()[0]).ends_with("small.scene.json"));
         CHECK(all.markdown.find("its size is 40 m") != std::string::npos);
         CHECK(run(command + scene + " --strict").code == 3);
     }
@@ -189,22 +188,9 @@ TEST_CASE("check files: warnings are remarks, about their file, and errors where
     CHECK(strict.code == 3);
     CHECK(strict.says("its size is 40 m"));
     // What is about no file of its own is about the command's; a place in a file names the file.
-    CHECK(found(folder, "clearance " + scene + " --minimum 3")
-              .results()[0]
-              .at("locations")[0]
-              .at("physicalLocation")
-              .at("artifactLocation")
-              .at("uri")
-              .get<std::string>()
-              .ends_with("small.scene.json"));
+    CHECK(uri_of(found(folder, "clearance " + scene + " --minimum 3").results()[0]).ends_with("small.scene.json"));
     const Found broken = found(folder, "validate " + folder.write("broken.scene.json", "{\n \"fettle_scene\": }"));
-    CHECK(broken.results()[0]
-              .at("locations")[0]
-              .at("physicalLocation")
-              .at("artifactLocation")
-              .at("uri")
-              .get<std::string>()
-              .ends_with("broken.scene.json"));
+    CHECK(uri_of(broken.results()[0]).ends_with("broken.scene.json"));
 }
 
 TEST_CASE("check files: a fault before the work replaces an earlier pass") {
