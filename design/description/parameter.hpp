@@ -18,7 +18,7 @@ struct Parameter {
     double value = 0, lower = 0, upper = 0;  ///< SI
     Unit unit = {};                          ///< that people read it in; trial values are those that a file in it can hold exactly
     /// Where settings that the scene leaves open (of contact, of tolerances) are chosen, the same for all values; none: `value`. A design
-    /// that was found keeps those of the one that the search began with, so that it is simulated as it was.
+    /// that was found keeps those of the one that the search began with. (Not so the facets of parts, which are chosen at `value`.)
     std::optional<double> reference = {};
 };
 
