@@ -41,7 +41,7 @@ struct OptimiserSettings {
 };
 
 struct Design {
-    core::scene::Scene scene;                          ///< at the parameters' values
+    core::scene::Scene scene;                          ///< at the parameters' reference values
     std::vector<std::shared_ptr<const Shape>> shapes;  ///< per body; null, or beyond its end: the body's mesh stays as it is
     int steps = 0;                                     ///< of the simulation
     double clearance_tolerance = 1e-9;                 ///< upper - lower wanted of certified distances [m]

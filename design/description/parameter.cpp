@@ -32,6 +32,13 @@ VectorX references_of(const std::vector<Parameter>& parameters) {
     return p;
 }
 
+Errors at_reference(Errors errors) {
+    for (Error& error : errors)
+        if (error.code == ErrorCode::mesh_invalid || error.code == ErrorCode::out_of_range)
+            error.message = "at the parameters' `reference` values: " + error.message + "; leave these out, and `value` takes their place";
+    return errors;
+}
+
 namespace {
 
 std::string told(double si, const Unit& unit) {

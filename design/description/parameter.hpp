@@ -17,13 +17,15 @@ struct Parameter {
     std::string name;
     double value = 0, lower = 0, upper = 0;  ///< SI
     Unit unit = {};                          ///< that people read it in; trial values are those that a file in it can hold exactly
-    /// Where settings that the scene leaves open (of contact, of tolerances) are chosen, the same for all values; none: `value`. A design
-    /// that was found keeps those of the one that the search began with. (Not so the facets of parts, which are chosen at `value`.)
+    /// Where what the scene leaves open is chosen (settings of contact, tolerances, facets of parts), the same for all values; none: `value`.
+    /// A design that was found keeps what was chosen for the one that the search began with.
     std::optional<double> reference = {};
 };
 
 VectorX values_of(const std::vector<Parameter>& parameters);
 VectorX references_of(const std::vector<Parameter>& parameters);
+/// Faults of a scene at those values, told so where they may come of them.
+Errors at_reference(Errors errors);
 std::vector<std::string> names_of(const std::vector<Parameter>& parameters);
 /// The parameters as what formulas may name; numbers without a unit count in SI.
 core::expression::Scope scope_of(const std::vector<Parameter>& parameters);

@@ -62,12 +62,6 @@ Design with_plain_places(Design design) {
     return design;
 }
 
-Errors at_reference(Errors errors) {
-    for (Error& error : errors)
-        error.message = "at the parameters' `reference` values: " + error.message + "; leave these out, and settings are chosen at `value`";
-    return errors;
-}
-
 std::string name_of(const description::ObjectiveTerm& term) { return "objective `" + term.name + "`"; }
 std::string name_of(const description::Constraint& constraint) { return "constraint `" + constraint.name + "`"; }
 
@@ -108,7 +102,7 @@ Result<DesignProblem> DesignProblem::create(Design design) {
     if (const VectorX reference = description::references_of(design.parameters); reference != description::values_of(design.parameters)) {
         const Result<MovedScene> moved = move_scene(design, reference, SceneDerivative::not_wanted);
         model = moved ? core::model::build_model(moved->scene, options) : moved.errors();
-        if (!model) return at_reference(model.errors());
+        if (!model) return description::at_reference(model.errors());
     }
     for (const core::model::Body& body : model->bodies) problem.reference_points_.push_back(body.reference_point);
     problem.kappa_ = model->kappa;

@@ -40,7 +40,7 @@ void DesignFormulas::add_parameters(const JsonNode& node, const std::vector<desc
         if (!core::expression::is_possible_name(parameter.name) && !parameter.name.empty())
             nodes[k]["name"].fail(ErrorCode::out_of_range, "a parameter's name must not contain a single quote, because formulas quote it");
         scope_.names.push_back({parameter.name, core::expression::powers_of(parameter.unit.dimension)});
-        values_[parameter.name] = parameter.value;
+        values_[parameter.name] = parameter.reference.value_or(parameter.value);
     }
     take_scene_variables();
 }

@@ -41,7 +41,7 @@ public:
     /// The formula of a number that parameters change: a text that begins with "=". Nothing where it is another number, or is wrong; then
     /// reading the number as such tells what is wrong with it.
     std::optional<core::expression::Formula> followed(const core::files::JsonNode& node, Dimension dimension, double si_per_number) const;
-    /// At the parameters' values.
+    /// At the parameters' reference values.
     double value_of(const core::expression::Formula& formula) const;
 
     /// The names that formulas of the scene may use: the parameters, and the design's variables.
@@ -54,7 +54,7 @@ private:
     core::files::JsonDocument& document_;
     std::vector<core::scene::Variable> scene_variables_;
     core::expression::Scope scope_;
-    std::map<std::string, double> values_;  // of parameters
+    std::map<std::string, double> values_;  // of parameters, where they are references
     std::vector<core::scene::FormulaInput> own_;
 };
 

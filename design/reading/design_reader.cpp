@@ -122,6 +122,8 @@ private:
         Result<core::scene::Scene> scene = core::scene_files::read_scene(document, options);
         if (!scene) {
             scene_errors_ = scene.errors();
+            const bool elsewhere = description::references_of(design_.parameters) != description::values_of(design_.parameters);
+            if (elsewhere) scene_errors_ = description::at_reference(std::move(scene_errors_));
             return false;
         }
         design_.scene = std::move(scene).value();

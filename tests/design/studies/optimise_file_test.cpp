@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "fettle/design/reading/design_text.hpp"
 #include "fettle/tests/design/small_problem.hpp"
@@ -76,9 +77,33 @@ TEST_CASE("a design that was found has the settings of the one that the search b
     // Written again, it keeps them; without them, it has others.
     const std::string second = reading::design_text(*read, values_of(file.design.parameters), (folder.path / "out").string());
     CHECK(second.find("\"reference\": 1000") != std::string::npos);
-    reading::DesignFile other = *read;
-    for (description::Parameter& parameter : other.design.parameters) parameter.reference.reset();
-    CHECK(problem::DesignProblem::create(other.design)->kappa() != first.kappa());
+    auto json = nlohmann::json::parse(contents(path));
+    for (auto& parameter : json["parameters"]) parameter.erase("reference");
+    std::ofstream(path) << json;
+    CHECK(problem::DesignProblem::create(reading::read_design(path)->design)->kappa() != first.kappa());
+}
+
+TEST_CASE("the parts of a design that was found have the facets that they had in the search", "[design]") {
+    // A post whose facets are chosen by how far they may be from the round: more of them, the larger it is.
+    const std::string box = R"("shape": { "part": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 } })";
+    const std::string post = R"("shape": { "part": "cylinder", "facets": 0.05, "dimensions": { "radius": 8, "length": 10 } })";
+    const DesignFolder folder(replaced(replaced(small_design, "dimensions/size_z", "dimensions/length"), "dimensions/size_x", "dimensions/radius"),
+                              replaced(small_scene, box, post));
+    const reading::DesignFile file = file_of(folder);
+    const problem::DesignProblem first = problem_of(folder);
+    VectorX found = values_of(file.design.parameters);
+    found[1] = 29e-3;
+    const std::string path = (folder.path / "found.design.json").string();
+    std::ofstream(path) << reading::design_text(file, found, folder.path.string());
+    const auto facets = [&] { return problem::DesignProblem::create(reading::read_design(path)->design)->model_at(found)->bodies[1].mesh; };
+    const core::geometry::Mesh in_search = first.model_at(found)->bodies[1].mesh;
+    CHECK(facets().vertices == in_search.vertices);
+    CHECK(facets().triangles == in_search.triangles);
+
+    auto json = nlohmann::json::parse(contents(path));
+    for (auto& parameter : json["parameters"]) parameter.erase("reference");
+    std::ofstream(path) << json;
+    CHECK(facets().vertices.cols() > in_search.vertices.cols());
 }
 
 }  // namespace fettle::design::studies::optimise_file_test
