@@ -28,7 +28,7 @@ of its own: `"0.3mm"`. Any other number that has a dimension may also be such a 
 a formula of the scene's `variables` and, in a design, of its parameters: `"= bore - 2 * gap"`. A formula may contain `+ - * / ^ ( )`,
 `min max hypot abs sqrt sin cos tan asin acos atan atan2 exp log floor`, `if(a < b, x, y)` and `pi`. Dimensions are checked; a number without a
 unit beside a quantity is in the file's unit (angles: degrees). Numbers that no design can move (counts, time steps, tolerances of the solver)
-take formulas of constants only. An unknown key is refused, with the nearest known one.
+take formulas of variables that no parameter moves. An unknown key is refused, with the nearest known one.
 """
 
 

@@ -11,6 +11,9 @@ namespace fettle::core::base {
 /// Largest absolute value that a reader takes, in the unit of the file and in SI alike.
 inline constexpr double largest_magnitude = 1e30;
 
+/// Largest number of teeth, of copies of a repeat, of anything that parts count.
+inline constexpr int most_copies = 10'000;
+
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Finite and at most largest_magnitude; false for NaN.

@@ -34,7 +34,6 @@ struct PartFile::Contents {
 namespace {
 
 constexpr int format_version = 1;
-constexpr int largest_count = 10'000;
 
 // Keys in the order in which they were written, which is the designer's; the tree of a document sorts them.
 std::vector<std::string> keys_as_written(const std::string& text, const char* object) {
@@ -96,8 +95,8 @@ PartCount read_count(const std::string& name, const JsonNode& node, const Counts
     out.name = name;
     if (node.is_object()) {
         out.about = node["about"].string().value_or("");
-        out.least = node["least"].integer(0, largest_count).value_or(0);
-        out.most = node["most"].integer(out.least, largest_count).value_or(largest_count);
+        out.least = node["least"].integer(0, base::most_copies).value_or(0);
+        out.most = node["most"].integer(out.least, base::most_copies).value_or(base::most_copies);
     }
     out.value = value.integer(out.least, out.most).value_or(out.least);
     const auto other = given.find(name);

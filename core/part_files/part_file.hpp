@@ -25,6 +25,7 @@
 #include <string>
 #include <vector>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/part_files/part_relation.hpp"
 #include "fettle/core/parts/drawn_part.hpp"
@@ -52,7 +53,7 @@ struct PartDimension {
 struct PartCount {
     std::string name;
     int value = 0;
-    int least = 0, most = 10'000;
+    int least = 0, most = base::most_copies;
     std::string about;
 };
 

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <optional>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/part_files/curve_reader.hpp"
 
@@ -15,7 +16,6 @@ using files::JsonNode;
 using parts::Path;
 using parts::Point2;
 
-constexpr int most_repeats = 10'000;
 constexpr std::size_t most_steps = 100'000;
 
 // Where steps are drawn: turned about the origin, then moved. Those of a repeat stand in another place each time.
@@ -181,7 +181,7 @@ void add_step(const JsonNode& node, PartNumbers& numbers, const std::string& pat
 Step read_repeat(const JsonNode& node, PartNumbers& numbers, const std::string& name) {
     std::vector<Step> steps;
     for (const JsonNode& element : node["repeat"].elements()) add_step(element, numbers, name, steps);
-    const int count = numbers.count(node.require("count"), 0, most_repeats).value_or(0);
+    const int count = numbers.count(node.require("count"), 0, base::most_copies).value_or(0);
     const bool is_linear = node["step"].exists();
     if (is_linear && (node["about"].exists() || node["every"].exists()))
         node.fail(ErrorCode::inconsistent, "repeats are moved by a `step`, or turned `about` a point, not both");

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/part_files/curve_reader.hpp"
 #include "fettle/core/part_files/path_reader.hpp"
 #include "fettle/core/parts/profile_booleans.hpp"
@@ -92,7 +93,7 @@ ProfilesMaker ProfileReader::repeated(const JsonNode& node, const std::string& n
     node.allow_keys({"repeat", "count", "about", "every", "step", "name"});
     const std::string own = node["name"].string().value_or(name);
     const ProfileMaker what = read(node["repeat"], own);
-    const int count = numbers_.count(node.require("count"), 0, most_copies).value_or(0);
+    const int count = numbers_.count(node.require("count"), 0, base::most_copies).value_or(0);
     const bool is_linear = node["step"].exists();
     if (is_linear && (node["about"].exists() || node["every"].exists()))
         node.fail(ErrorCode::inconsistent, "copies are moved by a `step`, or turned `about` a point, not both");

@@ -21,7 +21,6 @@ namespace fettle::core::part_files {
 
 /// Shapes within one another, names looked through, that are drawn; more are a fault.
 inline constexpr int deepest_shape = 200;
-inline constexpr int most_copies = 10'000;
 
 /// The verb of a shape: which of `known` its object has as a key. Fault, and nothing: none, with what was probably meant; several.
 std::optional<std::string> verb_of(const files::JsonNode& node, const std::vector<std::string_view>& known, std::string_view what);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/parts/helix.hpp"
 #include "fettle/core/parts/revolve.hpp"
 #include "fettle/core/parts/solid_booleans.hpp"
@@ -228,7 +229,7 @@ SolidMaker SolidReader::torus(const JsonNode& node, const std::string& name) {
 SolidsMaker SolidReader::repeated(const JsonNode& node, const std::string& name) {
     node.allow_keys({"repeat", "count", "axis", "about", "every", "step", "name"});
     const SolidMaker what = read(node["repeat"], node["name"].string().value_or(name));
-    const int count = numbers_.count(node.require("count"), 0, most_copies).value_or(0);
+    const int count = numbers_.count(node.require("count"), 0, base::most_copies).value_or(0);
     const bool is_linear = node["step"].exists();
     if (is_linear && (node["about"].exists() || node["every"].exists() || node["axis"].exists()))
         node.fail(ErrorCode::inconsistent, "copies are moved by a `step`, or turned about an `axis`, not both");

@@ -2,9 +2,11 @@
 #include "fettle/core/scene_files/scene_body.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/index_rows.hpp"
 #include "fettle/core/files/nearest_word.hpp"
@@ -193,14 +195,18 @@ SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node,
     return source;
 }
 
-// A part that is written into the scene: a part file whose dimensions are the variables that it names.
+// A part that is written into the scene: a part file whose dimensions are the variables that it names, and its counts the whole numbers
+// among them that no parameter moves.
 void SceneBodies::read_own_part(const files::JsonNode& node, scene::ShapeSpec& spec) {
     const std::vector<std::string_view> keys{"solid", "solids", "profiles", "relations", "variables"};
     std::vector<std::string_view> known{"facets", "counts"};
     known.insert(known.end(), keys.begin(), keys.end());
     node.allow_keys(known);
     spec.chord = node["facets"].length(unit_, files::positive).value_or(0);
-    std::string text, dimensions;
+    std::string text, dimensions, counts;
+    const auto append = [](std::string& list, const std::string& name, const std::string& value) {
+        list += (list.empty() ? "\"" : ", \"") + name + "\": " + value;
+    };
     for (const std::string_view key : keys)
         if (node[key].exists()) text += ", \"" + std::string(key) + "\": " + node[key].text();
     for (const std::string& name : expression::names_in(text)) {
@@ -208,19 +214,24 @@ void SceneBodies::read_own_part(const files::JsonNode& node, scene::ShapeSpec& s
         if (!named || spec.dimensions.count(name) != 0 || node["variables"][name].exists()) continue;
         const auto dimension = expression::named_dimension(named->dimension);
         if (dimension != base::Dimension::length && dimension != base::Dimension::angle && !named->dimension.is_number()) continue;
+        const double value = named->number.value;
+        if (named->dimension.is_number() && value >= 0 && value <= base::most_copies && std::round(value) == value && !named->is_moved) {
+            append(counts, name, std::to_string(static_cast<int>(value)));
+            continue;
+        }
         spec.dimensions[name] = named->number.value;
         if (dimension == base::Dimension::angle) spec.angles.push_back(name);
         if (named->dimension.is_number()) spec.numbers.push_back(name);
         const std::string_view kind = named->dimension.is_number()          ? "number"
                                       : dimension == base::Dimension::angle ? "angle"
                                                                             : "coordinate";
-        dimensions += (dimensions.empty() ? "\"" : ", \"") + name + "\": {\"value\": 0, \"kind\": \"" + std::string(kind) + "\"}";
+        append(dimensions, name, "{\"value\": 0, \"kind\": \"" + std::string(kind) + "\"}");
         formulas_.bind(node.pointer() + "/dimensions/" + name, named->number);
     }
     std::string unit = "m";
     for (const char* each : {"um", "mm", "cm", "in", "ft"})
         if (base::metres_per_unit(each).value() == unit_) unit = each;
-    spec.part = "{\"fettle_part\": 1, \"units\": \"" + unit + "\", \"dimensions\": {" + dimensions + "}" + text + "}";
+    spec.part = "{\"fettle_part\": 1, \"units\": \"" + unit + "\", \"dimensions\": {" + dimensions + "}, \"counts\": {" + counts + "}" + text + "}";
 }
 
 void SceneBodies::read_dimensions(const files::JsonNode& node, scene::ShapeSpec& spec) {

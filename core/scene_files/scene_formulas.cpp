@@ -132,7 +132,8 @@ Number3 SceneFormulas::vector(const JsonNode& node, const Vector3& value) const 
 std::optional<SceneFormulas::Named> SceneFormulas::named(const std::string& name) const {
     const expression::Scope::Name* found = scope_.find(name);
     if (found == nullptr) return std::nullopt;
-    return Named{value_of(found->meaning.value_or(expression::input_formula(name, found->dimension))), found->dimension};
+    const Number number = value_of(found->meaning.value_or(expression::input_formula(name, found->dimension)));
+    return Named{number, found->dimension, !moved_by(number).empty()};
 }
 
 void SceneFormulas::bind(const std::string& pointer, const Number& number) {
@@ -142,6 +143,12 @@ void SceneFormulas::bind(const std::string& pointer, const Number& number) {
 void SceneFormulas::use(const JsonNode& node) {
     for (auto& [pointer, found] : found_)
         if (pointer == node.pointer() || pointer.starts_with(node.pointer() + "/")) found.is_used = true;
+}
+
+std::string SceneFormulas::moved_by(const Number& number) const {
+    const Formula formula = expression::recorded_formula(number, input_names_, {});
+    const auto found = std::find_if(formula.inputs.begin(), formula.inputs.end(), [&](const auto& name) { return taken_.count(name) != 0; });
+    return found == formula.inputs.end() ? std::string() : *found;
 }
 
 void SceneFormulas::finish(scene::Scene& scene) {
@@ -160,8 +167,10 @@ void SceneFormulas::finish(scene::Scene& scene) {
     for (const auto& [pointer, found] : found_) {
         if (found.number.is_constant() || found.is_used) continue;
         const std::string fault = add(pointer, found.number);
-        if (!fault.empty())
-            found.node.fail(ErrorCode::unsupported, "no design can move this number, so its formula cannot use variables: " + fault);
+        const std::string moving = fault.empty() ? "" : moved_by(found.number);
+        if (!moving.empty())
+            found.node.fail(ErrorCode::unsupported, "no design can move this number, so its formula cannot follow from `" + moving +
+                                                        "`, which is a parameter of the design: " + fault);
     }
     for (const auto& [pointer, number] : bound_) {
         const std::string fault = add(pointer, number);

@@ -43,10 +43,12 @@ public:
     expression::Number number(const files::JsonNode& node, double value) const;
     Number3 vector(const files::JsonNode& node, const Vector3& value) const;
 
-    /// What a name of the file's formulas stands for at present, if there is one: its number, what quantity it is.
+    /// What a name of the file's formulas stands for at present, if there is one: its number, what quantity it is, and whether it follows
+    /// from an input, which a design moves.
     struct Named {
         expression::Number number;
         expression::DimensionPowers dimension;
+        bool is_moved = false;
     };
     std::optional<Named> named(const std::string& name) const;
 
@@ -57,8 +59,8 @@ public:
 
     const std::vector<scene::Variable>& variables() const { return variables_; }
 
-    /// Gives the scene its variables and the numbers that follow from them. Faults: formulas of variables where no design can move the
-    /// number.
+    /// Gives the scene its variables and the numbers that follow from them. Faults: formulas of inputs, which a design moves, where no
+    /// design can move the number (how many teeth, how long the time step is).
     void finish(scene::Scene& scene);
 
 private:
@@ -69,6 +71,8 @@ private:
     };
 
     expression::Number value_of(const expression::Formula& formula) const;
+    /// The first input that the number follows from; empty: none.
+    std::string moved_by(const expression::Number& number) const;
     std::optional<double> read(const files::JsonNode& node, const std::string& text, base::Dimension dimension, double si_per_number);
 
     files::JsonDocument& document_;

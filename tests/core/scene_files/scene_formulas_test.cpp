@@ -162,16 +162,21 @@ TEST_CASE("faults of formulas and variables have their places") {
     CHECK(has(errors_of(R"({ "x": "= sin(" })", "[0, 0, 0]"), "#/variables/x", "the formula ends"));
     CHECK(has(errors_of(R"({ "it's": 1 })", "[0, 0, 0]"), "#/variables/it's", "quote"));
     CHECK(has(errors_of("[]", "[0, 0, 0]"), "#/variables", "object"));
-    const auto at = [](const std::string& key, const std::string& value) {
+    const auto at = [](const std::string& key, const std::string& value, bool moved = true) {
+        scene::ReadOptions options;
+        if (moved) options.inputs = {{"x", {}, 2}};
         return parse_scene(R"({ "fettle_scene": 1, "units": "mm", "variables": { "x": 2 }, ")" + key + "\": " + value +
                                R"(, "bodies": [{ "name": "b", "density": 1, "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
             "triangles": [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] }] })",
-                           "a.scene.json")
+                           "a.scene.json", options)
             .errors();
     };
-    CHECK(has(at("timestep", "\"= x / 100\""), "#/timestep", "no design can move this number"));
+    // What no design can move may follow from what no design moves.
+    CHECK(has(at("timestep", "\"= x / 100\""), "#/timestep", "no design can move this number, so its formula cannot follow from `x`"));
+    CHECK(at("timestep", "\"= x / 100\"", false).empty());
     CHECK(at("timestep", "\"= 2 / 100\"").empty());
     CHECK(has(at("contact", R"({ "dhat": "= x * 1 mm" })"), "#/contact/dhat", "no design can move this number"));
+    CHECK(at("contact", R"({ "dhat": "= x * 1 mm" })", false).empty());
     CHECK(has(at("timestep", "\"= 1 / 0\""), "#/timestep", "finite number"));
 }
 

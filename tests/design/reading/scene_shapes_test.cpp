@@ -64,6 +64,39 @@ TEST_CASE("scene shapes: parts by name, by file beside the scene, and written in
     CHECK(read(folder, scene(R"({"solid": {"extrude": {"circle": 2}, "to": 2}})")));
 }
 
+TEST_CASE("scene shapes: how many there are follows from variables that no parameter moves") {
+    const TemporaryFolder folder;
+    const auto posts = [&](const std::string& count) {
+        return read(folder, scene(R"({"solid": {"extrude": {"repeat": {"circle": 2, "centre": [9, 0]}, "count": "= posts"},
+                                                "to": "= factor * 4 mm"}})",
+                                  R"({"posts": )" + count + R"(, "factor": 0.5})"));
+    };
+    const auto one = posts("1"), three = posts("3");
+    REQUIRE(one);
+    REQUIRE(three);
+    CHECK(three->bodies[0].mesh.triangles.size() == 3 * one->bodies[0].mesh.triangles.size());
+    CHECK(three->bodies[0].shape->dimensions == std::map<std::string, double>{{"factor", 0.5}});
+    const auto gear = read(folder, scene(R"({"part": "spur_gear", "counts": {"teeth": "= 2 * teeth"}})", R"({"teeth": 9})"));
+    REQUIRE(gear);
+    CHECK(gear->bodies[0].shape->counts.at("teeth") == 18);
+    CHECK(is_told(read(folder, scene(R"({"part": "spur_gear", "counts": {"teeth": "= teeth / 2"}})", R"({"teeth": 9})")), "/counts/teeth",
+                  "whole number"));
+
+    folder.write("a.scene.json", scene(R"({"part": "spur_gear", "dimensions": {"module": "= m"}, "counts": {"teeth": "= teeth"}})",
+                                       R"({"teeth": 18, "m": "1mm"})"));
+    const auto design = [&](const std::string& parameter) {
+        return parse_design(R"({"fettle_design": 1, "scene": "a.scene.json", "units": "mm", "parameters": [)" + parameter +
+                                R"(], "variables": {"two": 2}, "objective": [{"type": "mass", "bodies": ["it"]}]})",
+                            folder.file("a.design.json"));
+    };
+    CHECK(design(R"({"name": "m", "value": 1, "lower": 0.9, "upper": 2})"));
+    const auto moved = design(R"({"name": "teeth", "unit": "", "value": 18, "lower": 12, "upper": 20})");
+    REQUIRE(!moved);
+    CHECK(std::any_of(moved.errors().begin(), moved.errors().end(), [](const Error& error) {
+        return error.where.ends_with("/counts/teeth") && error.message.find("follow from `teeth`") != std::string::npos;
+    }));
+}
+
 TEST_CASE("scene shapes: faults of parts, with their place") {
     const TemporaryFolder folder;
     folder.write("ring.part.json", ring);
