@@ -83,14 +83,14 @@ TEST_CASE("scene shapes: how many there are follows from variables that no param
                   "whole number"));
 
     folder.write("a.scene.json", scene(R"({"part": "spur_gear", "dimensions": {"module": "= m"}, "counts": {"teeth": "= teeth"}})",
-                                       R"({"teeth": 18, "m": "1mm"})"));
+                                       R"({"teeth": 18, "m": "2mm"})"));
     const auto design = [&](const std::string& parameter) {
         return parse_design(R"({"fettle_design": 1, "scene": "a.scene.json", "units": "mm", "parameters": [)" + parameter +
                                 R"(], "variables": {"two": 2}, "objective": [{"type": "mass", "bodies": ["it"]}]})",
                             folder.file("a.design.json"));
     };
-    CHECK(design(R"({"name": "m", "value": 1, "lower": 0.9, "upper": 2})"));
-    const auto moved = design(R"({"name": "teeth", "unit": "", "value": 18, "lower": 12, "upper": 20})");
+    CHECK(design(R"({"name": "m", "value": 2, "lower": 1.9, "upper": 3})"));
+    const auto moved = design(R"({"name": "teeth", "unit": "1", "value": 18, "lower": 12, "upper": 20})");
     REQUIRE(!moved);
     CHECK(std::any_of(moved.errors().begin(), moved.errors().end(), [](const Error& error) {
         return error.where.ends_with("/counts/teeth") && error.message.find("follow from `teeth`") != std::string::npos;
