@@ -231,7 +231,8 @@ void SceneBodies::read_own_part(const files::JsonNode& node, scene::ShapeSpec& s
     std::string unit = "m";
     for (const char* each : {"um", "mm", "cm", "in", "ft"})
         if (base::metres_per_unit(each).value() == unit_) unit = each;
-    spec.part = "{\"fettle_part\": 1, \"units\": \"" + unit + "\", \"dimensions\": {" + dimensions + "}, \"counts\": {" + counts + "}" + text + "}";
+    spec.part =
+        "{\"fettle_part\": 1, \"units\": \"" + unit + "\", \"dimensions\": {" + dimensions + "}, \"counts\": {" + counts + "}" + text + "}";
 }
 
 void SceneBodies::read_dimensions(const files::JsonNode& node, scene::ShapeSpec& spec) {

@@ -147,7 +147,8 @@ void SceneFormulas::use(const JsonNode& node) {
 
 std::string SceneFormulas::moved_by(const Number& number) const {
     const Formula formula = expression::recorded_formula(number, input_names_, {});
-    const auto found = std::find_if(formula.inputs.begin(), formula.inputs.end(), [&](const auto& name) { return taken_.count(name) != 0; });
+    const auto found =
+        std::find_if(formula.inputs.begin(), formula.inputs.end(), [&](const auto& name) { return taken_.count(name) != 0; });
     return found == formula.inputs.end() ? std::string() : *found;
 }
 

@@ -17,8 +17,8 @@ struct Parameter {
     std::string name;
     double value = 0, lower = 0, upper = 0;  ///< SI
     Unit unit = {};                          ///< that people read it in; trial values are those that a file in it can hold exactly
-    /// Where what the scene leaves open is chosen (settings of contact, tolerances, facets of parts), the same for all values; none: `value`.
-    /// A design that was found keeps what was chosen for the one that the search began with.
+    /// Where what the scene leaves open is chosen (settings of contact, tolerances, facets of parts), the same for all values; none:
+    /// `value`. A design that was found keeps what was chosen for the one that the search began with.
     std::optional<double> reference = {};
 };
 

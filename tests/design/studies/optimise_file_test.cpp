@@ -87,8 +87,9 @@ TEST_CASE("the parts of a design that was found have the facets that they had in
     // A post whose facets are chosen by how far they may be from the round: more of them, the larger it is.
     const std::string box = R"("shape": { "part": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 } })";
     const std::string post = R"("shape": { "part": "cylinder", "facets": 0.05, "dimensions": { "radius": 8, "length": 10 } })";
-    const DesignFolder folder(replaced(replaced(small_design, "dimensions/size_z", "dimensions/length"), "dimensions/size_x", "dimensions/radius"),
-                              replaced(small_scene, box, post));
+    const DesignFolder folder(
+        replaced(replaced(small_design, "dimensions/size_z", "dimensions/length"), "dimensions/size_x", "dimensions/radius"),
+        replaced(small_scene, box, post));
     const reading::DesignFile file = file_of(folder);
     const problem::DesignProblem first = problem_of(folder);
     VectorX found = values_of(file.design.parameters);
