@@ -69,6 +69,13 @@ MatrixX stacked(const MatrixX& a, const MatrixX& b) {
 
 }  // namespace
 
+bool is_better(const Evaluation& one, const Evaluation& other) {
+    if (!one.usable || !other.usable) return one.usable && !other.usable;
+    const bool feasible = one.violation <= 0, other_feasible = other.violation <= 0;
+    if (feasible != other_feasible) return feasible;
+    return feasible ? one.objective < other.objective : one.violation < other.violation;
+}
+
 Evaluator::Evaluator(const Problem& problem, EvaluatorOptions options) : problem_(problem), options_(std::move(options)) {
     FETTLE_ASSERT(problem.lower.size() == variables() && problem.upper.size() == variables(), "one bound per variable");
     FETTLE_ASSERT((problem.lower.array() <= problem.start.array()).all() && (problem.start.array() <= problem.upper.array()).all(),
@@ -80,7 +87,8 @@ Evaluator::Evaluator(const Problem& problem, EvaluatorOptions options) : problem
     scaled_start_ = (problem.start - problem.lower).cwiseQuotient(range_).cwiseMax(0).cwiseMin(1);
     constraint_scale_ = VectorX::Ones(constraints());
     try {
-        start_evaluation_ = evaluate_new(scaled_start_, Wanted::derivatives).evaluation;
+        start_evaluation_ =
+            (options_.start ? keep(known_start(), Wanted::derivatives) : evaluate_new(scaled_start_, Wanted::derivatives)).evaluation;
     } catch (const StopOptimisation&) {
         start_evaluation_.reason = stop_reason_ == StopReason::interrupted ? "interrupted" : "no evaluation allowed";
     }
@@ -153,11 +161,11 @@ const Evaluator::Record& Evaluator::asked(const VectorX& point, Wanted wanted) {
     const VectorX clamped = point.cwiseMax(0).cwiseMin(1);
     const auto found = index_.find(bits_of(clamped));
     if (found == index_.end()) return evaluate_new(clamped, wanted);
-    const Record& known = records_[found->second];
-    if (wanted != Wanted::derivatives || !known.evaluation.usable || known.evaluation.has_derivatives) return known;
+    const Record& before = records_[found->second];
+    if (wanted != Wanted::derivatives || !before.evaluation.usable || before.evaluation.has_derivatives) return before;
     const bool was_best = best_index_ == found->second;
     const Record& complete = evaluate_new(clamped, wanted);
-    if (was_best && complete.evaluation.usable) best_index_ = evaluations() - 1;
+    if (was_best && complete.evaluation.usable) best_index_ = known() - 1;
     return complete;
 }
 
@@ -172,6 +180,11 @@ void Evaluator::evaluate(Record& record, Wanted wanted) const {
     const bool values = wanted != Wanted::derivatives && problem_.values;
     record.evaluation =
         checked(values ? problem_.values(record.point) : problem_.evaluate(record.point), variables(), constraints() - relations);
+    add_relations(record);
+}
+
+void Evaluator::add_relations(Record& record) const {
+    const auto relations = count_of(problem_.relation_lower);
     record.relations.jacobian.resize(0, variables());
     if (relations == 0) return;
     record.relations = problem_.relations(record.point);
@@ -197,31 +210,34 @@ const Evaluator::Record& Evaluator::evaluate_new(const VectorX& scaled_point, Wa
         exception_ = std::current_exception();
         stop(StopReason::exception);
     }
-    record.scaled_evaluation = scaled(record);
     if (!record.evaluation.usable) ++failures_;
-    records_.push_back(std::move(record));
-    index_[bits_of(scaled_point)] = evaluations() - 1;
     const int best_before = best_index_;
+    const Record& last = keep(std::move(record), wanted);
+    if (options_.on_evaluation) options_.on_evaluation(evaluations(), last.point, last.evaluation, best_index_ != best_before);
+    return last;
+}
+
+Evaluator::Record Evaluator::known_start() const {
+    Record record;
+    record.scaled_point = scaled_start_;
+    record.point = problem_.start;
+    record.evaluation = checked(*options_.start, variables(), count_of(problem_.constraint_lower));
+    add_relations(record);
+    return record;
+}
+
+const Evaluator::Record& Evaluator::keep(Record record, Wanted wanted) {
+    record.scaled_evaluation = scaled(record);
+    index_[bits_of(record.scaled_point)] = known();
+    records_.push_back(std::move(record));
     if (wanted != Wanted::values_of_no_candidate) keep_best();
-    if (options_.on_evaluation) {
-        const Record& last = records_.back();
-        options_.on_evaluation(evaluations(), last.point, last.evaluation, best_index_ != best_before);
-    }
     return records_.back();
 }
 
-// Feasible beats infeasible; among feasible the lower objective, among infeasible the smaller violation; the earlier wins ties.
 void Evaluator::keep_best() {
     const Evaluation& now = records_.back().evaluation;
     if (!now.usable) return;
-    if (best_index_ < 0) {
-        best_index_ = evaluations() - 1;
-        return;
-    }
-    const Evaluation& best = records_[best_index_].evaluation;
-    const bool feasible = now.violation <= 0, best_feasible = best.violation <= 0;
-    const bool better = feasible != best_feasible ? feasible : feasible ? now.objective < best.objective : now.violation < best.violation;
-    if (better) best_index_ = evaluations() - 1;
+    if (best_index_ < 0 || is_better(now, records_[best_index_].evaluation)) best_index_ = known() - 1;
 }
 
 void Evaluator::stop(StopReason reason) {

@@ -25,6 +25,8 @@ struct EvaluatorOptions {
     /// Optional: of a smoother model of the same thing, near the start. Where this one's derivatives predict its own values worse, they
     /// stand in (local_model.hpp).
     std::optional<Evaluation> reference = {};
+    /// Optional: of the start, where it was evaluated before: it is neither asked for nor counted again.
+    std::optional<Evaluation> start = {};
 };
 
 /// Thrown out of a callback to end the native optimiser; Evaluator::stop_reason says why. Never leaves minimise().
@@ -33,6 +35,10 @@ struct StopOptimisation : std::exception {
 };
 
 enum class StopReason { none, budget, interrupted, exception };
+
+/// Feasible beats infeasible; among feasible the lower objective, among infeasible the smaller violation. What cannot be evaluated is
+/// worst.
+bool is_better(const Evaluation& one, const Evaluation& other);
 
 /// Whether an evaluation describes the functions near it: values and derivatives.
 inline bool tells(const Evaluation& e) { return e.usable && e.has_derivatives; }
@@ -81,11 +87,12 @@ public:
     const Evaluation& best_evaluation() const;  ///< unscaled. Contract: has_best
     Evaluation best_scaled_evaluation() const;  ///< Contract: has_best
 
-    /// What has been evaluated, in that order; scaled.
-    const VectorX& scaled_point(int evaluation) const { return records_[evaluation].scaled_point; }
-    const Evaluation& scaled_evaluation(int evaluation) const { return records_[evaluation].scaled_evaluation; }
+    /// What is known, in the order in which it was found out, from the start on; scaled.
+    int known() const { return count_of(records_); }
+    const VectorX& scaled_point(int number) const { return records_[number].scaled_point; }
+    const Evaluation& scaled_evaluation(int number) const { return records_[number].scaled_evaluation; }
 
-    int evaluations() const { return count_of(records_); }
+    int evaluations() const { return known() - (options_.start ? 1 : 0); }  ///< that were asked for
     int failures() const { return failures_; }
     StopReason stop_reason() const { return stop_reason_; }
     void rethrow() const;  ///< rethrows an exception of the problem, if there was one
@@ -99,9 +106,12 @@ private:
     enum class Wanted { derivatives, values, values_of_no_candidate };
     const Record& asked(const VectorX& scaled, Wanted wanted);
     void evaluate(Record& record, Wanted wanted) const;
+    void add_relations(Record& record) const;
+    Record known_start() const;
     Evaluation scaled(const Record& record) const;
     void fix_scaling();
     const Record& evaluate_new(const VectorX& scaled_point, Wanted wanted);
+    const Record& keep(Record record, Wanted wanted);
     void keep_best();
     void stop(StopReason reason);
 

@@ -68,7 +68,7 @@ std::vector<int> nearest(const Evaluator& evaluator, const VectorX& point) {
     constexpr size_t most = 5;
     constexpr double within = 0.3;
     std::vector<std::pair<double, int>> order;
-    for (int k = 0; k < evaluator.evaluations(); ++k) {
+    for (int k = 0; k < evaluator.known(); ++k) {
         const double distance = (evaluator.scaled_point(k) - point).norm();
         if (distance > 0 && distance < within && tells(evaluator.scaled_evaluation(k))) order.emplace_back(distance, k);
     }

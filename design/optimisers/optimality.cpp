@@ -24,7 +24,7 @@ constexpr double telling_share = 0.1;  // of a gain, below which a variable is n
 // From the evaluations next to the best one, the farthest first.
 RestCurvature curvature_near(const Evaluator& evaluator, const VectorX& best, const Evaluation& at, const VectorX& multipliers) {
     std::vector<std::pair<double, int>> order;
-    for (int k = 0; k < evaluator.evaluations(); ++k) {
+    for (int k = 0; k < evaluator.known(); ++k) {
         const double distance = (evaluator.scaled_point(k) - best).norm();
         if (distance > 0 && distance < near && tells(evaluator.scaled_evaluation(k))) order.emplace_back(distance, k);
     }

@@ -77,7 +77,8 @@ public:
           options_(options),
           reserve_(options.max_evaluations >= 40 ? 12
                    : problem.smoother.empty()    ? 0
-                                                 : options.max_evaluations / 4) {}
+                                                 : options.max_evaluations / 4),
+          own_share_(std::max(reserve_, options.max_evaluations / 2)) {}
 
     OptimiserReport run() {
         report_.point = problem_.start;
@@ -152,7 +153,7 @@ private:
         const VectorX start = point;
         for (int k = 0; k < (begun ? 1 : starts_tried) && stopped_ == StopReason::none; ++k) {
             const Problem problem = begun_at(candidate(start, k), &model);
-            Evaluator evaluator(problem, limits(std::max(1, left() - reserve_)));
+            Evaluator evaluator(problem, limits(std::min(left(), std::max(1, left() - own_share_))));
             stage.message = evaluator.start_evaluation().reason;
             if (evaluator.start_evaluation().usable) {
                 OptimiserOptions options = options_;
@@ -207,6 +208,7 @@ private:
                 return;
             }
             count(evaluator);
+            if (report_.start.usable) return conclude(search_from_start().message);
             const std::string reason = evaluator.start_evaluation().reason;
             if (k == 0) report_.message = "the start cannot be evaluated: " + reason;
             if (stopped_ != StopReason::none) break;
@@ -220,12 +222,32 @@ private:
 
     // @param spare  Evaluations that the native optimiser has not been given: they are the verdict's.
     void finish(Evaluator& evaluator, bool begun, int spare) {
+        NativeOutcome native = search(evaluator, begun, spare);
+        if (is_better(report_.start, report_.best)) native = search_from_start();
+        conclude(native.message);
+    }
+
+    // Where the smoother models have led to is worse than where they began.
+    NativeOutcome search_from_start() {
+        narrate(options_, "as written, the start is better than this; on from there:");
+        const Problem problem = begun_at(problem_.start, nullptr);
+        const int native = std::max(std::min(1, left()), left() - reserve_), spare = left() - native;
+        EvaluatorOptions options = limits(native);
+        options.start = report_.start;
+        options.reference.reset();
+        Evaluator evaluator(problem, options);
+        return search(evaluator, false, spare);
+    }
+
+    // The problem itself, from the evaluator's best point.
+    NativeOutcome search(Evaluator& evaluator, bool begun, int spare) {
         OptimiserOptions options = options_;
         if (begun) options.radius = std::min(options.radius, later_radius);
         StageReport stage;
         NativeOutcome native = minimise(evaluator, options);
         report_.iterations += native.iterations;
         evaluator.allow(spare);
+        report_.optimality = {};
         const StopReason ended = evaluator.stop_reason();
         if (ended == StopReason::none || ended == StopReason::budget) {
             const bool complete = complete_best(evaluator);
@@ -241,7 +263,7 @@ private:
         stage.message = native.message;
         report_.stages.push_back(stage);
         count(evaluator);
-        conclude(native.message);
+        return native;
     }
 
     // The verdict needs derivatives, and so does what tells what limits a design. A derivative-free optimiser has had none.
@@ -290,7 +312,8 @@ private:
     const Problem& problem_;
     const Optimiser& optimiser_;
     const OptimiserOptions& options_;
-    int reserve_;
+    int reserve_;    // evaluations of the verdict
+    int own_share_;  // evaluations of the problem itself, the verdict's among them: the smoother models leave it so many
     StopReason stopped_ = StopReason::none;
     std::optional<Evaluation> reference_;  // of the last smoother model, at its end
     OptimiserReport report_;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// The run of an optimiser: a start that can be evaluated, the smoother models one after another (each begun where the last one ended),
-/// then the problem itself, and our own verdict on its best point. A native return code is never the verdict: NLopt can return a wrong
-/// answer with a success code. Feasibility is judged by the evaluation's `violation` (certificates), optimality as optimality.hpp says.
+/// then the problem itself, and our own verdict on its best point, which is never worse than the start: where the way through the smoother
+/// models ends in a worse one, the problem itself is searched from the start, too. A native return code is never the verdict: NLopt can
+/// return a wrong answer with a success code. Feasibility is judged by the evaluation's `violation` (certificates), optimality as
+/// optimality.hpp says.
 #pragma once
 
 #include <memory>
@@ -41,8 +43,9 @@ struct OptimiserReport {
     bool feasible = false;  ///< best.violation <= 0
     Optimality optimality;
     int evaluations = 0, failures = 0, iterations = 0;
-    bool budget_spent = false;        ///< max_evaluations ended the run
-    std::vector<StageReport> stages;  ///< of the smoother models, then of the problem itself
+    bool budget_spent = false;  ///< max_evaluations ended the run
+    std::vector<StageReport>
+        stages;  ///< of the smoother models, then of the problem itself (twice: from where they led to, then from the start)
 };
 
 /// Deterministic: the same problem and options give the same sequence of evaluations.

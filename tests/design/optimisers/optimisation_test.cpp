@@ -272,6 +272,57 @@ TEST_CASE("smoother models are gone through first, and only the problem itself i
     CHECK(without.status == OptimiserStatus::optimal);
 }
 
+TEST_CASE("a run never ends worse than it began, wherever the smoother models lead") {
+    // x + y for x y >= 1: the least is 2. The smoother model knows no requirement and leads into the corner, where the problem itself is
+    // blind or cannot be evaluated.
+    const auto problem = [](const std::function<void(Evaluation&)>& corner) {
+        Problem p;
+        p.start = VectorX::Constant(2, 2.0);
+        p.lower = VectorX::Constant(2, 0.1);
+        p.upper = VectorX::Constant(2, 3.0);
+        p.constraint_lower = VectorX::Constant(1, 1.0);
+        p.constraint_upper = VectorX::Constant(1, std::numeric_limits<double>::infinity());
+        const auto evaluate = [](const VectorX& x) {
+            Evaluation e;
+            e.usable = e.has_derivatives = true;
+            e.objective = x.sum();
+            e.gradient = VectorX::Ones(2);
+            e.constraints = VectorX::Constant(1, x[0] * x[1]);
+            e.jacobian = Eigen::RowVector2d(x[1], x[0]);
+            e.residual_jacobian.resize(0, 2);
+            e.violation = std::max(0.0, 1 - x[0] * x[1]);
+            return e;
+        };
+        p.evaluate = [evaluate, corner](const VectorX& x) {
+            Evaluation e = evaluate(x);
+            if (x[0] * x[1] < 0.9) corner(e);
+            return e;
+        };
+        p.smoother.push_back({"smooth", [evaluate](const VectorX& x) {
+                                  Evaluation e = evaluate(x);
+                                  e.constraints[0] += 9;
+                                  e.violation = 0;
+                                  return e;
+                              }});
+        return p;
+    };
+    for (const auto& corner : {std::function<void(Evaluation&)>([](Evaluation& e) { e.jacobian.setZero(); }),
+                               std::function<void(Evaluation&)>([](Evaluation& e) { e = {}; })}) {
+        const OptimiserReport report = run(problem(corner), "sqp", tight(60));
+        CHECK(report.status == OptimiserStatus::optimal);
+        CHECK(report.best.objective == Approx(2).epsilon(1e-4));
+        CHECK(report.stages.back().model.empty());
+        // However few evaluations there are, half of them are the problem's own.
+        for (int few = 1; few < 12; ++few) {
+            const OptimiserReport cut = run(problem(corner), "sqp", tight(few));
+            CHECK(cut.feasible);
+            CHECK(cut.evaluations <= few);
+            CHECK(cut.best.objective <= 4);
+            CHECK(cut.stages.front().evaluations <= std::max(1, few / 2));
+        }
+    }
+}
+
 TEST_CASE("unknown optimisers are refused by name") {
     const auto made = make_optimiser("newton", "a.design.json#/optimiser/name");
     REQUIRE_FALSE(made);
