@@ -102,7 +102,8 @@ Errors add_animation(core::files::FilesTogether& files, const std::string& folde
 Errors add_outcome(core::files::FilesTogether& files, const std::string& folder, const problem::DesignEvaluation& final, const Json& answer,
                    const std::string& command) {
     replace_motion(files, folder);
-    Errors errors = final.usable ? add_animation(files, folder, *final.model, final.simulation.trajectory) : Errors{};
+    Errors errors =
+        final.usable ? add_animation(files, folder, *final.runs.front().model, final.runs.front().simulation.trajectory) : Errors{};
     return errors.empty() ? add_result(files, folder, answer, command) : errors;
 }
 

@@ -48,14 +48,14 @@ std::string play_advice(const OptimiseOutcome& outcome) {
 
 // Clearances that the meshes have and the round surfaces, for which facets stand, are not proven to have.
 std::string round_surfaces_text(const Design& design, const problem::DesignEvaluation& final) {
-    if (!final.model) return {};
+    if (final.runs.empty() || !final.runs.front().model) return {};
     std::string text;
     for (size_t i = 0; i < final.constraints.size(); ++i) {
         const auto& [name, bounds, quantity] = design.constraints[i];
         const description::Measurement& measured = final.constraints[i];
         const bool is_clearance = dynamic_cast<const quantities::Clearance*>(quantity.get()) != nullptr;
         if (!is_clearance || !measured.clearance || description::violation(bounds, measured) > 0) continue;
-        const auto round = clearance::true_bounds(*final.model, *measured.clearance);
+        const auto round = clearance::true_bounds(*final.runs.front().model, *measured.clearance);
         if (!round || (round->lower >= bounds.lower && round->lower_is_proven)) continue;
         const std::string unit = description::unit_name(design.constraints[i]);
         const auto at_least = [&, per = bounds.unit](double lower) {

@@ -13,6 +13,24 @@ void describe(const Shape& shape, core::scene::Body& body) {
     for (const ShapeDimension& dimension : shape.dimensions()) body.shape->dimensions[dimension.name] = dimension.value;
 }
 
+int scenario_count(const Design& design) { return std::max(1, count_of(design.scenarios)); }
+
+Design design_of_scenario(const Design& design, int scenario) {
+    Design out = design;
+    if (design.scenarios.empty()) return out;
+    const Scenario& own = design.scenarios[scenario];
+    out.scenarios.clear();
+    out.scene = own.scene;
+    out.shapes = own.shapes;
+    out.numbers = own.numbers;
+    out.steps = own.steps;
+    return out;
+}
+
+std::string scenario_prefix(const Design& design, int scenario) {
+    return design.scenarios.empty() ? std::string() : design.scenarios[scenario].name + ": ";
+}
+
 core::scene::Scene described_scene(const Design& design) {
     core::scene::Scene scene = design.scene;
     for (size_t i = 0; i < scene.bodies.size(); ++i) {

@@ -40,6 +40,15 @@ struct OptimiserSettings {
     double tolerance = 1e-4;
 };
 
+/// A setting beside which the design is simulated: the scene with other loads, friction, motors, start, time step ...
+struct Scenario {
+    std::string name;
+    core::scene::Scene scene;                          ///< with the same bodies and joints as the design's
+    std::vector<std::shared_ptr<const Shape>> shapes;  ///< as Design::shapes
+    std::vector<core::scene::BoundNumber> numbers;     ///< as Design::numbers
+    int steps = 0;
+};
+
 struct Design {
     core::scene::Scene scene;                          ///< at the parameters' reference values
     std::vector<std::shared_ptr<const Shape>> shapes;  ///< per body; null, or beyond its end: the body's mesh stays as it is
@@ -48,11 +57,22 @@ struct Design {
     std::vector<Parameter> parameters;
     /// The numbers of the scene that follow from the parameters, each by a formula of their names; one for a place.
     std::vector<core::scene::BoundNumber> numbers;
+    /// What is simulated; empty: the scene as it stands, for `steps` steps. Quantities are about the first, or about the one that
+    /// quantities::in_scenario says.
+    std::vector<Scenario> scenarios;
     std::vector<ObjectiveTerm> objective;
     std::vector<Constraint> constraints;
     std::vector<Relation> relations;  ///< between parameters; judged before anything is simulated
     OptimiserSettings optimiser;
 };
+
+/// 1 if it has none: the scene as it stands.
+int scenario_count(const Design& design);
+/// The design with the scene, shapes, numbers and steps of one of its scenarios as its own, and no scenarios: the same one if it has none.
+/// Contract: 0 <= scenario < scenario_count.
+Design design_of_scenario(const Design& design, int scenario);
+/// "upside down: " before what is said of a scenario; empty if the design has none.
+std::string scenario_prefix(const Design& design, int scenario);
 
 /// The shape of a body; null if its mesh is fixed.
 inline const Shape* shape_of(const Design& design, int body) {

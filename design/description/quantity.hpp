@@ -20,13 +20,17 @@ namespace fettle::design::description {
 
 using adjoint::Seeds;
 
-/// A design, simulated. The trajectory was computed from the model.
+/// A design, simulated, in one of its scenarios. The trajectory was computed from the model.
 struct Simulated {
     const core::model::Model& model;
     const core::stepper::Trajectory& trajectory;
-    double clearance_tolerance = 1e-9;  ///< upper - lower wanted of certified distances [m]
-    std::vector<std::string> names{};   ///< of the design's parameters
-    VectorX parameters{};               ///< their values, SI
+    double clearance_tolerance = 1e-9;     ///< upper - lower wanted of certified distances [m]
+    std::vector<std::string> names{};      ///< of the design's parameters
+    VectorX parameters{};                  ///< their values, SI
+    int scenario = 0;                      ///< which of the design's this is
+    const Simulated* scenarios = nullptr;  ///< all of them, in their order; null: there is this one alone
+
+    const Simulated& in(int other) const { return scenarios == nullptr ? *this : scenarios[other]; }
 };
 
 /// lower <= true value <= upper; `value`, in [lower, upper], is what the optimiser sees and what is differentiated.
@@ -71,6 +75,10 @@ public:
 
     /// Whether a simulation changes nothing of it: of the parts as assembled, or of their shapes alone.
     virtual bool is_at_rest() const { return false; }
+
+    /// Does its value follow from that scenario's motion? Seeds are added in each scenario of which this is so. A quantity that knows of
+    /// none is about the one in which it is asked: of a design without scenarios, 0 (quantities/in_scenario.hpp).
+    virtual bool is_about(int scenario) const { return scenario == 0; }
 
     /// The names of the parameters that it follows from itself, and not through the scene: those of a formula of its own, such as a target.
     virtual std::vector<std::string> parameters() const { return {}; }

@@ -93,7 +93,8 @@ public:
         result_.kinks = kinks(step);
         result_.contacts_reach = {below_.reach(), above_.reach()};
         for (const auto& [side, watch] : {std::pair(-1.0, &below_), std::pair(1.0, &above_)})
-            for (ContactChange& change : watch->changes(name(), side, range_, *at_.evaluation.model, at_.evaluation.simulation.trajectory))
+            for (ContactChange& change : watch->changes(name(), side, range_, *at_.evaluation.runs.front().model,
+                                                        at_.evaluation.runs.front().simulation.trajectory))
                 result_.contact_changes.push_back(std::move(change));
         return std::move(result_);
     }
@@ -115,7 +116,8 @@ private:
         on_simulation_();
         result_.interrupted = result_.interrupted || trial.evaluation.interrupted;
         if (trial.evaluation.usable)
-            (side > 0 ? above_ : below_).add(step, *trial.evaluation.model, trial.evaluation.simulation.trajectory);
+            (side > 0 ? above_ : below_)
+                .add(step, *trial.evaluation.runs.front().model, trial.evaluation.runs.front().simulation.trajectory);
         return trial;
     }
 
@@ -378,7 +380,7 @@ CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX
     }
     const std::vector<int> chosen = parameters_to_check(problem, at.gradient, options.most_parameters);
     std::vector<ParameterDifferences> found(n);
-    const CheckedDesign checked{at, contact_states(*at.model, at.simulation.trajectory)};
+    const CheckedDesign checked{at, contact_states(*at.runs.front().model, at.runs.front().simulation.trajectory)};
     core::base::parallel_for(count_of(chosen), 1, [&](int i) {
         const int k = chosen[i];
         found[k] = ParameterCheck(problem, p, k, steps, options, checked).run(count);

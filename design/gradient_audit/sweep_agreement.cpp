@@ -104,39 +104,39 @@ double forwards(const adjoint::TrajectoryGradient& seed, const Trajectory& traje
     return sum + within_steps(seed.velocity_bar, motion.within.velocities) + within_steps(seed.lag_bar, motion.within.lags);
 }
 
-// Of the objective and of each constraint: what depends on the motion.
-std::vector<adjoint::TrajectoryGradient> motion_seeds(const description::Design& design, const problem::DesignEvaluation& at) {
-    const description::Simulated simulated = problem::simulated_at(design, at);
-    const auto zero = [&] { return adjoint::zero_seeds(*at.model, count_of(at.simulation.trajectory.steps)); };
+// Of the objective and of each constraint: what depends on the motion of one scenario.
+std::vector<adjoint::TrajectoryGradient> motion_seeds(const description::Design& design, const problem::DesignEvaluation& at,
+                                                      const description::Simulated& simulated) {
+    const auto zero = [&] { return adjoint::zero_seeds(simulated.model, count_of(simulated.trajectory.steps)); };
     std::vector<adjoint::TrajectoryGradient> out;
+    const auto add = [&](const description::Quantity& quantity, const description::Measurement& measured, double scale,
+                         adjoint::Seeds& seeds) {
+        if (quantity.is_about(simulated.scenario)) quantity.add_seeds(simulated, measured, scale, seeds);
+    };
     adjoint::Seeds objective = zero();
     for (size_t k = 0; k < design.objective.size(); ++k) {
         const description::ObjectiveTerm& term = design.objective[k];
-        term.quantity->add_seeds(simulated, at.terms[k], term.weight / term.unit, objective);
+        add(*term.quantity, at.terms[k], term.weight / term.unit, objective);
     }
     out.push_back(std::move(objective.trajectory_bar));
     for (size_t k = 0; k < design.constraints.size(); ++k) {
         adjoint::Seeds seeds = zero();
-        design.constraints[k].quantity->add_seeds(simulated, at.constraints[k], 1, seeds);
+        add(*design.constraints[k].quantity, at.constraints[k], 1, seeds);
         out.push_back(std::move(seeds.trajectory_bar));
     }
     return out;
 }
 
-}  // namespace
-
-SweepAgreement compare_sweeps(const problem::DesignProblem& problem, const problem::DesignEvaluation& at) {
-    FETTLE_ASSERT(at.usable && at.gradient.size() == problem.parameter_count(), "the gradients to check");
+// Along two directions of a scenario's model; the worst is kept.
+void compare(const description::Simulated& simulated, const std::vector<adjoint::TrajectoryGradient>& seeds,
+             const std::vector<std::string>& names, SweepAgreement& out) {
     constexpr int directions = 2;
-    const Model& model = *at.model;
-    const Trajectory& trajectory = at.simulation.trajectory;
-    const std::vector<adjoint::TrajectoryGradient> seeds = motion_seeds(problem.design(), at);
-    const std::vector<std::string> names = quantity_names(problem.design());
-    SweepAgreement out;
+    const Model& model = simulated.model;
+    const Trajectory& trajectory = simulated.trajectory;
     const auto gradients = adjoint::stepper::reverse_sweep(model, trajectory, seeds);
     if (!gradients) {
         out.failure = gradients.errors().front().message;
-        return out;
+        return;
     }
     std::mt19937_64 random(20261123);
     for (int d = 0; d < directions; ++d) {
@@ -145,7 +145,7 @@ SweepAgreement compare_sweeps(const problem::DesignProblem& problem, const probl
         auto poses = adjoint::stepper::tangent_sweep(model, trajectory, direction, &motion.within);
         if (!poses) {
             out.failure = poses.errors().front().message;
-            return out;
+            return;
         }
         motion.poses = std::move(poses).value();
         for (size_t q = 0; q < seeds.size(); ++q) {
@@ -159,6 +159,17 @@ SweepAgreement compare_sweeps(const problem::DesignProblem& problem, const probl
             out.quantity = names[q];
         }
     }
+}
+
+}  // namespace
+
+SweepAgreement compare_sweeps(const problem::DesignProblem& problem, const problem::DesignEvaluation& at) {
+    FETTLE_ASSERT(at.usable && at.gradient.size() == problem.parameter_count(), "the gradients to check");
+    const problem::SimulatedDesign simulated(problem.design(), at);
+    const std::vector<std::string> names = quantity_names(problem.design());
+    SweepAgreement out;
+    for (int s = 0; s < problem.scenario_count() && out.failure.empty(); ++s)
+        compare(simulated.in(s), motion_seeds(problem.design(), at, simulated.in(s)), names, out);
     return out;
 }
 

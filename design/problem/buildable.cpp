@@ -29,10 +29,6 @@ std::vector<bool> broken_inequalities(const DesignProblem& problem, const Vector
     return broken;
 }
 
-bool is_costly(const Design& design) {
-    return std::any_of(design.shapes.begin(), design.shapes.end(), [](const auto& shape) { return shape && shape->is_costly(); });
-}
-
 bool any(const std::vector<bool>& flags) { return std::find(flags.begin(), flags.end(), true) != flags.end(); }
 
 // Sample number `index` of the unit cube: frac(1/2 + index / g^(k + 1)), g the positive root of g^(n + 1) = g + 1.
@@ -55,6 +51,10 @@ std::string amount(double si, const Unit& unit) {
 
 }  // namespace
 
+bool has_costly_shapes(const Design& design) {
+    return std::any_of(design.shapes.begin(), design.shapes.end(), [](const auto& shape) { return shape && shape->is_costly(); });
+}
+
 Reach reach(const DesignProblem& problem, const VectorX& p, int parameter, double end) {
     const double start = p[parameter];
     const std::vector<bool> broken = broken_inequalities(problem, p);
@@ -67,7 +67,7 @@ Reach reach(const DesignProblem& problem, const VectorX& p, int parameter, doubl
     };
     double good = 0, bad = 0;
     Errors obstacles;
-    for (const double fraction : is_costly(problem.design()) ? std::vector{1.0} : std::vector{0.25, 0.5, 0.75, 1.0}) {
+    for (const double fraction : has_costly_shapes(problem.design()) ? std::vector{1.0} : std::vector{0.25, 0.5, 0.75, 1.0}) {
         obstacles = tried(fraction);
         bad = fraction;
         if (!obstacles.empty()) break;
@@ -115,7 +115,7 @@ BoundsReport try_bounds(const DesignProblem& problem) {
         if (!end.reach.obstacles.empty()) report.unreachable.push_back(std::move(end));
     }
     std::vector<VectorX> points;
-    const int samples = is_costly(problem.design()) ? 2 * n : 8 * n;
+    const int samples = has_costly_shapes(problem.design()) ? 2 * n : 8 * n;
     for (int index = 1; index <= std::min(64, samples); ++index) {
         VectorX p = spread(index, n);
         for (int k = 0; k < n; ++k) {

@@ -15,6 +15,9 @@ struct Reach {
     Errors obstacles;  ///< right behind it; none: all the way can be built, as far as was tried
 };
 
+/// Are there shapes that cost much to make (Shape::is_costly)?
+bool has_costly_shapes(const description::Design& design);
+
 /// Moves one parameter from p towards `end`, the others as in p, and tries designs at each quarter of the way (at its end alone where parts
 /// are costly to make, Shape::is_costly) and, once one cannot be built, where that begins. Contract: p can be built.
 Reach reach(const DesignProblem& problem, const VectorX& p, int parameter, double end);

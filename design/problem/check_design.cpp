@@ -21,19 +21,25 @@ using description::Shape;
 
 class DesignCheck {
 public:
-    DesignCheck(const Design& design, const core::model::Model& model) : design_(design), model_(model) {}
+    DesignCheck(const Design& design, const std::vector<core::model::Model>& models) : design_(design), models_(models) {}
 
     Errors run() {
         check_names();
-        if (design_.steps < 0) add(ErrorCode::out_of_range, "steps", "the number of time steps is not negative");
-        if (!(design_.clearance_tolerance > 0)) add(ErrorCode::out_of_range, "clearance_tolerance", "it must be greater than 0");
-        for (size_t i = 0; i < design_.shapes.size(); ++i) check_shape(static_cast<int>(i));
         std::set<std::string> names;
+        for (const description::Scenario& scenario : design_.scenarios)
+            if (!names.insert(scenario.name).second)
+                add(ErrorCode::inconsistent, "scenario `" + scenario.name + "`", "another scenario has this name");
+        for (int s = 0; s < count_of(models_); ++s) {
+            where_ = scenario_prefix(design_, s);
+            check_scenario(description::design_of_scenario(design_, s));
+        }
+        where_.clear();
+        if (!(design_.clearance_tolerance > 0)) add(ErrorCode::out_of_range, "clearance_tolerance", "it must be greater than 0");
+        names.clear();
         for (const Parameter& parameter : design_.parameters) {
             if (!names.insert(parameter.name).second) add(ErrorCode::inconsistent, place(parameter), "another parameter has this name");
             check_parameter(parameter);
         }
-        for (const core::scene::BoundNumber& number : design_.numbers) check_number(number);
         for (const auto& term : design_.objective) {
             const std::string where = "objective `" + term.name + "`";
             if (!std::isfinite(term.weight) || !(term.unit > 0)) add(ErrorCode::out_of_range, where, "a finite weight, and a unit above 0");
@@ -66,6 +72,7 @@ private:
                         "its name " + fault + "; a name is text on one line");
             }
         };
+        want(design_.scenarios, "scenario");
         want(design_.parameters, "parameter");
         want(design_.objective, "objective");
         want(design_.relations, "relation");
@@ -74,15 +81,21 @@ private:
 
     static std::string place(const Parameter& parameter) { return "parameter `" + parameter.name + "`"; }
 
-    void add(ErrorCode code, const std::string& where, const std::string& message) { errors_.push_back({code, where, message}); }
+    void add(ErrorCode code, const std::string& where, const std::string& message) { errors_.push_back({code, where_ + where, message}); }
 
-    bool has_body(int body) const { return body >= 0 && body < count_of(design_.scene.bodies); }
+    void check_scenario(const Design& own) {
+        if (own.steps < 0) add(ErrorCode::out_of_range, "steps", "the number of time steps is not negative");
+        for (size_t i = 0; i < own.shapes.size(); ++i) check_shape(own, static_cast<int>(i));
+        const core::scene::Scene scene = description::described_scene(own);
+        std::set<core::scene::Place> places;
+        for (const core::scene::BoundNumber& number : own.numbers) check_number(scene, number, places);
+    }
 
-    void check_shape(int body) {
-        const Shape* shape = description::shape_of(design_, body);
+    void check_shape(const Design& own, int body) {
+        const Shape* shape = description::shape_of(own, body);
         if (shape == nullptr) return;
-        if (!has_body(body)) return add(ErrorCode::out_of_range, "shapes", "there are more shapes than bodies");
-        const core::scene::Body& of = design_.scene.bodies[body];
+        if (body >= count_of(own.scene.bodies)) return add(ErrorCode::out_of_range, "shapes", "there are more shapes than bodies");
+        const core::scene::Body& of = own.scene.bodies[body];
         const std::string where = "shape of body `" + of.name + "`";
         const Result<description::ShapeInstance> drawn = description::as_drawn(*shape);
         if (!drawn) {
@@ -113,16 +126,16 @@ private:
                     told(parameter.upper));
     }
 
-    void check_number(const core::scene::BoundNumber& number) {
-        const Result<core::scene::Place> found = core::scene::find_place(scene_, number.place);
+    void check_number(const core::scene::Scene& scene, const core::scene::BoundNumber& number, std::set<core::scene::Place>& places) {
+        const Result<core::scene::Place> found = core::scene::find_place(scene, number.place);
         for (const Error& error : found.errors()) add(error.code, error.where, error.message);
         if (!found) return;
-        if (!places_.insert(*found).second) add(ErrorCode::inconsistent, number.place, "another formula is given for this number");
+        if (!places.insert(*found).second) add(ErrorCode::inconsistent, number.place, "another formula is given for this number");
         const core::expression::Scope scope = description::scope_of(design_.parameters);
         for (const std::string& input : number.formula.inputs)
             if (scope.find(input) == nullptr)
                 return add(ErrorCode::unknown_key, number.place, "its formula names `" + input + "`, which is no parameter");
-        const auto expected = core::expression::powers_of(core::scene::dimension_at(scene_, *found));
+        const auto expected = core::expression::powers_of(core::scene::dimension_at(scene, *found));
         if (!same(number.formula.dimension, expected))
             return add(ErrorCode::wrong_type, number.place,
                        "its formula is " + described(number.formula.dimension) + "; " + described(expected) + " is expected");
@@ -150,7 +163,12 @@ private:
 
     void check_quantity(const description::Quantity* quantity, const std::string& where) {
         if (quantity == nullptr) return add(ErrorCode::missing_key, where, "it has no quantity");
-        for (const Error& error : quantity->check(model_, design_.steps)) add(error.code, where, error.message);
+        for (int s = 0; s < count_of(models_); ++s) {
+            if (!quantity->is_about(s)) continue;
+            const int steps = design_.scenarios.empty() ? design_.steps : design_.scenarios[s].steps;
+            for (const Error& error : quantity->check(models_[s], steps))
+                add(error.code, scenario_prefix(design_, s) + where, error.message);
+        }
         const std::vector<std::string> known = description::names_of(design_.parameters);
         for (const std::string& name : quantity->parameters())
             if (std::find(known.begin(), known.end(), name) == known.end())
@@ -158,14 +176,13 @@ private:
     }
 
     const Design& design_;
-    const core::model::Model& model_;
-    const core::scene::Scene scene_ = description::described_scene(design_);
-    std::set<core::scene::Place> places_;
+    const std::vector<core::model::Model>& models_;
+    std::string where_;  // the scenario that is looked at
     Errors errors_;
 };
 
 }  // namespace
 
-Errors check_design(const Design& design, const core::model::Model& model) { return DesignCheck(design, model).run(); }
+Errors check_design(const Design& design, const std::vector<core::model::Model>& models) { return DesignCheck(design, models).run(); }
 
 }  // namespace fettle::design::problem

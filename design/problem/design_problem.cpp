@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 
 #include "fettle/adjoint/stepper/seeded_sweep.hpp"
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/parallel.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/design/problem/check_design.hpp"
 
@@ -62,6 +64,27 @@ Design with_plain_places(Design design) {
     return design;
 }
 
+Errors in_scenario(const Design& design, int scenario, Errors errors) {
+    for (Error& error : errors) error.where = scenario_prefix(design, scenario) + error.where;
+    return errors;
+}
+
+void add_once(const std::string& text, std::vector<std::string>& texts) {
+    if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+}
+
+// Several simulations ask at the same time.
+EvaluateOptions for_several(EvaluateOptions options, int scenarios) {
+    if (scenarios == 1 || !options.should_stop) return options;
+    options.should_stop = [ask = std::move(options.should_stop), mutex = std::make_shared<std::mutex>()] {
+        const std::lock_guard lock(*mutex);
+        return ask();
+    };
+    return options;
+}
+
+constexpr const char* no_number = ": its derivative is not a finite number";
+
 std::string name_of(const description::ObjectiveTerm& term) { return "objective `" + term.name + "`"; }
 std::string name_of(const description::Constraint& constraint) { return "constraint `" + constraint.name + "`"; }
 
@@ -85,59 +108,90 @@ std::vector<VectorX> parameters_bars(const std::vector<adjoint::Seeds>& seeds) {
 
 }  // namespace
 
-Simulated simulated_at(const Design& design, const DesignEvaluation& evaluation) {
-    return {*evaluation.model, evaluation.simulation.trajectory, design.clearance_tolerance, description::names_of(design.parameters),
-            evaluation.parameters};
+SimulatedDesign::SimulatedDesign(const Design& design, const DesignEvaluation& evaluation) {
+    const std::vector<std::string> names = description::names_of(design.parameters);
+    for (const Run& run : evaluation.runs)
+        scenarios_.push_back({*run.model, run.simulation.trajectory, design.clearance_tolerance, names, evaluation.parameters,
+                              count_of(scenarios_), nullptr});
+    for (Simulated& scenario : scenarios_) scenario.scenarios = scenarios_.data();
 }
 
 Result<DesignProblem> DesignProblem::create(Design design) {
     core::model::BuildOptions options;
     options.check_start = false;  // parts that intersect at the parameters' values are a trial that cannot begin: other trials may
-    Result<Model> model = core::model::build_model(design.scene, options);
-    if (!model) return model.errors();
-    const Errors errors = check_design(design, *model);
-    if (!errors.empty()) return errors;
     DesignProblem problem;
-    problem.warnings_ = model->warnings;
-    if (const VectorX reference = description::references_of(design.parameters); reference != description::values_of(design.parameters)) {
-        const Result<MovedScene> moved = move_scene(design, reference, SceneDerivative::not_wanted);
-        model = moved ? core::model::build_model(moved->scene, options) : moved.errors();
-        if (!model) return description::at_reference(model.errors());
+    std::vector<Model> models;
+    for (int s = 0; s < description::scenario_count(design); ++s) {
+        Result<Model> model = core::model::build_model(description::design_of_scenario(design, s).scene, options);
+        if (!model) return in_scenario(design, s, model.errors());
+        for (const std::string& warning : model->warnings) add_once(warning, problem.warnings_);
+        models.push_back(std::move(model).value());
     }
-    for (const core::model::Body& body : model->bodies) problem.reference_points_.push_back(body.reference_point);
-    problem.kappa_ = model->kappa;
-    problem.term_scales_ = term_scales_of(*model);
-    if (model->proximal_weight > 0) problem.proximal_weight_ = model->proximal_weight;
-    // Their defaults are functions of the scene's size, which parameters change.
-    design.scene.dhat = model->dhat;
-    design.scene.velocity_tolerance = model->velocity_tolerance;
-    problem.design_ = with_plain_places(std::move(design));
+    const Errors errors = check_design(design, models);
+    if (!errors.empty()) return errors;
+    problem.design_ = std::move(design);
+    for (int s = 0; s < count_of(models); ++s) {
+        Result<Setting> setting = fixed(description::design_of_scenario(problem.design_, s), std::move(models[s]));
+        if (!setting) return in_scenario(problem.design_, s, setting.errors());
+        problem.settings_.push_back(std::move(setting).value());
+        const Design& own = problem.settings_.back().design;
+        if (problem.design_.scenarios.empty()) {
+            problem.design_.scene = own.scene;
+            problem.design_.numbers = own.numbers;
+        } else {
+            problem.design_.scenarios[s].scene = own.scene;
+            problem.design_.scenarios[s].numbers = own.numbers;
+        }
+    }
     return problem;
 }
 
-Result<Model> DesignProblem::build(const core::scene::Scene& scene) const {
+// @param model  Of the scene as written.
+Result<DesignProblem::Setting> DesignProblem::fixed(Design design, Model model) {
     core::model::BuildOptions options;
-    options.reference_points = reference_points_;
-    options.kappa = kappa_;
-    options.term_scales = term_scales_;
-    options.proximal_weight = proximal_weight_;
+    options.check_start = false;
+    if (const VectorX reference = description::references_of(design.parameters); reference != description::values_of(design.parameters)) {
+        const Result<MovedScene> moved = move_scene(design, reference, SceneDerivative::not_wanted);
+        Result<Model> there = moved ? core::model::build_model(moved->scene, options) : moved.errors();
+        if (!there) return description::at_reference(there.errors());
+        model = std::move(there).value();
+    }
+    Setting setting;
+    for (const core::model::Body& body : model.bodies) setting.reference_points.push_back(body.reference_point);
+    setting.kappa = model.kappa;
+    setting.term_scales = term_scales_of(model);
+    if (model.proximal_weight > 0) setting.proximal_weight = model.proximal_weight;
+    // Their defaults are functions of the scene's size, which parameters change.
+    design.scene.dhat = model.dhat;
+    design.scene.velocity_tolerance = model.velocity_tolerance;
+    setting.design = with_plain_places(std::move(design));
+    return setting;
+}
+
+Result<Model> DesignProblem::build(const Setting& setting, const core::scene::Scene& scene) {
+    core::model::BuildOptions options;
+    options.reference_points = setting.reference_points;
+    options.kappa = setting.kappa;
+    options.term_scales = setting.term_scales;
+    options.proximal_weight = setting.proximal_weight;
     // The scene's were checked; what a shape makes that does not vouch for it has to be checked each time.
-    options.check_meshes = std::any_of(design_.shapes.begin(), design_.shapes.end(),
+    options.check_meshes = std::any_of(setting.design.shapes.begin(), setting.design.shapes.end(),
                                        [](const auto& shape) { return shape != nullptr && !shape->is_always_solid(); });
     Result<Model> model = core::model::build_model(scene, options);
     if (model) model.value().for_gradient = true;
     return model;
 }
 
-Result<Model> DesignProblem::model_at(const VectorX& p) const {
-    const Result<MovedScene> moved = move_scene(design_, p, SceneDerivative::not_wanted);
-    if (!moved) return moved.errors();
-    return build(moved->scene);
+Result<Model> DesignProblem::model_at(const VectorX& p, int scenario) const {
+    const Setting& setting = settings_[scenario];
+    const Result<MovedScene> moved = move_scene(setting.design, p, SceneDerivative::not_wanted);
+    if (!moved) return in_scenario(design_, scenario, moved.errors());
+    return build(setting, moved->scene);
 }
 
 // A trial stands in no file: what is wrong with it is told by bodies and dimensions alone.
-Result<MovedScene> DesignProblem::trial_scene(const VectorX& p, SceneDerivative derivative) const {
-    Result<MovedScene> moved = move_scene(design_, p, derivative);
+Result<MovedScene> DesignProblem::trial_scene(const Setting& setting, const VectorX& p, SceneDerivative derivative) {
+    Result<MovedScene> moved = move_scene(setting.design, p, derivative);
     if (moved) moved->scene.path.clear();
     return moved;
 }
@@ -167,11 +221,12 @@ Errors DesignProblem::undefined(const optimisers::Rows& relations) const {
 
 Errors DesignProblem::obstacles(const VectorX& p) const {
     Errors errors = undefined(relations(p));
-    if (!errors.empty()) return errors;
-    const Result<MovedScene> moved = trial_scene(p, SceneDerivative::not_wanted);
-    if (!moved) return moved.errors();
-    const Result<Model> model = build(moved->scene);
-    return model ? Errors() : model.errors();
+    for (int s = 0; s < scenario_count() && errors.empty(); ++s) {
+        const Result<MovedScene> moved = trial_scene(settings_[s], p, SceneDerivative::not_wanted);
+        const Result<Model> model = moved ? build(settings_[s], moved->scene) : Result<Model>(moved.errors());
+        if (!model) errors = in_scenario(design_, s, model.errors());
+    }
+    return errors;
 }
 
 std::string DesignProblem::refusal(const VectorX& p) const {
@@ -188,18 +243,27 @@ DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions
         evaluation.reason = first_reason(errors);
         return evaluation;
     }
-    const Result<MovedScene> moved = trial_scene(p, options.gradients ? SceneDerivative::wanted : SceneDerivative::not_wanted);
-    if (!moved) {
-        evaluation.reason = first_reason(moved.errors());
-        return evaluation;
+    const int m = scenario_count();
+    evaluation.runs.resize(m);
+    std::vector<MovedScene> moved(m);
+    std::vector<std::string> reasons(m);
+    const EvaluateOptions shared = for_several(options, m);
+    core::base::parallel_for(m, 1, [&](int s) {
+        Result<MovedScene> scene = trial_scene(settings_[s], p, options.gradients ? SceneDerivative::wanted : SceneDerivative::not_wanted);
+        Result<Model> model = scene ? build(settings_[s], scene->scene) : Result<Model>(scene.errors());
+        if (!model) {
+            reasons[s] = first_reason(model.errors());
+            return;
+        }
+        moved[s] = std::move(scene).value();
+        evaluation.runs[s].model = std::make_shared<const Model>(std::move(model).value());
+        reasons[s] = simulate(s, shared, evaluation.runs[s]);
+    });
+    for (int s = 0; s < m; ++s) {
+        evaluation.interrupted =
+            evaluation.interrupted || evaluation.runs[s].simulation.report.status == core::stepper::SimulationStatus::interrupted;
+        if (evaluation.reason.empty() && !reasons[s].empty()) evaluation.reason = scenario_prefix(design_, s) + reasons[s];
     }
-    Result<Model> model = build(moved->scene);
-    if (!model) {
-        evaluation.reason = first_reason(model.errors());
-        return evaluation;
-    }
-    evaluation.model = std::make_shared<const Model>(std::move(model).value());
-    simulate(options, evaluation);
     if (!evaluation.reason.empty()) {
         evaluation.forward_seconds = forward.seconds();
         return evaluation;
@@ -209,7 +273,7 @@ DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions
     evaluation.forward_seconds = forward.seconds();
     if (options.gradients && evaluation.usable) {
         const Stopwatch backward;
-        differentiate(*moved, options.branches, evaluation);
+        differentiate(moved, options.branches, evaluation);
         evaluation.backward_seconds = backward.seconds();
     }
     if (!evaluation.usable) evaluation.objective = evaluation.violation = std::nan("");
@@ -224,29 +288,45 @@ std::vector<int> DesignProblem::rest_constraints() const {
 }
 
 std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const {
-    const Result<MovedScene> moved = move_scene(design_, p);
-    if (!moved) return std::nullopt;
-    const Result<Model> model = build(moved->scene);
-    if (!model) return std::nullopt;
-    core::stepper::SimulationOptions nothing;
-    nothing.steps = 0;
-    const core::stepper::Trajectory start = core::stepper::simulate(*model, nothing).trajectory;
-    const Simulated simulated{*model, start, design_.clearance_tolerance, description::names_of(design_.parameters), p};
-    optimisers::Rows rows;
-    std::vector<adjoint::Seeds> seeds;
     const std::vector<int> indices = rest_constraints();
-    rows.values.resize(indices.size());
-    for (const int i : indices) {
-        const description::Quantity& quantity = *design_.constraints[i].quantity;
-        const description::Measurement measured = quantity.value(simulated);
-        rows.values[seeds.size()] = measured.value;
-        seeds.push_back(adjoint::zero_seeds(*model, 0));
-        quantity.add_seeds(simulated, measured, 1, seeds.back());
+    optimisers::Rows rows{VectorX(indices.size()), MatrixX::Zero(static_cast<Eigen::Index>(indices.size()), parameter_count())};
+    DesignEvaluation rest;  // of no step
+    rest.parameters = p;
+    std::vector<MovedScene> moved;
+    for (const Setting& setting : settings_) {
+        Result<MovedScene> scene = move_scene(setting.design, p);
+        if (!scene) return std::nullopt;
+        Result<Model> model = build(setting, scene->scene);
+        if (!model) return std::nullopt;
+        core::stepper::SimulationOptions nothing;
+        nothing.steps = 0;
+        Run run{std::make_shared<const Model>(std::move(model).value()), {}};
+        run.simulation = core::stepper::simulate(*run.model, nothing);
+        rest.runs.push_back(std::move(run));
+        moved.push_back(std::move(scene).value());
     }
-    const std::vector<VectorX> bars = parameters_bars(seeds);
-    const Result<std::vector<adjoint::ModelGradient>> gradients = adjoint::stepper::seeded_sweep(*model, start, std::move(seeds));
-    if (!gradients) return std::nullopt;
-    rows.jacobian = rows_of(*moved, *model, *gradients, bars, parameter_count());
+    const SimulatedDesign simulated(design_, rest);
+    std::vector<description::Measurement> measured;
+    for (const int i : indices) measured.push_back(design_.constraints[i].quantity->value(simulated.in(0)));
+    for (size_t k = 0; k < indices.size(); ++k) rows.values[k] = measured[k].value;
+    for (int s = 0; s < scenario_count(); ++s) {
+        const Run& run = rest.runs[s];
+        std::vector<adjoint::Seeds> seeds;
+        std::vector<Eigen::Index> targets;
+        for (size_t k = 0; k < indices.size(); ++k) {
+            const description::Quantity& quantity = *design_.constraints[indices[k]].quantity;
+            if (!quantity.is_about(s)) continue;
+            targets.push_back(static_cast<Eigen::Index>(k));
+            seeds.push_back(adjoint::zero_seeds(*run.model, 0));
+            quantity.add_seeds(simulated.in(s), measured[k], 1, seeds.back());
+        }
+        const std::vector<VectorX> bars = parameters_bars(seeds);
+        const Result<std::vector<adjoint::ModelGradient>> gradients =
+            adjoint::stepper::seeded_sweep(*run.model, run.simulation.trajectory, std::move(seeds));
+        if (!gradients) return std::nullopt;
+        const MatrixX own = rows_of(moved[s], *run.model, *gradients, bars, parameter_count());
+        for (size_t k = 0; k < targets.size(); ++k) rows.jacobian.row(targets[k]) += own.row(static_cast<Eigen::Index>(k));
+    }
     if (!rows.values.allFinite() || !rows.jacobian.allFinite()) return std::nullopt;
     return rows;
 }
@@ -254,25 +334,26 @@ std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const
 Result<DesignProblem> DesignProblem::with_contact_width(double dhat) const {
     Design design = design_;
     design.scene.dhat = dhat;
+    for (description::Scenario& scenario : design.scenarios) scenario.scene.dhat = dhat;
     return create(std::move(design));
 }
 
-// Sets the reason where it did not end well.
-void DesignProblem::simulate(const EvaluateOptions& options, DesignEvaluation& evaluation) const {
+// @return why it did not end well; empty: it did.
+std::string DesignProblem::simulate(int scenario, const EvaluateOptions& options, Run& run) const {
     core::stepper::SimulationOptions simulation;
-    simulation.steps = design_.steps;
-    simulation.on_step = options.on_step;
+    simulation.steps = settings_[scenario].design.steps;
+    if (scenario == 0) simulation.on_step = options.on_step;
     simulation.should_stop = options.should_stop;
-    evaluation.simulation = core::stepper::simulate(*evaluation.model, simulation);
-    const core::stepper::SimulationReport& report = evaluation.simulation.report;
-    if (report.status == core::stepper::SimulationStatus::ok) return;
-    evaluation.interrupted = report.status == core::stepper::SimulationStatus::interrupted;
-    evaluation.reason = report.message.empty() ? core::stepper::to_string(report.status) : report.message;
+    run.simulation = core::stepper::simulate(*run.model, simulation);
+    const core::stepper::SimulationReport& report = run.simulation.report;
+    if (report.status == core::stepper::SimulationStatus::ok) return {};
+    return report.message.empty() ? core::stepper::to_string(report.status) : report.message;
 }
 
 // Sets the reason where a value is not a finite number. (A bound of it may be infinite: nothing is known on that side.)
 void DesignProblem::measure(DesignEvaluation& evaluation) const {
-    const Simulated simulated = simulated_at(design_, evaluation);
+    const SimulatedDesign all(design_, evaluation);
+    const Simulated& simulated = all.in(0);
     const auto look_at = [&](const auto& of, const description::Measurement& measured) {
         if (std::isfinite(measured.value) && !std::isnan(measured.lower) && !std::isnan(measured.upper)) return;
         if (!evaluation.reason.empty()) return;
@@ -296,55 +377,120 @@ void DesignProblem::measure(DesignEvaluation& evaluation) const {
     }
 }
 
-void DesignProblem::differentiate(const MovedScene& moved, BranchReach reach, DesignEvaluation& evaluation) const {
-    const Simulated simulated = simulated_at(design_, evaluation);
-    const auto zero = [&] { return adjoint::zero_seeds(simulated.model, count_of(simulated.trajectory.steps)); };
-    std::vector<adjoint::Seeds> seeds{zero()};
+/// Targets: 0 the objective, then the constraints, then the objective's deviations.
+struct DesignProblem::Share {
+    MatrixX rows;
+    std::vector<Eigen::Index> targets;  // of the rows
+    std::vector<QuantityBranches> branches;
+    MatrixX branch_rows;
+};
+
+namespace {
+
+/// A deviation of a term, times the root of its weight.
+struct Deviation {
+    size_t term = 0;
+    int index = 0;
+    double root = 0;
+    double value = 0;
+};
+
+std::vector<Deviation> deviations_of(const Design& design, const Simulated& simulated) {
+    std::vector<Deviation> all;
+    for (size_t k = 0; k < design.objective.size(); ++k) {
+        const description::ObjectiveTerm& term = design.objective[k];
+        const double root = std::sqrt(std::max(0.0, term.weight / term.unit));
+        const VectorX deviations = root > 0 ? term.quantity->deviations(simulated) : VectorX();
+        for (int i = 0; i < deviations.size(); ++i) all.push_back({k, i, root, root * deviations[i]});
+    }
+    return all;
+}
+
+}  // namespace
+
+Result<DesignProblem::Share> DesignProblem::share_of(int s, const MovedScene& moved, const SimulatedDesign& all, BranchReach reach,
+                                                     const DesignEvaluation& evaluation) const {
+    const Simulated& simulated = all.in(s);
+    Share share;
+    std::vector<adjoint::Seeds> seeds;
+    const auto row = [&](Eigen::Index target) -> adjoint::Seeds& {
+        share.targets.push_back(target);
+        seeds.push_back(adjoint::zero_seeds(simulated.model, count_of(simulated.trajectory.steps)));
+        return seeds.back();
+    };
+    const auto refused = [&](const std::string& what) { return Error{ErrorCode::not_finite, "", what + no_number}; };
+    const bool is_first = s == 0;
+    const auto is_about_objective = [&] {
+        return std::any_of(design_.objective.begin(), design_.objective.end(),
+                           [&](const auto& term) { return term.quantity->is_about(s); });
+    };
+    if (is_first || is_about_objective()) {
+        adjoint::Seeds& objective = row(0);
+        for (size_t k = 0; k < design_.objective.size(); ++k) {
+            const description::ObjectiveTerm& term = design_.objective[k];
+            if (!term.quantity->is_about(s)) continue;
+            term.quantity->add_seeds(simulated, evaluation.terms[k], term.weight / term.unit, objective);
+            if (!is_finite(objective)) return refused(name_of(term));
+        }
+    }
+    for (size_t i = 0; i < design_.constraints.size(); ++i) {
+        const description::Constraint& constraint = design_.constraints[i];
+        if (!constraint.quantity->is_about(s)) continue;
+        adjoint::Seeds& own = row(static_cast<Eigen::Index>(i) + 1);
+        constraint.quantity->add_seeds(simulated, evaluation.constraints[i], 1, own);
+        if (!is_finite(own)) return refused(name_of(constraint));
+    }
+    Eigen::Index target = count_of(design_.constraints) + 1;
+    for (const Deviation& deviation : deviations_of(design_, simulated)) {
+        const description::Quantity& quantity = *design_.objective[deviation.term].quantity;
+        if (quantity.is_about(s)) quantity.add_deviation_seeds(simulated, deviation.index, deviation.root, row(target));
+        ++target;
+    }
+    const auto first_branch = static_cast<Eigen::Index>(seeds.size());
+    share.branches = branches_of(design_, simulated, {evaluation.terms, evaluation.constraints}, reach);
+    for (const QuantityBranches& quantity : share.branches) add_seeds(quantity, simulated, seeds);
+    const std::vector<VectorX> bars = parameters_bars(seeds);
+    const Result<std::vector<adjoint::ModelGradient>> gradients =
+        adjoint::stepper::seeded_sweep(simulated.model, simulated.trajectory, std::move(seeds));
+    if (!gradients) return gradients.errors();
+    const MatrixX rows = rows_of(moved, simulated.model, *gradients, bars, parameter_count());
+    share.rows = rows.topRows(first_branch);
+    share.branch_rows = rows.bottomRows(rows.rows() - first_branch);
+    return share;
+}
+
+void DesignProblem::differentiate(const std::vector<MovedScene>& moved, BranchReach reach, DesignEvaluation& evaluation) const {
+    const SimulatedDesign simulated(design_, evaluation);
     const auto refuse = [&](const std::string& reason) {
         evaluation.usable = false;
         evaluation.reason = reason;
     };
-    const std::string no_number = ": its derivative is not a finite number";
-    for (size_t k = 0; k < design_.objective.size(); ++k) {
-        const description::ObjectiveTerm& term = design_.objective[k];
-        term.quantity->add_seeds(simulated, evaluation.terms[k], term.weight / term.unit, seeds[0]);
-        if (!is_finite(seeds[0])) return refuse(name_of(term) + no_number);
-    }
-    for (size_t i = 0; i < design_.constraints.size(); ++i) {
-        seeds.push_back(zero());
-        design_.constraints[i].quantity->add_seeds(simulated, evaluation.constraints[i], 1, seeds.back());
-        if (!is_finite(seeds.back())) return refuse(name_of(design_.constraints[i]) + no_number);
-    }
-    const size_t first_residual = seeds.size();
-    std::vector<double> residuals;
-    for (const description::ObjectiveTerm& term : design_.objective) {
-        const double root = std::sqrt(std::max(0.0, term.weight / term.unit));
-        const VectorX deviations = root > 0 ? term.quantity->deviations(simulated) : VectorX();
-        for (Eigen::Index i = 0; i < deviations.size(); ++i) {
-            residuals.push_back(root * deviations[i]);
-            seeds.push_back(zero());
-            term.quantity->add_deviation_seeds(simulated, static_cast<int>(i), root, seeds.back());
-        }
-    }
-    const size_t first_branch = seeds.size();
-    std::vector<QuantityBranches> branches = branches_of(design_, simulated, {evaluation.terms, evaluation.constraints}, reach);
-    for (const QuantityBranches& quantity : branches) add_seeds(quantity, simulated, seeds);
-    const std::vector<VectorX> bars = parameters_bars(seeds);
-    const Result<std::vector<adjoint::ModelGradient>> gradients =
-        adjoint::stepper::seeded_sweep(simulated.model, simulated.trajectory, std::move(seeds));
-    if (!gradients) return refuse(first_reason(gradients.errors()));
-    const MatrixX rows = rows_of(moved, *evaluation.model, *gradients, bars, parameter_count());
+    std::vector<std::optional<Result<Share>>> found(moved.size());
+    core::base::parallel_for(count_of(moved), 1, [&](int s) { found[s].emplace(share_of(s, moved[s], simulated, reach, evaluation)); });
+    for (int s = 0; s < count_of(found); ++s)
+        if (!*found[s]) return refuse(scenario_prefix(design_, s) + first_reason(found[s]->errors()));
+    const std::vector<Deviation> deviations = deviations_of(design_, simulated.in(0));
+    const Eigen::Index constraints = count_of(design_.constraints), residuals = count_of(deviations);
+    MatrixX rows = MatrixX::Zero(1 + constraints + residuals, parameter_count());
+    for (const auto& share : found)
+        for (size_t k = 0; k < (*share)->targets.size(); ++k)
+            rows.row((*share)->targets[k]) += (*share)->rows.row(static_cast<Eigen::Index>(k));
     for (int k = 0; k < parameter_count(); ++k) {
         const std::string by = ": its derivative by `" + design_.parameters[k].name + "` is not a finite number";
         if (!std::isfinite(rows(0, k))) return refuse("objective" + by);
-        for (size_t i = 0; i < design_.constraints.size(); ++i)
-            if (!std::isfinite(rows(static_cast<Eigen::Index>(i) + 1, k))) return refuse(name_of(design_.constraints[i]) + by);
+        for (Eigen::Index i = 0; i < constraints; ++i)
+            if (!std::isfinite(rows(i + 1, k))) return refuse(name_of(design_.constraints[i]) + by);
     }
     evaluation.gradient = rows.row(0).transpose();
-    evaluation.jacobian = rows.middleRows(1, design_.constraints.size());
-    evaluation.residuals = Eigen::Map<const VectorX>(residuals.data(), residuals.size());
-    evaluation.residual_jacobian = rows.middleRows(first_residual, evaluation.residuals.size());
-    take_jacobians(rows.bottomRows(rows.rows() - static_cast<Eigen::Index>(first_branch)), evaluation.jacobian, branches);
+    evaluation.jacobian = rows.middleRows(1, constraints);
+    evaluation.residuals.resize(residuals);
+    for (Eigen::Index i = 0; i < residuals; ++i) evaluation.residuals[i] = deviations[i].value;
+    evaluation.residual_jacobian = rows.bottomRows(residuals);
+    std::vector<QuantityBranches> branches;
+    for (auto& share : found) {
+        take_jacobians((*share)->branch_rows, evaluation.jacobian, (*share)->branches);
+        for (QuantityBranches& quantity : (*share)->branches) branches.push_back(std::move(quantity));
+    }
     if (reach == BranchReach::tied) {
         evaluation.ties = ties_of(design_, branches);
     } else {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Owns the chain from parameters to numbers and their gradients, and holds no mathematics of its own:
 ///   parameters -> parts and poses -> Scene -> Model -> simulate -> objective and constraints -> seeds -> reverse sweep -> d/d(parameters)
+/// Of a design with scenarios each is simulated and swept by itself, at the same time; derivatives of a quantity are the sums of theirs.
 /// Fixed once, from the scene as written, so that they are no hidden function of the parameters: reference points, barrier stiffness kappa,
 /// activation distance, solver tolerance, stiffness of stops and the radii by which stops and friction of angles are measured. The same
 /// design has the same numbers, bit for bit, whether a program made it or a file.
@@ -31,14 +32,19 @@ struct EvaluateOptions {
     BranchReach branches = BranchReach::near;  ///< with gradients: `near` fills in the evaluation's branches, `tied` its ties
 };
 
+/// What was simulated.
+struct Run {
+    std::shared_ptr<const core::model::Model> model;  ///< null if it could not be built
+    core::stepper::Simulation simulation;             ///< as far as it came
+};
+
 /// A design, simulated and measured.
 struct DesignEvaluation {
     bool usable = false;
     VectorX parameters;        ///< where, SI
     std::string reason;        ///< why not: the part that cannot be made, the bodies that intersect, what blocks the motor ...
     bool interrupted = false;  ///< not usable, because should_stop said so
-    std::shared_ptr<const core::model::Model> model;    ///< null if it could not be built
-    core::stepper::Simulation simulation;               ///< as far as it came
+    std::vector<Run> runs;     ///< one per scenario, at least one; none: a relation is not defined there
     std::vector<description::Measurement> terms;        ///< per objective term, SI
     std::vector<description::Measurement> constraints;  ///< per constraint, SI
     optimisers::Rows relations;                         ///< values and gradients, of an unusable trial too
@@ -55,8 +61,18 @@ struct DesignEvaluation {
     double backward_seconds = 0;               ///< seeds, sweep, chain
 };
 
-/// What quantities are asked about. Contract: the evaluation has a model; it outlives what is returned.
-description::Simulated simulated_at(const description::Design& design, const DesignEvaluation& evaluation);
+/// What quantities are asked about: every scenario, simulated. Contract: the evaluation has its models, and outlives this.
+class SimulatedDesign {
+public:
+    SimulatedDesign(const description::Design& design, const DesignEvaluation& evaluation);
+    SimulatedDesign(const SimulatedDesign&) = delete;
+    SimulatedDesign& operator=(const SimulatedDesign&) = delete;
+
+    const description::Simulated& in(int scenario) const { return scenarios_[scenario]; }
+
+private:
+    std::vector<description::Simulated> scenarios_;
+};
 
 /// Const after creation: evaluate may be called from several threads at once.
 class DesignProblem {
@@ -67,13 +83,14 @@ public:
     /// With places by number (core/scene/place.hpp).
     const description::Design& design() const { return design_; }
     int parameter_count() const { return count_of(design_.parameters); }
-    /// That all designs are simulated with [N/m].
-    double kappa() const { return kappa_; }
+    int scenario_count() const { return count_of(settings_); }  ///< at least 1
+    /// That all designs are simulated with [N/m], in the first scenario.
+    double kappa() const { return settings_.front().kappa; }
     /// What is odd about the scene as written: its meshes, its start.
     const std::vector<std::string>& warnings() const { return warnings_; }
 
-    /// The model at parameter values p (SI).
-    Result<core::model::Model> model_at(const VectorX& p) const;
+    /// The model of a scenario at parameter values p (SI).
+    Result<core::model::Model> model_at(const VectorX& p, int scenario = 0) const;
 
     /// Indices of the constraints that a simulation changes nothing of.
     std::vector<int> rest_constraints() const;
@@ -96,20 +113,31 @@ public:
     DesignEvaluation evaluate(const VectorX& p, const EvaluateOptions& options = {}) const;
 
 private:
+    /// What is fixed once, of a scenario.
+    struct Setting {
+        description::Design design;  ///< design_of_scenario
+        std::vector<Vector3> reference_points;
+        double kappa = 0;
+        core::model::TermScales term_scales;
+        std::optional<double> proximal_weight;  ///< of quasi-static steps
+    };
+    /// Rows of derivatives that one scenario adds to.
+    struct Share;
+
     DesignProblem() = default;
-    Result<core::model::Model> build(const core::scene::Scene& scene) const;
-    Result<MovedScene> trial_scene(const VectorX& p, SceneDerivative derivative) const;
+    static Result<Setting> fixed(description::Design design, core::model::Model model);
+    static Result<core::model::Model> build(const Setting& setting, const core::scene::Scene& scene);
+    static Result<MovedScene> trial_scene(const Setting& setting, const VectorX& p, SceneDerivative derivative);
     Errors undefined(const optimisers::Rows& relations) const;
-    void simulate(const EvaluateOptions& options, DesignEvaluation& evaluation) const;
+    std::string simulate(int scenario, const EvaluateOptions& options, Run& run) const;
     void measure(DesignEvaluation& evaluation) const;
-    void differentiate(const MovedScene& moved, BranchReach reach, DesignEvaluation& evaluation) const;
+    void differentiate(const std::vector<MovedScene>& moved, BranchReach reach, DesignEvaluation& evaluation) const;
+    Result<Share> share_of(int scenario, const MovedScene& moved, const SimulatedDesign& simulated, BranchReach reach,
+                           const DesignEvaluation& evaluation) const;
 
     description::Design design_;
-    std::vector<Vector3> reference_points_;
-    double kappa_ = 0;
-    core::model::TermScales term_scales_;
+    std::vector<Setting> settings_;  // one per scenario
     std::vector<std::string> warnings_;
-    std::optional<double> proximal_weight_;  // of quasi-static steps
 };
 
 }  // namespace fettle::design::problem

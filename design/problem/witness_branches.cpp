@@ -57,6 +57,7 @@ std::vector<QuantityBranches> branches_of(const Design& design, const descriptio
                                           BranchReach reach) {
     std::vector<QuantityBranches> all;
     const auto add = [&](QuantityBranches quantity, const description::Quantity& of, const description::Measurement& at, size_t least) {
+        if (!of.is_about(simulated.scenario)) return;
         const std::optional<double> limit = limit_of(design, quantity, at.value, reach);
         if (!limit) return;
         quantity.branches = of.branches(simulated, at, *limit);

@@ -101,16 +101,20 @@ public:
 
 }  // namespace pybind11::detail
 
+FETTLE_RECORD(fettle::design::description::Scenario, "Scenario", field("name", &Type::name), field("scene", &Type::scene),
+              field("shapes", &Type::shapes), field("numbers", &Type::numbers), field("steps", &Type::steps))
 FETTLE_RECORD(fettle::design::description::Design, "Design", field("scene", &Type::scene), field("shapes", &Type::shapes),
               field("steps", &Type::steps), field("clearance_tolerance", &Type::clearance_tolerance),
-              field("parameters", &Type::parameters), field("numbers", &Type::numbers), field("objective", &Type::objective),
-              field("constraints", &Type::constraints), field("relations", &Type::relations), field("optimiser", &Type::optimiser))
+              field("parameters", &Type::parameters), field("numbers", &Type::numbers), field("scenarios", &Type::scenarios),
+              field("objective", &Type::objective), field("constraints", &Type::constraints), field("relations", &Type::relations),
+              field("optimiser", &Type::optimiser))
 FETTLE_RECORD(fettle::design::reading::DesignFile, "DesignFile", field("design", &Type::design), path_field("path", &Type::path),
               field("text", &Type::text), path_field("scene_path", &Type::scene_path), field("length_unit", &Type::length_unit),
               field("output", &Type::output), field("warnings", &Type::warnings))
 FETTLE_RECORD(fettle::design::optimisers::Rows, "Rows", field("values", &Type::values), field("jacobian", &Type::jacobian))
+FETTLE_RECORD(fettle::design::problem::Run, "Run", field("simulation", &Type::simulation))
 FETTLE_RECORD(fettle::design::problem::DesignEvaluation, "DesignEvaluation", field("usable", &Type::usable), field("reason", &Type::reason),
-              field("simulation", &Type::simulation), field("terms", &Type::terms), field("constraints", &Type::constraints),
+              field("runs", &Type::runs), field("terms", &Type::terms), field("constraints", &Type::constraints),
               field("relations", &Type::relations), field("objective", &Type::objective), field("violation", &Type::violation),
               field("gradient", &Type::gradient), field("jacobian", &Type::jacobian), field("residuals", &Type::residuals),
               field("residual_jacobian", &Type::residual_jacobian), field("forward_seconds", &Type::forward_seconds),

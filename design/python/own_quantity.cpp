@@ -12,6 +12,7 @@
 #include "fettle/design/quantities/contact_force.hpp"
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/expression.hpp"
+#include "fettle/design/quantities/in_scenario.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
@@ -289,6 +290,13 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
     if (is("Stroke")) return stroke_from(q, of_q);
     if (is("MarkerPath")) return marker_path_from(q, of_q);
     if (is("Expression")) return expression_from(q);
+    if (is("InScenario")) {
+        auto quantity = quantity_from_python(q.attr("quantity"));
+        if (!quantity) throw py::type_error("InScenario wants a quantity");
+        const int scenario = of_q.get<int>("scenario");
+        check_at_least("InScenario/scenario", scenario, 0);
+        return in_scenario(quantity, scenario);
+    }
     const auto over = [&] { return of_q.get<Over>("over"); };
     if (is("MarkerSpeed")) {
         const MarkerSpeed::Of of{body(), of_q.get<Vector3>("point"), of_q.get<Vector3>("axis")};
@@ -367,6 +375,8 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
         for (const NamedQuantity& part : q->parts()) parts[py::str(part.name)] = quantity_to_python(part.quantity);
         return record_class("Expression")(q->formula(), parts);
     }
+    if (const auto* q = dynamic_cast<const InScenario*>(quantity.get()))
+        return record_class("InScenario")(quantity_to_python(q->quantity()), q->scenario());
     if (const auto* q = dynamic_cast<const MarkerSpeed*>(quantity.get()))
         return record_class("MarkerSpeed")(q->of().body, q->of().point, q->over(), q->of().axis);
     if (const auto* q = dynamic_cast<const JointLoad*>(quantity.get()))

@@ -95,6 +95,9 @@ Measurement Expression::value(const Simulated& simulated) const {
 void Expression::add_seeds(const Simulated& simulated, const Measurement& measured, double scale, Seeds& seeds) const {
     const std::vector<double> values = inputs<double>(simulated, [&](int part) { return measured.parts[part].value; });
     const VectorX gradient = core::expression::differentiated(formula_, values).gradient;
+    // What follows from parameters directly counts once: in the first of the scenarios that it is about.
+    bool is_first = true;
+    for (int s = 0; s < simulated.scenario; ++s) is_first = is_first && !is_about(s);
     for (size_t k = 0; k < formula_.inputs.size(); ++k) {
         const double slope = scale * gradient[k];
         const int part = part_of(formula_.inputs[k]);
@@ -104,6 +107,7 @@ void Expression::add_seeds(const Simulated& simulated, const Measurement& measur
                             formula_.inputs[k] + "` is not a finite number here";
             return;
         }
+        if (part < 0 && !is_first) continue;
         if (part < 0)
             add_parameter_seed(formula_.inputs[k], simulated, slope, seeds);
         else
@@ -113,6 +117,11 @@ void Expression::add_seeds(const Simulated& simulated, const Measurement& measur
 
 bool Expression::is_at_rest() const {
     return std::all_of(parts_.begin(), parts_.end(), [](const NamedQuantity& part) { return part.quantity->is_at_rest(); });
+}
+
+bool Expression::is_about(int scenario) const {
+    if (parts_.empty()) return scenario == 0;
+    return std::any_of(parts_.begin(), parts_.end(), [&](const NamedQuantity& part) { return part.quantity->is_about(scenario); });
 }
 
 std::vector<std::string> Expression::parameters() const {

@@ -41,6 +41,7 @@ public:
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
     bool is_at_rest() const override;
+    bool is_about(int scenario) const override;
     std::vector<std::string> parameters() const override;
     std::string explanation(const description::Measurement& measured) const override;
     Errors check(const core::model::Model& model, int steps) const override;

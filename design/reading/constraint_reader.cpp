@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "fettle/core/expression/parse_formula.hpp"
@@ -29,16 +30,21 @@ public:
         types.push_back(relation_type);
         const auto type = node.require("type").choice(types);
         if (!type) return;
+        std::vector<Constraint> read;
         if (*type == "clearance") {
-            read_clearance(node, out);
+            read_clearance(node, read);
         } else {
-            read_bounded(node, *find_quantity_type(*type), out);
+            read_bounded(node, *find_quantity_type(*type), read);
         }
+        for (const Constraint& constraint : read)
+            for (ScenarioQuantity& one : in_scenarios(node, constraint.quantity, context_.scenarios))
+                out.push_back({unique_name(constraint.name + one.suffix, names_), constraint.bounds, std::move(one.quantity)});
     }
 
 private:
+    // Among the constraints of the same choice of scenarios.
     std::string name_of(const JsonNode& node, const std::string& otherwise) {
-        return unique_name(node["name"].string().value_or(otherwise), names_);
+        return unique_name(node["name"].string().value_or(otherwise), names_of_choice_[node["scenario"].shown()]);
     }
 
     /// A bound that parameters change.
@@ -75,7 +81,7 @@ private:
 
     // `minimum` instead of bounds, and several constraints where the motion is divided.
     void read_clearance(const JsonNode& node, std::vector<Constraint>& out) {
-        node.allow_keys({"type", "name", "a", "b", "minimum", "margin", "motion", "windows"});
+        node.allow_keys({"type", "name", "scenario", "a", "b", "minimum", "margin", "motion", "windows"});
         const auto a = context_.body(node.require("a")), b = context_.body(node.require("b"));
         Bounds bounds;
         bounds.unit = context_.length_unit;
@@ -101,7 +107,7 @@ private:
     }
 
     void read_bounded(const JsonNode& node, const QuantityType& type, std::vector<Constraint>& out) {
-        std::vector<std::string_view> keys{"type", "name", "lower", "upper", "margin"};
+        std::vector<std::string_view> keys{"type", "name", "scenario", "lower", "upper", "margin"};
         for (const std::string_view key : type.keys) {
             if (key != "target") keys.push_back(key);  // a constraint bounds the stroke itself
         }
@@ -168,6 +174,7 @@ private:
 
     const ReadContext& context_;
     double clearance_margin_;
+    std::map<std::string, std::set<std::string>> names_of_choice_;
     std::set<std::string> names_;
 };
 

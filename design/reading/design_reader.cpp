@@ -22,6 +22,7 @@
 #include "fettle/design/reading/parameter_reader.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
 #include "fettle/design/reading/relation_reader.hpp"
+#include "fettle/design/reading/scenario_choice.hpp"
 
 namespace fettle::design::reading {
 
@@ -40,8 +41,8 @@ public:
 
     Result<DesignFile> read() {
         const JsonNode root = document_.root();
-        root.allow_keys({"$schema", "fettle_design", "description", "scene", "units", "parameters", "variables", "set", "simulation",
-                         "quantities", "objective", "constraints", "optimiser", "output"});
+        root.allow_keys({"$schema", "fettle_design", "description", "scene", "units", "parameters", "variables", "set", "scenarios",
+                         "simulation", "quantities", "objective", "constraints", "optimiser", "output"});
         root["$schema"].string();
         root["description"].string();
         core::files::is_version(root.require("fettle_design"), 1);
@@ -55,12 +56,17 @@ public:
         design_.parameters = read_parameters(root.require("parameters"), formulas.scene_variables(), file_.length_unit);
         formulas.add_parameters(root["parameters"], design_.parameters);
         formulas.read_variables(root["variables"]);
-        if (!has_parameters() || !read_scene_file(*scene, root["set"], formulas)) return all_errors();
-        take_shapes();
-        take_numbers();
+        if (!has_parameters()) return all_errors();
+        const std::optional<Setting> setting = read_setting(*scene, {root["set"]}, formulas);
+        if (!setting) return all_errors();
+        design_.scene = setting->scene;
+        design_.shapes = setting->shapes;
+        design_.numbers = setting->numbers;
         read_simulation(root["simulation"]);
+        const ScenarioNames scenarios = read_scenarios(root["scenarios"], root["set"], formulas);
         std::vector<quantities::NamedQuantity> named;
-        const ReadContext context{design_.scene, to_si(1, file_.length_unit), design_.steps * design_.scene.timestep, formulas, named};
+        const ReadContext context{design_.scene, to_si(1, file_.length_unit), design_.steps * design_.scene.timestep, formulas, named,
+                                  scenarios};
         named = read_named_quantities(root["quantities"], context);
         read_objective(root["objective"], context);
         const double margin = read_optimiser(root["optimiser"]);
@@ -113,42 +119,108 @@ private:
         return std::nullopt;
     }
 
-    // With the parameters for its variables, and with what the design sets. Names of bodies mean nothing without the scene: its faults end
-    // the reading, together with those found so far.
-    bool read_scene_file(JsonDocument& document, const JsonNode& set, const DesignFormulas& formulas) {
+    /// A scene and what of it a design can move.
+    struct Setting {
+        core::scene::Scene scene;
+        std::vector<std::shared_ptr<const description::Shape>> shapes;
+        std::vector<core::scene::BoundNumber> numbers;
+    };
+
+    // With the parameters for its variables, and with what the design, or one of its scenarios, sets. Names of bodies mean nothing without
+    // the scene: its faults end the reading, together with those found so far.
+    std::optional<Setting> read_setting(JsonDocument& document, const std::vector<JsonNode>& sets, const DesignFormulas& formulas) {
         core::scene::ReadOptions options = scene_read_options(options_.mesh_dirs, options_.programs, parts_);
         options.inputs = formulas.inputs_of_scene();
-        for (const auto& [pointer, value] : set.members()) options.replacements.push_back({pointer, value});
+        for (const JsonNode& set : sets)
+            for (const auto& [pointer, value] : set.members()) options.replacements.push_back({pointer, value});
         Result<core::scene::Scene> scene = core::scene_files::read_scene(document, options);
         if (!scene) {
             scene_errors_ = scene.errors();
             const bool elsewhere = description::references_of(design_.parameters) != description::values_of(design_.parameters);
             if (elsewhere) scene_errors_ = description::at_reference(std::move(scene_errors_));
-            return false;
+            return std::nullopt;
         }
-        design_.scene = std::move(scene).value();
-        return true;
+        Setting out{std::move(scene).value(), {}, {}};
+        take_shapes(out);
+        take_numbers(out);
+        return out;
+    }
+
+    // Each is the scene read again, with its own settings in place of the design's.
+    ScenarioNames read_scenarios(const JsonNode& node, const JsonNode& set, const DesignFormulas& formulas) {
+        ScenarioNames names;
+        if (node.exists() && node.is_array() && node.elements().empty())
+            node.fail(ErrorCode::out_of_range, "a design with `scenarios` has one");
+        for (const JsonNode& entry : node.elements()) {
+            entry.allow_keys({"name", "description", "set", "steps"});
+            entry["description"].string();
+            const std::string name = entry.require("name").string().value_or("");
+            const bool taken = std::find(names.names.begin(), names.names.end(), name) != names.names.end();
+            const std::string fault = core::base::name_fault(name);
+            if (!fault.empty()) entry["name"].fail(ErrorCode::out_of_range, "a scenario's name " + fault);
+            if (taken || is_scenario_word(name))
+                entry["name"].fail(ErrorCode::inconsistent,
+                                   taken ? "another scenario has this name" : "\"" + name + "\" means several scenarios");
+            Result<JsonDocument> scene = JsonDocument::read(file_.scene_path);
+            if (!scene) {
+                scene_errors_ = scene.errors();
+                return names;
+            }
+            std::optional<Setting> setting = read_setting(*scene, {set, entry["set"]}, formulas);
+            if (!setting) return names;
+            check_same_things(setting->scene, entry);
+            const auto& end_time = setting->scene.end_time;
+            const int steps = entry["steps"].integer(1).value_or(
+                end_time == design_.scene.end_time && setting->scene.timestep == design_.scene.timestep ? design_.steps
+                                                                                                        : steps_of(setting->scene));
+            for (const auto& [pointer, value] : entry["set"].members()) names.parts_differ = names.parts_differ || !leaves_parts(pointer);
+            names.names.push_back(name);
+            design_.scenarios.push_back({name, std::move(setting->scene), std::move(setting->shapes), std::move(setting->numbers), steps});
+        }
+        return names;
+    }
+
+    // Settings of these change nothing of the parts, nor where they are at the start.
+    static bool leaves_parts(std::string_view pointer) {
+        constexpr std::string_view others[] = {"/gravity",  "/timestep", "/end_time", "/integrator", "/contact",
+                                               "/friction", "/springs",  "/dampers",  "/motors",     "/loads"};
+        return std::any_of(std::begin(others), std::end(others), [&](std::string_view other) { return pointer.starts_with(other); });
+    }
+
+    void check_same_things(const core::scene::Scene& scene, const JsonNode& entry) const {
+        const auto names = [](const auto& list) {
+            std::vector<std::string> out;
+            for (const auto& each : list) out.push_back(each.name);
+            return out;
+        };
+        const core::scene::Mechanism &own = scene.mechanism, &common = design_.scene.mechanism;
+        if (names(scene.bodies) != names(design_.scene.bodies) || names(own.joints) != names(common.joints) ||
+            names(own.motors) != names(common.motors) || names(own.springs) != names(common.springs) ||
+            names(own.loads) != names(common.loads))
+            entry["set"].fail(ErrorCode::inconsistent,
+                              "a scenario has the scene's bodies, joints, springs, motors and loads; it sets their numbers");
     }
 
     // What follows from the parameters; the scene's other variables are constant here.
-    void take_numbers() {
+    void take_numbers(Setting& setting) {
         std::map<std::string, core::expression::Formula> constants;
-        for (const core::scene::Variable& variable : design_.scene.variables)
+        for (const core::scene::Variable& variable : setting.scene.variables)
             if (variable.formula.is_constant())
                 constants[variable.name] = core::expression::constant_formula(variable.value, variable.formula.dimension);
-        for (core::scene::BoundNumber& number : design_.scene.numbers) {
+        for (core::scene::BoundNumber& number : setting.scene.numbers) {
             number.formula = core::expression::substituted(number.formula, constants);
-            if (!number.formula.is_constant()) design_.numbers.push_back(number);
+            if (!number.formula.is_constant()) setting.numbers.push_back(number);
         }
-        check_scaled_parts();
+        check_scaled_parts(setting);
     }
 
     // A parameter that nothing follows from is a mistake: no number of the scene, and nothing that is wanted or required.
     void check_use(const JsonNode& parameters) const {
         if (!document_.errors().empty()) return;  // what could not be read may name it
         std::set<std::string> used;
-        for (const core::scene::BoundNumber& number : design_.numbers)
-            used.insert(number.formula.inputs.begin(), number.formula.inputs.end());
+        for (int s = 0; s < description::scenario_count(design_); ++s)
+            for (const core::scene::BoundNumber& number : design_.scenarios.empty() ? design_.numbers : design_.scenarios[s].numbers)
+                used.insert(number.formula.inputs.begin(), number.formula.inputs.end());
         const auto look_at = [&](const description::Quantity& quantity) {
             const std::vector<std::string> names = quantity.parameters();
             used.insert(names.begin(), names.end());
@@ -165,37 +237,42 @@ private:
                                   "/position/0\": \"= " + core::expression::quoted_if_needed(design_.parameters[k].name) + "\"");
     }
 
-    void check_scaled_parts() {
-        for (const core::scene::BoundNumber& number : design_.numbers) {
+    void check_scaled_parts(const Setting& setting) {
+        for (const core::scene::BoundNumber& number : setting.numbers) {
             const std::size_t at = number.place.find("/shape/dimensions/");
             if (at == std::string::npos) continue;
-            const core::scene::Place place = core::scene::find_place(design_.scene, number.place).value();
-            if (design_.shapes[place.item]) continue;
-            scene_errors_.push_back({ErrorCode::unsupported, design_.scene.bodies[place.item].where,
+            const core::scene::Place place = core::scene::find_place(setting.scene, number.place).value();
+            if (setting.shapes[place.item]) continue;
+            scene_errors_.push_back({ErrorCode::unsupported, setting.scene.bodies[place.item].where,
                                      "it has a `scale`; a part that parameters move has none: give its dimensions their full size"});
         }
     }
 
     // A part that the scene has scaled is none that a parameter can move.
-    void take_shapes() {
-        for (core::scene::Body& body : design_.scene.bodies) {
-            design_.shapes.emplace_back();
+    void take_shapes(Setting& setting) {
+        for (core::scene::Body& body : setting.scene.bodies) {
+            setting.shapes.emplace_back();
             const auto is_its_own = [&](const MadePart& part) {
                 return body.shape == part.spec && part.mesh.vertices == body.mesh.vertices;
             };
             const auto found = std::find_if(parts_->begin(), parts_->end(), is_its_own);
             if (found == parts_->end() || found->shape->dimensions().empty()) continue;
             const description::Shape& shape = *found->shape;
-            design_.shapes.back() = found->shape;
+            setting.shapes.back() = found->shape;
             description::describe(shape, body);
-            for (const std::string& remark : shape.remarks(description::drawn_values(shape)))
-                remarks_.push_back("body " + body.name + ": " + remark);
+            for (const std::string& remark : shape.remarks(description::drawn_values(shape))) {
+                const std::string text = "body " + body.name + ": " + remark;
+                if (std::find(remarks_.begin(), remarks_.end(), text) == remarks_.end()) remarks_.push_back(text);
+            }
         }
     }
 
+    static int steps_of(const core::scene::Scene& scene) {
+        return scene.end_time ? core::stepper::step_count(*scene.end_time, scene.timestep) : core::stepper::default_step_count;
+    }
+
     void read_simulation(const JsonNode& node) {
-        const auto& end_time = design_.scene.end_time;
-        design_.steps = end_time ? core::stepper::step_count(*end_time, design_.scene.timestep) : core::stepper::default_step_count;
+        design_.steps = steps_of(design_.scene);
         if (!node.exists()) return;
         node.allow_keys({"steps", "clearance_tolerance"});
         design_.steps = node["steps"].integer(1).value_or(design_.steps);
@@ -209,16 +286,22 @@ private:
             const auto type_name = entry.require("type").choice(quantity_names());
             if (!type_name) continue;
             const QuantityType& type = *find_quantity_type(*type_name);
-            std::vector<std::string_view> keys{"type", "name", "weight"};
+            std::vector<std::string_view> keys{"type", "name", "weight", "scenario"};
             keys.insert(keys.end(), type.keys.begin(), type.keys.end());
             entry.allow_keys(keys);
             description::ObjectiveTerm term;
             term.quantity = type.read(entry, context);
             term.weight = entry["weight"].number().value_or(1);
-            term.name = unique_name(entry["name"].string().value_or(type.default_name(entry)), names);
+            const std::string name = entry["name"].string().value_or(type.default_name(entry));
             if (!term.quantity) continue;
             term.unit = context.unit(term.quantity->dimension());
-            design_.objective.push_back(std::move(term));
+            const std::vector<ScenarioQuantity> each = in_scenarios(entry, term.quantity, context.scenarios);
+            term.weight /= static_cast<double>(std::max<std::size_t>(1, each.size()));  // their mean
+            for (const ScenarioQuantity& one : each) {
+                term.quantity = one.quantity;
+                term.name = unique_name(name + one.suffix, names);
+                design_.objective.push_back(term);
+            }
         }
     }
 

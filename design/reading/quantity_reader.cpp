@@ -353,10 +353,10 @@ std::vector<quantities::NamedQuantity> read_named_quantities(const JsonNode& nod
         const auto type_name = entry.require("type").choice(types);
         if (!type_name) continue;
         const QuantityType& type = *find_quantity_type(*type_name);
-        std::vector<std::string_view> keys{"type"};
+        std::vector<std::string_view> keys{"type", "scenario"};
         keys.insert(keys.end(), type.keys.begin(), type.keys.end());
         entry.allow_keys(keys);
-        if (auto quantity = type.read(entry, context)) out.push_back({name, std::move(quantity)});
+        if (const auto quantity = type.read(entry, context)) out.push_back({name, in_named_scenario(entry, quantity, context.scenarios)});
     }
     return out;
 }

@@ -11,6 +11,7 @@
 #include "fettle/core/scene/scene.hpp"
 #include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/reading/design_formulas.hpp"
+#include "fettle/design/reading/scenario_choice.hpp"
 
 namespace fettle::design::reading {
 
@@ -20,6 +21,7 @@ struct ReadContext {
     double end_time = 0;     ///< of the simulation [s]
     const DesignFormulas& formulas;
     const std::vector<quantities::NamedQuantity>& quantities;  ///< the file's `quantities`, which expressions may name
+    const ScenarioNames& scenarios;
 
     /// Index of the body that a node names; unknown_key with the nearest name otherwise.
     std::optional<int> body(const core::files::JsonNode& node) const;

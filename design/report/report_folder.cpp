@@ -274,7 +274,7 @@ AtHand at_hand(const reading::DesignFile& file, const problem::DesignProblem& pr
     AtHand known;
     const problem::DesignEvaluation& final = outcome.final;
     if (!final.usable) return known;
-    known.motion = Motion{*final.model, final.simulation.trajectory, file.scene_path};
+    known.motion = Motion{*final.runs.front().model, final.runs.front().simulation.trajectory, file.scene_path};
     known.design = FinalDesign{&file, &problem, outcome.report.point};
     return known;
 }

@@ -97,7 +97,7 @@ private:
 
     optimisers::Problem begun() {
         optimisers::Problem seen = problem::optimiser_problem(problem_, with_derivatives_);
-        seen.start = outcome_.start = start_of_seed(design_, options_.seed);
+        seen.start = outcome_.start = start_of_seed(problem_, options_.seed);
         seen.values = answered(problem_, {}, compute_, options_.history, Recorded::values);
         seen.evaluate = [this, own = answered(problem_, {}, compute_, options_.history, Recorded::with_derivatives)](const VectorX& p) {
             optimisers::Evaluation e = own(p);

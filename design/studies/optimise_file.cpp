@@ -26,8 +26,8 @@ Errors write_files(const reading::DesignFile& file, const RunFolder& run, const 
     if (!outcome.final.usable) {
         files.take_away(trajectory);  // of an earlier run: it would pass for this one's
     } else if (errors.empty()) {
-        errors =
-            core::records::add_trajectory(files, trajectory, outcome.final.simulation.trajectory, *outcome.final.model, file.scene_path);
+        errors = core::records::add_trajectory(files, trajectory, outcome.final.runs.front().simulation.trajectory,
+                                               *outcome.final.runs.front().model, file.scene_path);
     }
     if (errors.empty() && run.add_files) errors = run.add_files(outcome, files);
     return errors.empty() ? files.take_names() : errors;

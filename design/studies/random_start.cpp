@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/studies/random_start.hpp"
 
+#include <algorithm>
+#include <optional>
+
 #include "fettle/core/base/contract.hpp"
+#include "fettle/design/optimisers/projection.hpp"
+#include "fettle/design/problem/buildable.hpp"
+#include "fettle/design/problem/optimiser_problem.hpp"
 
 namespace fettle::design::studies {
 
@@ -19,17 +25,54 @@ std::uint64_t next(std::uint64_t& state) {
 // In [0, 1), all 53 bits of a double's fraction.
 double next_fraction(std::uint64_t& state) { return static_cast<double>(next(state) >> 11) * 0x1p-53; }
 
+VectorX drawn(const description::Design& design, std::uint64_t& state) {
+    VectorX sample(design.parameters.size());
+    for (Eigen::Index k = 0; k < sample.size(); ++k) {
+        const description::Parameter& p = design.parameters[k];
+        sample[k] = p.lower + next_fraction(state) * (p.upper - p.lower);
+    }
+    return sample;
+}
+
+bool meets_relations(const description::Design& design, const VectorX& p) {
+    return std::all_of(design.relations.begin(), design.relations.end(),
+                       [&](const description::Relation& relation) { return description::violation(relation, relation.at(p).value) <= 0; });
+}
+
+// The nearest point that meets the relations, in numbers that a file can hold.
+VectorX onto_relations(const problem::DesignProblem& problem, const VectorX& p) {
+    const description::Design& design = problem.design();
+    if (meets_relations(design, p)) return p;
+    const optimisers::Problem seen = problem::optimiser_problem(problem, {});
+    optimisers::CheapConstraints cheap{seen.lower, seen.upper, seen.relation_lower, seen.relation_upper, {}};
+    cheap.rows = [&](const VectorX& at) -> std::optional<optimisers::Rows> {
+        optimisers::Rows rows = problem.relations(at);
+        if (!rows.values.allFinite() || !rows.jacobian.allFinite()) return std::nullopt;
+        return rows;
+    };
+    return seen.representable(optimisers::project(p, cheap)).cwiseMax(seen.lower).cwiseMin(seen.upper);
+}
+
 }  // namespace
 
-VectorX start_of_seed(const description::Design& design, std::uint64_t seed) {
-    VectorX start = description::values_of(design.parameters);
-    if (seed == 0) return start;
+VectorX sample_of_seed(const description::Design& design, std::uint64_t seed) {
     std::uint64_t state = seed;
-    for (Eigen::Index k = 0; k < start.size(); ++k) {
-        const description::Parameter& p = design.parameters[k];
-        start[k] = p.lower + next_fraction(state) * (p.upper - p.lower);
+    return seed == 0 ? description::values_of(design.parameters) : drawn(design, state);
+}
+
+VectorX start_of_seed(const problem::DesignProblem& problem, std::uint64_t seed) {
+    const description::Design& design = problem.design();
+    if (seed == 0) return description::values_of(design.parameters);
+    std::uint64_t state = seed;
+    std::optional<VectorX> first, first_related;
+    for (int draws = problem::has_costly_shapes(design) ? most_costly_draws : most_draws; draws > 0; --draws) {
+        const VectorX p = onto_relations(problem, drawn(design, state));
+        if (!first) first = p;
+        if (!meets_relations(design, p)) continue;
+        if (problem.obstacles(p).empty()) return p;
+        if (!first_related) first_related = p;
     }
-    return start;
+    return first_related ? *first_related : *first;
 }
 
 std::vector<std::uint64_t> seeds_of_list(std::uint64_t list, int n) {

@@ -5,13 +5,19 @@
 #include <cstdint>
 #include <vector>
 
-#include "fettle/design/description/design.hpp"
+#include "fettle/design/problem/design_problem.hpp"
 
 namespace fettle::design::studies {
 
 /// Seed 0: the design's own values. Any other: every parameter drawn from its bounds, uniformly and independently of the others; the same
-/// seed gives the same start, on any machine.
-VectorX start_of_seed(const description::Design& design, std::uint64_t seed);
+/// seed gives the same sample, on any machine.
+VectorX sample_of_seed(const description::Design& design, std::uint64_t seed);
+
+/// Where the run of a seed begins: its sample; where that breaks a relation, the nearest point that meets them all; where no mechanism can
+/// be made and assembled there (DesignProblem::obstacles), the next sample of the seed. Nothing is simulated. After `most_draws` of them,
+/// of shapes that cost much (programs) `most_costly_draws`, the first that meets the relations, else the first.
+VectorX start_of_seed(const problem::DesignProblem& problem, std::uint64_t seed);
+inline constexpr int most_draws = 64, most_costly_draws = 8;
 
 /// The seeds of a list of n starts: 0, then 1000 list + k for k = 1, ..., n - 1. Lists of different numbers that have at most 1000 starts
 /// share seed 0 alone. Contract: n >= 1.

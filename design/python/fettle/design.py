@@ -283,8 +283,27 @@ class Expression(Record, Measured):
     parts: Dict[str, Any] = dataclasses.field(default_factory=dict)  #: quantities
 
 
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class InScenario(Record, Measured):
+    """A quantity in one of the design's scenarios, by number; of an expression, what it names that is in none yet."""
+
+    quantity: Any = None
+    scenario: int = 0
+
+
 AnyQuantity = Union[
-    Quantity, Clearance, Mass, Stroke, MarkerPath, MarkerSpeed, JointLoad, ContactLoad, Energy, Expression, "_fettle.OpaqueQuantity"
+    Quantity,
+    Clearance,
+    Mass,
+    Stroke,
+    MarkerPath,
+    MarkerSpeed,
+    JointLoad,
+    ContactLoad,
+    Energy,
+    Expression,
+    InScenario,
+    "_fettle.OpaqueQuantity",
 ]
 Term = Union[Measured, Operand]  # of an expression
 AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
@@ -440,6 +459,17 @@ class OptimiserSettings(Record):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
+class Scenario(Record):
+    """A setting beside which the design is simulated: its scene with other loads, friction, motors, start, time step ..."""
+
+    name: str = ""
+    scene: Scene = dataclasses.field(default_factory=Scene)  #: with the same bodies and joints as the design's
+    shapes: List[Optional[AnyShape]] = dataclasses.field(default_factory=list)  #: as Design.shapes
+    numbers: List[BoundNumber] = dataclasses.field(default_factory=list)  #: as Design.numbers
+    steps: int = 0
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Design(Record):
     """A scene, what may be changed in it, what is wanted and what is required."""
 
@@ -449,6 +479,8 @@ class Design(Record):
     clearance_tolerance: Number = number("length", 1e-9)  #: [m]
     parameters: List[Parameter] = dataclasses.field(default_factory=list)
     numbers: List[BoundNumber] = dataclasses.field(default_factory=list)  #: of the scene, that follow from parameters; see set()
+    #: what is simulated; none: the scene as it stands. Quantities are about the first, or about the one that InScenario says
+    scenarios: List[Scenario] = dataclasses.field(default_factory=list)
     objective: List[ObjectiveTerm] = dataclasses.field(default_factory=list)
     constraints: List[Constraint] = dataclasses.field(default_factory=list)
     relations: List[Relation] = dataclasses.field(default_factory=list)
@@ -481,11 +513,15 @@ class Design(Record):
         def of(quantity: Any) -> Any:
             return _numbered(quantity, names, faults, self.parameters)
 
-        scene, numbers = settled_scene(self.scene, {parameter.name: parameter.value for parameter in self.parameters})
-        made = dataclasses.replace(
-            self,
-            scene=scene,
-            numbers=[*self.numbers, *numbers],
+        values = {parameter.name: parameter.value for parameter in self.parameters}
+
+        def settled(of: Any) -> Any:
+            scene, numbers = settled_scene(of.scene, values)
+            return dataclasses.replace(of, scene=scene, numbers=[*of.numbers, *numbers])
+
+        made: Design = dataclasses.replace(
+            settled(self),
+            scenarios=[settled(scenario) for scenario in self.scenarios],
             objective=[dataclasses.replace(term, quantity=of(term.quantity)) for term in self.objective],
             constraints=[dataclasses.replace(c, quantity=of(c.quantity)) for c in self.constraints],
         )
@@ -510,6 +546,8 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault], parameters
     if kind is Expression:
         parts = {name: _numbered(part, names, faults, parameters) for name, part in record.parts.items()}
         return Expression(_formula_of(record, parameters), parts)
+    if kind is InScenario:
+        return InScenario(_numbered(record.quantity, names, faults, parameters), record.scenario)
     if kind is Mass:
         if all(not isinstance(body, str) for body, _ in record.bodies):
             return record

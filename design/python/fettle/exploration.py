@@ -176,7 +176,7 @@ def _serve(pipe: Any, name: str, design: bytes, safe_path: Optional[str]) -> Non
         os.environ[SAFE_PATH] = safe_path
     signal.signal(signal.SIGINT, lambda *_: None)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT,))
-    with contextlib.suppress(EOFError, BrokenPipeError):
+    with contextlib.suppress(EOFError, ConnectionError):  # reset, where what was sent has not been read
         while True:
             pipe.send(run_job(name, design, pipe.recv()))
 
@@ -225,7 +225,7 @@ class _LocalPool:
                     worker.job = waiting.popleft()
                     try:
                         worker.pipe.send(worker.job)
-                    except (BrokenPipeError, OSError):
+                    except OSError:
                         pass  # its end is seen below
             busy = {worker.pipe: i for i, worker in enumerate(self.workers) if worker.job}
             for ready in multiprocessing.connection.wait(list(busy)):
@@ -444,7 +444,7 @@ def _jobs(
 ) -> List[Job]:
     jobs = grid(problem, sweep) if sweep else []
     seeds = _fettle.seeds_of_list(seed, 1 + max(samples, starts))  # as `fettle optimise --starts` has them
-    jobs += [Job("evaluate", tuple(_fettle.start_of_seed(problem, drawn))) for drawn in seeds[1 : samples + 1]]
+    jobs += [Job("evaluate", tuple(_fettle.sample_of_seed(problem, drawn))) for drawn in seeds[1 : samples + 1]]
     jobs += [Job("optimise", seed=start) for start in seeds[:starts]]
     return list({job.key: job for job in jobs}.values())
 

@@ -372,12 +372,19 @@ class Rows(Record):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
+class Run(Record):
+    """What was simulated of a design: one of its scenarios."""
+
+    simulation: Simulation = dataclasses.field(default_factory=Simulation)
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class DesignEvaluation(Record):
     """A design, simulated and measured; not usable: `reason` says why, and objective and violation are NaN."""
 
     usable: bool = False
     reason: str = ""
-    simulation: Simulation = dataclasses.field(default_factory=Simulation)
+    runs: List[Run] = dataclasses.field(default_factory=list)  #: one per scenario, at least one
     terms: List[Measurement] = dataclasses.field(default_factory=list)
     constraints: List[Measurement] = dataclasses.field(default_factory=list)
     relations: Rows = dataclasses.field(default_factory=Rows)
@@ -389,6 +396,11 @@ class DesignEvaluation(Record):
     residual_jacobian: Array = dataclasses.field(default_factory=_rows)  #: (r, n)
     forward_seconds: float = 0.0
     backward_seconds: float = 0.0
+
+    @property
+    def simulation(self) -> Simulation:
+        """Of the first scenario, or of the design that has none."""
+        return self.runs[0].simulation
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)

@@ -55,8 +55,8 @@ TEST_CASE("example follower: the rise is twice the eccentricity, and the tip kee
         CHECK(std::abs(rise(example, evaluation) - 2 * e) < sag(disc, 96) + dhat / 2);
 
         // Distance of the tip's centre from the disc's axis, less both radii: the gap, but for facets. It falls for three steps.
-        const core::stepper::Trajectory& trajectory = evaluation.simulation.trajectory;
-        const Simulated simulated{*evaluation.model, trajectory};
+        const core::stepper::Trajectory& trajectory = evaluation.runs.front().simulation.trajectory;
+        const Simulated simulated{*evaluation.runs.front().model, trajectory};
         double least = 1, largest = 0;
         for (int t = 4; t < count_of(trajectory.poses); ++t) {
             const double angle = 2 * std::numbers::pi * core::stepper::time_at(trajectory, t);

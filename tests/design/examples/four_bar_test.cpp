@@ -47,7 +47,7 @@ Linkage linkage_at(const Example& example, const VectorX& p) {
 }
 
 Complex place(const problem::DesignEvaluation& e, int t, int body, const Complex& point) {
-    const description::Simulated simulated{*e.model, e.simulation.trajectory};
+    const description::Simulated simulated{*e.runs.front().model, e.runs.front().simulation.trajectory};
     const Vector3 world = quantities::marker_position(simulated, t, body, Vector3(point.real(), point.imag(), 0));
     CHECK(std::abs(world.z()) < 1e-12);
     return {world.x(), world.y()};
@@ -97,7 +97,7 @@ TEST_CASE("example four-bar: every pin stays in its bore, and the coupler's poin
 
     const Linkage linkage = linkage_at(example, example.start);
     const double journal_play = furthest(4.5e-3, 4.4e-3), pin_play = furthest(3.4e-3, 3.3e-3);
-    const int last = count_of(evaluation.simulation.trajectory.poses) - 1;
+    const int last = count_of(evaluation.runs.front().simulation.trajectory.poses) - 1;
     CHECK(last == 100);
     double deviation = 0;
     for (int t = 0; t <= last; ++t) {

@@ -50,7 +50,7 @@ TEST_CASE("gradients are finite at random designs, and agree with differences al
     constexpr int wanted = 1000, audits = 30;
     int designs = 0, refused = 0, without_reason = 0, not_finite = 0, audited = 0, resolved = 0, wrong = 0;
     for (std::uint64_t seed = 1; designs < wanted; ++seed) {
-        const VectorX p = studies::start_of_seed(problem.design(), seed);
+        const VectorX p = studies::sample_of_seed(problem.design(), seed);
         if (!problem.obstacles(p).empty()) continue;  // parts that intersect as assembled are no design
         ++designs;
         const DesignEvaluation at = problem.evaluate(p);

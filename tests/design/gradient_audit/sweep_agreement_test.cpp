@@ -25,8 +25,8 @@ TEST_CASE("backwards and forwards agree on a design's own simulation", "[gradien
         CHECK(agreement.disagreement < 1e-9);
 
         // What neither can differentiate is told.
-        at.simulation.trajectory.poses[3][1].position.z() += 1e-6;
-        at.simulation.trajectory.steps[2].nodes.back()[1].position.z() += 1e-6;
+        at.runs.front().simulation.trajectory.poses[3][1].position.z() += 1e-6;
+        at.runs.front().simulation.trajectory.steps[2].nodes.back()[1].position.z() += 1e-6;
         CHECK(compare_sweeps(problem, at).failure.find("out of balance") != std::string::npos);
     }
 }

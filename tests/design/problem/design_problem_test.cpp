@@ -74,7 +74,7 @@ TEST_CASE("relations are requirements, seen by optimisers with their gradients, 
     p[1] = 0.009;
     const DesignEvaluation undefined = problem.evaluate(p);
     CHECK_FALSE(undefined.usable);
-    CHECK(undefined.simulation.trajectory.poses.empty());
+    CHECK(undefined.runs.empty());
     CHECK(undefined.reason.find("relation `sqrt(width / height - 1)`") != std::string::npos);
     CHECK(problem.refusal(p) == undefined.reason);
 }
@@ -105,7 +105,7 @@ TEST_CASE("a design is simulated as it is evaluated, whoever asks for the simula
     core::stepper::SimulationOptions options;
     options.steps = problem.design().steps;
     const core::stepper::Simulation shown = core::stepper::simulate(*model, options);
-    const auto& poses = evaluated.simulation.trajectory.poses;
+    const auto& poses = evaluated.runs.front().simulation.trajectory.poses;
     REQUIRE(shown.trajectory.poses.size() == poses.size());
     for (size_t t = 0; t < poses.size(); ++t)
         for (size_t i = 0; i < poses[t].size(); ++i) {

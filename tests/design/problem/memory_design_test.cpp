@@ -182,7 +182,7 @@ TEST_CASE("a design with a shape and a quantity of one's own: evaluated, differe
     INFO(at.reason);
     REQUIRE(at.usable);
     int contacts = 0;
-    for (const auto& step : at.simulation.report.steps) contacts += step.contacts;
+    for (const auto& step : at.runs.front().simulation.report.steps) contacts += step.contacts;
     CHECK(contacts > 0);
     const gradient_audit::CheckReport report = gradient_audit::check_gradients(*problem, p, at);
     CHECK(report.failures.empty());

@@ -399,7 +399,7 @@ TEST_CASE("whatever a parameter moves, its derivative goes back through the star
         for (const core::model::Body& body : model_at(design, start, {}).bodies)
             reference_points.push_back(body.reference_point + Vector3(1e-2, 2e-3, -1e-3));
         const Model model = model_at(design, start, reference_points);
-        CHECK(check_design(design, model).empty());
+        CHECK(check_design(design, {model}).empty());
         std::mt19937_64 random(3);
         std::uniform_real_distribution<double> unit(-1, 1);
         std::vector<double> weights(numbers_of(model).size());
@@ -453,7 +453,7 @@ TEST_CASE("random formulas at random places: the derivative goes back through bo
         std::vector<Vector3> reference_points;
         for (const core::model::Body& body : model_at(design, start, {}).bodies) reference_points.push_back(body.reference_point);
         const Model model = model_at(design, start, reference_points);
-        REQUIRE(check_design(design, model).empty());
+        REQUIRE(check_design(design, {model}).empty());
         std::uniform_real_distribution<double> unit(-1, 1);
         std::vector<double> weights(numbers_of(model).size());
         for (double& w : weights) w = unit(random);

@@ -68,6 +68,7 @@ py::dict defaults() {
     add_default<fettle::design::optimisers::Optimality>(all);
     add_default<fettle::design::optimisers::OptimiserReport>(all);
     add_default<fettle::design::optimisers::Rows>(all);
+    add_default<fettle::design::problem::Run>(all);
     add_default<fettle::design::optimisers::StageReport>(all);
     add_default<fettle::design::problem::DesignEvaluation>(all);
     add_default<fettle::design::reading::DesignFile>(all);

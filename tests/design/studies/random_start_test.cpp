@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "fettle/tests/design/small_problem.hpp"
+
 namespace fettle::design::studies::random_start_test {
 
 namespace {
@@ -25,11 +27,11 @@ description::Design two_parameters() {
 
 TEST_CASE("a start is a function of its seed; seed 0 is the design's own") {
     const description::Design design = two_parameters();
-    CHECK(start_of_seed(design, 0) == description::values_of(design.parameters));
-    CHECK(start_of_seed(design, 7001) == start_of_seed(design, 7001));
-    CHECK(start_of_seed(design, 7001) != start_of_seed(design, 7002));
+    CHECK(sample_of_seed(design, 0) == description::values_of(design.parameters));
+    CHECK(sample_of_seed(design, 7001) == sample_of_seed(design, 7001));
+    CHECK(sample_of_seed(design, 7001) != sample_of_seed(design, 7002));
     // The generator's published first outputs of seed 1234567: a start is the same on any machine.
-    const VectorX known = start_of_seed(design, 1234567);
+    const VectorX known = sample_of_seed(design, 1234567);
     CHECK(known[0] == -0.5 + 2 * (static_cast<double>(6457827717110365317ULL >> 11) * 0x1p-53));
     CHECK(known[1] == -0.5e-3 + (static_cast<double>(3203168211198807973ULL >> 11) * 0x1p-53) * 2e-3);
 }
@@ -39,7 +41,7 @@ TEST_CASE("starts fill the bounds evenly, each parameter for itself") {
     const int n = 4000, cells = 4;
     int counts[cells][cells] = {};
     for (int seed = 1; seed <= n; ++seed) {
-        const VectorX start = start_of_seed(design, static_cast<std::uint64_t>(seed));
+        const VectorX start = sample_of_seed(design, static_cast<std::uint64_t>(seed));
         const auto cell = [&](int k) {
             const description::Parameter& p = design.parameters[k];
             REQUIRE((start[k] >= p.lower && start[k] <= p.upper));
@@ -51,6 +53,29 @@ TEST_CASE("starts fill the bounds evenly, each parameter for itself") {
     for (const auto& row : counts) {
         for (const int count : row) CHECK(std::abs(count - n / 16) < 5 * std::sqrt(n / 16.0));
     }
+}
+
+TEST_CASE("a random start meets the relations and can be made and assembled, the same each time") {
+    using fettle::tests::design_support::replaced;
+    // The cube may be drawn into the wall; it is to be half as high as wide, and no farther out than it is wide.
+    std::string text = replaced(fettle::tests::design_support::small_design, "\"upper\": 20 },", "\"upper\": 60 },");
+    text = replaced(text, "\"constraints\": [", R"("constraints": [
+        { "type": "relation", "expression": "height - width / 2", "lower": 0, "upper": 0 },
+        { "type": "relation", "expression": "place - width", "upper": 0 },)");
+    const fettle::tests::design_support::DesignFolder folder(text);
+    const problem::DesignProblem problem = fettle::tests::design_support::problem_of(folder);
+    int changed = 0, obstructed = 0;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        const VectorX start = start_of_seed(problem, seed), sample = sample_of_seed(problem.design(), seed);
+        CHECK(problem.obstacles(start).empty());
+        for (const description::Relation& relation : problem.design().relations)
+            CHECK(description::violation(relation, relation.at(start).value) <= 0);
+        CHECK(start == start_of_seed(problem, seed));
+        changed += start == sample ? 0 : 1;
+        obstructed += problem.obstacles(sample).empty() ? 0 : 1;
+    }
+    CHECK(changed == 60);
+    CHECK(obstructed > 5);
 }
 
 TEST_CASE("lists of seeds begin with the design's own start and share nothing else") {

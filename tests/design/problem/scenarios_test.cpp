@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+// A design with scenarios against designs that each have one of its settings as their own.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/base/parallel.hpp"
+#include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/tests/design/small_design.hpp"
+
+namespace fettle::design::problem::scenarios_test {
+
+namespace {
+
+using fettle::tests::design_support::DesignFolder;
+using fettle::tests::design_support::small_design;
+using nlohmann::json;
+
+const json tilted = json::parse(R"({"/gravity": [1, 0, -9.81], "/bodies/cube/density": "= 2 * density"})");
+const json quick = json::parse(R"({"/bodies/table/prescribed/ry/rate": "= speed * 2", "/timestep": 0.004})");
+
+json plain() { return json::parse(small_design); }
+
+json with_scenarios() {
+    json design = plain();
+    design["scenarios"] = {{{"name", "as drawn"}}, {{"name", "tilted"}, {"set", tilted}}, {{"name", "quick"}, {"set", quick}}};
+    return design;
+}
+
+// One scenario's setting as the design's own.
+json alone(const json& set) {
+    json design = plain();
+    design["set"].update(set);
+    return design;
+}
+
+Result<reading::DesignFile> read(const json& design) {
+    const DesignFolder folder(design.dump());
+    return reading::read_design(folder.design());
+}
+
+DesignProblem problem_of(const json& design) {
+    auto file = read(design);
+    for (const Error& error : file.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
+    REQUIRE(file);
+    auto problem = DesignProblem::create(std::move(file->design));
+    for (const Error& error : problem.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
+    REQUIRE(problem);
+    return std::move(problem).value();
+}
+
+VectorX start_of(const DesignProblem& problem) { return description::values_of(problem.design().parameters); }
+
+bool is_told(const json& design, const std::string& where, const std::string& words) {
+    const auto file = read(design);
+    for (const Error& error : file.errors()) {
+        if (error.where.ends_with(where) && error.message.find(words) != std::string::npos) return true;
+        UNSCOPED_INFO(error.where << ": " << error.message);
+    }
+    return false;
+}
+
+}  // namespace
+
+TEST_CASE("scenarios: each is the design with that setting, value for value and row for row") {
+    const DesignProblem all = problem_of(with_scenarios());
+    REQUIRE(all.scenario_count() == 3);
+    const VectorX p = start_of(all);
+    const DesignEvaluation at = all.evaluate(p);
+    REQUIRE(at.usable);
+    std::vector<DesignEvaluation> each;
+    for (const json& set : {json::object(), tilted, quick}) each.push_back(problem_of(alone(set)).evaluate(p));
+    // The mass term is the same in all but the tilted one, whose density is another: three terms of each.
+    const std::size_t terms = each[0].terms.size(), constraints = each[0].constraints.size();
+    REQUIRE(at.terms.size() == 3 * terms);
+    REQUIRE(at.constraints.size() == 3 * constraints);
+    double objective = 0;
+    VectorX gradient = VectorX::Zero(p.size());
+    for (std::size_t s = 0; s < 3; ++s) {
+        REQUIRE(each[s].usable);
+        for (std::size_t k = 0; k < terms; ++k) CHECK(at.terms[3 * k + s].value == each[s].terms[k].value);
+        objective += each[s].objective / 3;
+        gradient += each[s].gradient / 3;
+        CHECK(at.runs[s].simulation.trajectory.poses.size() == each[s].runs[0].simulation.trajectory.poses.size());
+    }
+    CHECK(at.objective == Approx(objective).epsilon(1e-14));
+    CHECK((at.gradient - gradient).norm() <= 1e-12 * gradient.norm());
+    CHECK(at.residuals.squaredNorm() ==
+          Approx((each[0].residuals.squaredNorm() + each[1].residuals.squaredNorm() + each[2].residuals.squaredNorm()) / 3));
+    // Those of windows stand together: by name.
+    for (std::size_t i = 0; i < at.constraints.size(); ++i) {
+        const std::string& name = all.design().constraints[i].name;
+        const std::size_t s = name.ends_with(" [as drawn]") ? 0 : name.ends_with(" [tilted]") ? 1 : 2;
+        const std::string base = name.substr(0, name.rfind(" ["));
+        const DesignProblem one = problem_of(alone(s == 0 ? json::object() : s == 1 ? tilted : quick));
+        std::size_t k = 0;
+        while (one.design().constraints[k].name != base) ++k;
+        INFO(name);
+        CHECK(at.constraints[i].value == each[s].constraints[k].value);
+        CHECK(at.constraints[i].lower == each[s].constraints[k].lower);
+        CHECK((at.jacobian.row(i) - each[s].jacobian.row(k)).norm() <= 1e-12 * each[s].jacobian.row(k).norm());
+    }
+    CHECK(at.violation == std::max({each[0].violation, each[1].violation, each[2].violation}));
+    CHECK(at.constraint_branches.of.size() ==
+          each[0].constraint_branches.of.size() + each[1].constraint_branches.of.size() + each[2].constraint_branches.of.size());
+}
+
+TEST_CASE("scenarios: one that sets nothing is the design without, bit for bit; and so for any number of threads") {
+    json one = plain();
+    one["scenarios"] = {{{"name", "as drawn"}}};
+    const DesignProblem scenario = problem_of(one), none = problem_of(plain());
+    const VectorX p = start_of(none);
+    const DesignEvaluation a = scenario.evaluate(p), b = none.evaluate(p);
+    CHECK(a.objective == b.objective);
+    CHECK(a.gradient == b.gradient);
+    CHECK(a.jacobian == b.jacobian);
+    const DesignProblem several = problem_of(with_scenarios());
+    const DesignEvaluation many = several.evaluate(p);
+    const core::base::ThreadLimit limit(1);
+    const DesignEvaluation single = several.evaluate(p);
+    CHECK(many.objective == single.objective);
+    CHECK(many.gradient == single.gradient);
+    CHECK(many.jacobian == single.jacobian);
+}
+
+TEST_CASE("scenarios: an expression of quantities of several, and of parameters, once") {
+    json design = with_scenarios();
+    design["quantities"] = json::parse(R"({
+        "up": {"type": "stroke", "body": "cube", "axis": [0, 0, 1], "scenario": "as drawn"},
+        "over": {"type": "stroke", "body": "cube", "axis": [0, 0, 1], "scenario": "tilted"}, "any": {"type": "stroke", "body": "cube", "axis": [1, 0, 0]}})");
+    design["objective"] = json::parse(R"([{"type": "expression", "expression": "(over - up) * width / 1 mm + 3 * width"},
+                                          {"type": "expression", "expression": "any * any / width", "scenario": "quick", "weight": 2}])");
+    design["constraints"] = json::array();
+    const DesignProblem problem = problem_of(design);
+    REQUIRE(problem.design().objective.size() == 2);
+    CHECK(problem.design().objective[1].name.ends_with(" [quick]"));
+    const VectorX p = start_of(problem);
+    const DesignEvaluation at = problem.evaluate(p);
+    REQUIRE(at.usable);
+    for (Eigen::Index k = 0; k < p.size(); ++k) {
+        const double range = problem.design().parameters[k].upper - problem.design().parameters[k].lower, h = 1e-5 * range;
+        VectorX above = p, below = p;
+        above[k] += h;
+        below[k] -= h;
+        const double difference =
+            (problem.evaluate(above, {false, {}, {}}).objective - problem.evaluate(below, {false, {}, {}}).objective) / (2 * h);
+        INFO(problem.design().parameters[k].name);
+        CHECK(at.gradient[k] * range == Approx(difference * range).epsilon(1e-5).margin(1e-6 * std::abs(at.objective)));
+    }
+}
+
+TEST_CASE("scenarios: what no scenario changes is measured once") {
+    json design = plain();
+    design["scenarios"] = json::parse(R"([{"name": "a"}, {"name": "b", "set": {"/gravity": [0, 1, -9.81]}}])");
+    const DesignProblem problem = problem_of(design);
+    int masses = 0;
+    for (const auto& term : problem.design().objective) masses += term.name.starts_with("mass") ? 1 : 0;
+    CHECK(masses == 1);
+    const DesignEvaluation at = problem.evaluate(start_of(problem));
+    CHECK(at.usable);
+    CHECK(problem.rest_rows(start_of(problem))->values.size() == static_cast<Eigen::Index>(problem.rest_constraints().size()));
+}
+
+TEST_CASE("scenarios: faults have their place") {
+    json design = with_scenarios();
+    design["scenarios"][1]["name"] = "quick";
+    CHECK(is_told(design, "/scenarios/2/name", "another scenario"));
+    design["scenarios"][1]["name"] = "all";
+    CHECK(is_told(design, "/scenarios/1/name", "several"));
+    design = with_scenarios();
+    design["scenarios"][1]["set"]["/bodies/cubes/density"] = 1;
+    CHECK(is_told(design, "~1cubes~1density", "cube"));
+    design = with_scenarios();
+    design["scenarios"][1]["set"]["/bodies/0/name"] = "desk";
+    CHECK(is_told(design, "/scenarios/1/set", "the scene's bodies"));
+    design = with_scenarios();
+    design["objective"][0]["scenario"] = "quik";
+    CHECK(is_told(design, "/objective/0/scenario", "quick"));
+    design = plain();
+    design["objective"][0]["scenario"] = "all";
+    CHECK(is_told(design, "/objective/0/scenario", "no `scenarios`"));
+    design["scenarios"] = json::array();
+    CHECK(is_told(design, "/scenarios", "has one"));
+    design["scenarios"] = 3;
+    CHECK_FALSE(read(design));
+}
+
+}  // namespace fettle::design::problem::scenarios_test
