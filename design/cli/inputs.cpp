@@ -14,7 +14,7 @@ reading::Programs programs_of(const CommonOptions& common) {
 }
 
 reading::InputOptions input_options(const CommonOptions& common, bool check_start) {
-    return {common.mesh_dirs, programs_of(common), common.strict, check_start, interrupted};
+    return {common.mesh_dirs, programs_of(common), common.strict, check_start, interrupted, common.scenario};
 }
 
 // While the file is read other threads are made, and memory for what it becomes.

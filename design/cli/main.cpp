@@ -81,6 +81,7 @@ void add_common_options(CommandLine program, CommonOptions& common) {
     program.flag("--strict", common.strict,
                  "Make errors of mesh faults that would be mended (copies, turned triangles, gaps, ...), and of warnings");
     program.flag("--allow-programs", common.allow_programs, "Run the programs that a scene names to make its parts (such as OpenSCAD)");
+    program.option("--scenario", common.scenario, "Of a design: the scenario that is simulated, measured or drawn (default: its first)");
     program.option("--mesh-dir", common.mesh_dirs, "Look for meshes here too (can be given several times)").one_value_each();
 }
 

@@ -18,6 +18,7 @@ struct CommonOptions {
     bool json = false, quiet = false;
     bool strict = false;  ///< faults of meshes that are warnings else are errors
     std::vector<std::string> mesh_dirs;
+    std::string scenario;         ///< of a design: which is meant; empty: the first
     std::string log;              ///< file for narration and progress; empty: none
     std::string command;          ///< what was typed, for those who read its results
     FindingFiles finding_files;   ///< what was found, for those who show it beside a project

@@ -73,6 +73,10 @@ public:
     /// go. Empty: it is no such value. Not to outlive `simulated` and `measured`.
     virtual std::vector<Branch> branches(const Simulated& simulated, const Measurement& measured, double limit) const;
 
+    /// Which of its branches the value is: the least (a clearance) or the greatest (the worst of several scenarios; then `limit` is above
+    /// the value by as much as branches that are asked for may be below it).
+    virtual bool is_greatest_branch() const { return false; }
+
     /// Whether a simulation changes nothing of it: of the parts as assembled, or of their shapes alone.
     virtual bool is_at_rest() const { return false; }
 

@@ -395,6 +395,22 @@ struct Deviation {
     double value = 0;
 };
 
+// To those of the same quantity in other scenarios; the branch that the value is comes first.
+void join(QuantityBranches&& more, double value, std::vector<QuantityBranches>& all) {
+    const auto same = std::find_if(all.begin(), all.end(), [&](const QuantityBranches& other) {
+        return other.of_objective == more.of_objective && other.index == more.index;
+    });
+    if (same == all.end()) return all.push_back(std::move(more));
+    MatrixX both(same->jacobian.rows() + more.jacobian.rows(), more.jacobian.cols());
+    both << same->jacobian, more.jacobian;
+    same->jacobian = std::move(both);
+    for (description::Branch& branch : more.branches) same->branches.push_back(std::move(branch));
+    size_t k = 0;
+    while (k + 1 < same->branches.size() && same->branches[k].value != value) ++k;
+    std::swap(same->branches[0], same->branches[k]);
+    same->jacobian.row(0).swap(same->jacobian.row(static_cast<Eigen::Index>(k)));
+}
+
 std::vector<Deviation> deviations_of(const Design& design, const Simulated& simulated) {
     std::vector<Deviation> all;
     for (size_t k = 0; k < design.objective.size(); ++k) {
@@ -489,7 +505,10 @@ void DesignProblem::differentiate(const std::vector<MovedScene>& moved, BranchRe
     std::vector<QuantityBranches> branches;
     for (auto& share : found) {
         take_jacobians((*share)->branch_rows, evaluation.jacobian, (*share)->branches);
-        for (QuantityBranches& quantity : (*share)->branches) branches.push_back(std::move(quantity));
+        for (QuantityBranches& quantity : (*share)->branches) {
+            const double value = (quantity.of_objective ? evaluation.terms : evaluation.constraints)[quantity.index].value;
+            join(std::move(quantity), value, branches);
+        }
     }
     if (reach == BranchReach::tied) {
         evaluation.ties = ties_of(design_, branches);

@@ -83,7 +83,8 @@ public:
     /// With places by number (core/scene/place.hpp).
     const description::Design& design() const { return design_; }
     int parameter_count() const { return count_of(design_.parameters); }
-    int scenario_count() const { return count_of(settings_); }  ///< at least 1
+    int scenario_count() const { return count_of(settings_); }                      ///< at least 1
+    int steps(int scenario = 0) const { return settings_[scenario].design.steps; }  ///< of its simulation
     /// That all designs are simulated with [N/m], in the first scenario.
     double kappa() const { return settings_.front().kappa; }
     /// What is odd about the scene as written: its meshes, its start.

@@ -2,6 +2,7 @@
 #include "fettle/design/problem/witness_branches.hpp"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -43,10 +44,15 @@ optimisers::Branches joined(const std::vector<Row>& rows, Eigen::Index parameter
 }
 
 // What a branch may be to be asked for; nothing where none is.
-std::optional<double> limit_of(const Design& design, const QuantityBranches& quantity, double value, BranchReach reach) {
+std::optional<double> limit_of(const Design& design, const QuantityBranches& quantity, const description::Quantity& of, double value,
+                               BranchReach reach) {
     const auto index = static_cast<size_t>(quantity.index);
     if (reach == BranchReach::tied) return value + design.clearance_tolerance;
-    if (quantity.of_objective) return design.objective[index].weight < 0 ? std::optional(2 * value) : std::nullopt;
+    if (quantity.of_objective) {  // a kink that a minimum keeps to
+        const double weight = design.objective[index].weight;
+        if (of.is_greatest_branch()) return weight > 0 ? std::optional(std::numeric_limits<double>::infinity()) : std::nullopt;
+        return weight < 0 ? std::optional(value + std::abs(value)) : std::nullopt;
+    }
     const double limit = 2 * design.constraints[index].bounds.lower;
     return std::isfinite(limit) && value <= limit ? std::optional(limit) : std::nullopt;
 }
@@ -58,7 +64,7 @@ std::vector<QuantityBranches> branches_of(const Design& design, const descriptio
     std::vector<QuantityBranches> all;
     const auto add = [&](QuantityBranches quantity, const description::Quantity& of, const description::Measurement& at, size_t least) {
         if (!of.is_about(simulated.scenario)) return;
-        const std::optional<double> limit = limit_of(design, quantity, at.value, reach);
+        const std::optional<double> limit = limit_of(design, quantity, of, at.value, reach);
         if (!limit) return;
         quantity.branches = of.branches(simulated, at, *limit);
         if (quantity.branches.size() >= least) all.push_back(std::move(quantity));
@@ -125,7 +131,8 @@ optimisers::Branches objective_rows(const Design& design, const std::vector<Quan
         const description::ObjectiveTerm& term = design.objective[quantity.index];
         const double scale = term.weight / term.unit;
         const VectorX values = values_of(quantity);
-        std::vector<int> kept = telling_branches(values, quantity.jacobian, ranges);
+        const double sign = term.quantity->is_greatest_branch() ? -1 : 1;
+        std::vector<int> kept = telling_branches(sign * values, sign * quantity.jacobian, ranges);
         kept.insert(kept.begin(), 0);
         for (const int j : kept) rows.push_back({quantity.index, scale * values[j], scale * quantity.jacobian.row(j).transpose()});
     }

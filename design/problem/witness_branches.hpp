@@ -33,7 +33,7 @@ struct Measurements {
 
 enum class BranchReach {
     /// What a step can run into: of constraints with a lower bound those below twice the bound, of terms of the objective with a negative
-    /// weight (which want the value large) those up to twice the value.
+    /// weight (which want the value large) those up to twice the value, and all of a value that is the greatest and is wanted small.
     near,
     tied  ///< of all constraints and terms, those that attain the value to within the tolerance of certified distances
 };

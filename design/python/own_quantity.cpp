@@ -18,6 +18,7 @@
 #include "fettle/design/quantities/marker_speed.hpp"
 #include "fettle/design/quantities/mass.hpp"
 #include "fettle/design/quantities/stroke.hpp"
+#include "fettle/design/quantities/worst.hpp"
 
 FETTLE_WORDS(fettle::design::quantities::Over, "end", "sum", "mean", "largest", "least")
 FETTLE_WORDS(fettle::design::quantities::EnergyKind, "kinetic", "potential", "spring", "total")
@@ -290,6 +291,16 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
     if (is("Stroke")) return stroke_from(q, of_q);
     if (is("MarkerPath")) return marker_path_from(q, of_q);
     if (is("Expression")) return expression_from(q);
+    if (is("Worst")) {
+        std::vector<std::shared_ptr<const Quantity>> parts;
+        for (const py::handle part : q.attr("parts")) {
+            parts.push_back(quantity_from_python(part));
+            if (!parts.back() || parts.back()->dimension() != parts.front()->dimension())
+                throw py::type_error("the parts of Worst are quantities of one dimension");
+        }
+        if (parts.empty()) throw py::value_error("Worst wants a part");
+        return std::make_shared<Worst>(std::move(parts), of_q.get<bool>("greatest"));
+    }
     if (is("InScenario")) {
         auto quantity = quantity_from_python(q.attr("quantity"));
         if (!quantity) throw py::type_error("InScenario wants a quantity");
@@ -374,6 +385,11 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
         py::dict parts;
         for (const NamedQuantity& part : q->parts()) parts[py::str(part.name)] = quantity_to_python(part.quantity);
         return record_class("Expression")(q->formula(), parts);
+    }
+    if (const auto* q = dynamic_cast<const Worst*>(quantity.get())) {
+        py::list parts;
+        for (const auto& part : q->parts()) parts.append(quantity_to_python(part));
+        return record_class("Worst")(parts, q->greatest());
     }
     if (const auto* q = dynamic_cast<const InScenario*>(quantity.get()))
         return record_class("InScenario")(quantity_to_python(q->quantity()), q->scenario());

@@ -17,6 +17,7 @@
 #include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
+#include "fettle/design/quantities/worst.hpp"
 #include "fettle/design/reading/constraint_reader.hpp"
 #include "fettle/design/reading/design_formulas.hpp"
 #include "fettle/design/reading/parameter_reader.hpp"
@@ -181,10 +182,17 @@ private:
     }
 
     // Settings of these change nothing of the parts, nor where they are at the start.
-    static bool leaves_parts(std::string_view pointer) {
-        constexpr std::string_view others[] = {"/gravity",  "/timestep", "/end_time", "/integrator", "/contact",
-                                               "/friction", "/springs",  "/dampers",  "/motors",     "/loads"};
-        return std::any_of(std::begin(others), std::end(others), [&](std::string_view other) { return pointer.starts_with(other); });
+    static bool leaves_parts(const std::string& pointer) {
+        const auto begins_with_one_of = [](std::string_view text, std::initializer_list<std::string_view> beginnings) {
+            return std::any_of(beginnings.begin(), beginnings.end(), [&](std::string_view each) { return text.starts_with(each); });
+        };
+        constexpr std::string_view bodies = "/bodies/";
+        if (!pointer.starts_with(bodies))
+            return begins_with_one_of(pointer, {"/gravity", "/timestep", "/end_time", "/integrator", "/contact", "/friction", "/springs",
+                                                "/dampers", "/motors", "/loads"});
+        const std::size_t key = std::min(pointer.find('/', bodies.size()), pointer.size());
+        return begins_with_one_of(std::string_view(pointer).substr(key), {"/prescribed", "/fixed", "/linear_velocity", "/angular_velocity",
+                                                                          "/force", "/torque", "/damping", "/mu"});
     }
 
     void check_same_things(const core::scene::Scene& scene, const JsonNode& entry) const {
@@ -296,12 +304,19 @@ private:
             if (!term.quantity) continue;
             term.unit = context.unit(term.quantity->dimension());
             const std::vector<ScenarioQuantity> each = in_scenarios(entry, term.quantity, context.scenarios);
-            term.weight /= static_cast<double>(std::max<std::size_t>(1, each.size()));  // their mean
-            for (const ScenarioQuantity& one : each) {
-                term.quantity = one.quantity;
-                term.name = unique_name(name + one.suffix, names);
+            const auto add = [&](std::shared_ptr<const description::Quantity> quantity, const std::string& suffix) {
+                term.quantity = std::move(quantity);
+                term.name = unique_name(name + suffix, names);
                 design_.objective.push_back(term);
+            };
+            if (each.size() > 1 && entry["scenario"].string() == worst_scenario) {
+                std::vector<std::shared_ptr<const description::Quantity>> parts;
+                for (const ScenarioQuantity& one : each) parts.push_back(one.quantity);
+                add(std::make_shared<quantities::Worst>(std::move(parts), term.weight >= 0), " [worst]");
+                continue;
             }
+            term.weight /= static_cast<double>(each.size());  // their mean
+            for (const ScenarioQuantity& one : each) add(one.quantity, one.suffix);
         }
     }
 

@@ -9,9 +9,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
 
 #include "fettle/core/base/stop.hpp"
 #include "fettle/core/files/json_keys.hpp"
+#include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/model/build_model.hpp"
 #include "fettle/core/model/check_scene.hpp"
@@ -62,19 +64,34 @@ Errors strict_faults(const std::string& scene_path, const InputOptions& options)
     return check.errors.empty() ? as_errors(check.warnings, scene_path) : check.errors;
 }
 
-Result<LoadedModel> load_design(const std::string& path, const InputOptions& options) {
+/// The scenario's number.
+Result<int> scenario_of(const description::Design& design, const std::string& name, const std::string& path) {
+    if (name.empty()) return 0;
+    std::vector<std::string_view> names;
+    for (const description::Scenario& scenario : design.scenarios) names.emplace_back(scenario.name);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<int>(found - names.begin());
+    return Error{ErrorCode::unknown_key, path,
+                 names.empty() ? "the design has no `scenarios`, so none is called \"" + name + "\""
+                               : "no scenario is called \"" + name + "\"; " + core::files::did_you_mean(name, names)};
+}
+
+Result<LoadedModel> load_design(const std::string& path, InputOptions options) {
+    const std::string wanted = std::exchange(options.scenario, {});
     Result<DesignFile> file = open_design(path, options);
     if (!file) return file.errors();
+    const Result<int> scenario = scenario_of(file->design, wanted, path);
+    if (!scenario) return scenario.errors();
     LoadedModel loaded;
     loaded.kind = FileKind::design;
     loaded.scene_path = file->scene_path;
-    loaded.steps = file->design.steps;
     loaded.warnings = file->warnings;
     const VectorX values = description::values_of(file->design.parameters);
     Result<problem::DesignProblem> problem = problem::DesignProblem::create(std::move(file->design));
     if (!problem) return problem.errors();
-    Result<core::model::Model> model = problem->model_at(values);
+    Result<core::model::Model> model = problem->model_at(values, *scenario);
     if (!model) return model.errors();
+    loaded.steps = problem->steps(*scenario);
     loaded.model = std::move(model).value();
     loaded.problem = std::make_shared<const problem::DesignProblem>(std::move(problem).value());
     loaded.model.warnings = loaded.problem->warnings();  // a design's own models take its meshes as sound
@@ -82,6 +99,7 @@ Result<LoadedModel> load_design(const std::string& path, const InputOptions& opt
 }
 
 Result<LoadedModel> load_scene(const std::string& path, const InputOptions& options) {
+    if (!options.scenario.empty()) return Error{ErrorCode::unsupported, "--scenario", path + " is a scene; designs have scenarios"};
     core::scene::ReadOptions read_options = scene_read_options(options.mesh_dirs, options.programs);
     read_options.strict_meshes = options.strict;
     read_options.should_stop = options.should_stop;
@@ -144,6 +162,9 @@ Result<LoadedModel> load_model(const std::string& path, FileKind kind, const Inp
 
 Result<DesignFile> open_design(const std::string& path, const InputOptions& options) {
     if (is_foreign(path)) return foreign_error(path);
+    if (!options.scenario.empty())
+        return Error{ErrorCode::unsupported, "--scenario",
+                     "this is about all scenarios of a design; simulate, clearance, draw and export take one of them"};
     Result<DesignFile> file = read_design(path, {options.mesh_dirs, options.programs});
     if (!file) {
         Errors errors = not_wanted(path, file_kind(path), "design");

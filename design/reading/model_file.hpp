@@ -31,6 +31,7 @@ struct InputOptions {
     bool strict = false;                    ///< faults of meshes that are warnings else are errors
     bool check_start = true;                ///< false: a scene whose bodies intersect at the start is taken all the same
     std::function<bool()> should_stop;      ///< optional, asked often
+    std::string scenario;                   ///< of a design: which is taken; empty: the first
 };
 
 /// A scene or a design, opened once: a model to simulate, and for how many steps (negative: the model's own end time).
@@ -43,13 +44,13 @@ struct LoadedModel {
     std::shared_ptr<const problem::DesignProblem> problem;  ///< of a design; else null
 };
 
-/// From a scene, or from a design at its parameters' values. Errors: what is neither (a mesh, a table, another program's file) is named
-/// with what is read instead; with `strict` its warnings too. @param kind  of the file
+/// From a scene, or from a design at its parameters' values, in one of its scenarios. Errors: what is neither (a mesh, a table, another
+/// program's file) is named with what is read instead; with `strict` its warnings too. @param kind  of the file
 Result<LoadedModel> load_model(const std::string& path, FileKind kind, const InputOptions& options);
 Result<LoadedModel> load_model(const std::string& path, const InputOptions& options);
 
-/// A design, for what takes nothing else. Errors: a file that is something else by its name and first character is named with what is read
-/// instead; with `strict` also faults of its meshes, and what is doubted of its scene.
+/// A design, for what takes nothing else, and all of its scenarios. Errors: one is asked for; a file that is something else by its name and
+/// first character is named with what is read instead; with `strict` also faults of its meshes, and what is doubted of its scene.
 Result<DesignFile> open_design(const std::string& path, const InputOptions& options);
 
 /// What `strict` makes of warnings.

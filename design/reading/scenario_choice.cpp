@@ -12,7 +12,7 @@ namespace {
 
 using core::files::JsonNode;
 
-constexpr std::string_view several[] = {"all", "mean"};
+constexpr std::string_view several[] = {"all", "mean", worst_scenario};
 
 std::optional<std::string> chosen(const JsonNode& entry, const ScenarioNames& scenarios, bool one) {
     const JsonNode node = entry["scenario"];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Which of a design's scenarios a term, constraint or named quantity of its file is about: `"scenario": "upside down"`, "all", "mean".
+/// Which of a design's scenarios a term, constraint or named quantity of its file is about: `"scenario": "upside down"`, "all",
+/// "mean", "worst".
 #pragma once
 
 #include <memory>
@@ -18,6 +19,9 @@ struct ScenarioNames {
     bool parts_differ = false;  ///< one sets something of the parts, or where they are at the start
 };
 
+/// The one that is worst, wherever that is.
+inline constexpr std::string_view worst_scenario = "worst";
+
 /// Words for several scenarios, which none can be called.
 bool is_scenario_word(std::string_view name);
 
@@ -27,8 +31,8 @@ struct ScenarioQuantity {
     std::string suffix;
 };
 
-/// One for each scenario that the entry's `scenario` chooses; if it says nothing, or "all" or "mean", for all: but one alone of a quantity
-/// that is the same in all, and of an expression whose quantities have their scenarios already. Faults: no such scenario.
+/// One for each scenario that the entry's `scenario` chooses; if it says nothing, or a word for several, for all: but one alone of a
+/// quantity that is the same in all, and of an expression whose quantities have their scenarios already. Faults: no such scenario.
 std::vector<ScenarioQuantity> in_scenarios(const core::files::JsonNode& entry, const std::shared_ptr<const description::Quantity>& quantity,
                                            const ScenarioNames& scenarios);
 

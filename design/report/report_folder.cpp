@@ -201,6 +201,10 @@ private:
             made = std::move(problem).value();
         }
         const problem::DesignProblem& problem = known != nullptr ? *known : *made;
+        if (const auto& scenarios = problem.design().scenarios; scenarios.size() > 1)
+            source_.notices.push_back("The motion shown is that of the scenario \"" + scenarios.front().name + "\", the first of " +
+                                      std::to_string(scenarios.size()) + "; fettle simulate --scenario \"" + scenarios[1].name +
+                                      "\" --out FOLDER shows another.");
         if (Errors errors = take_tables(problem, values); !errors.empty()) return errors;
         return take_before(problem, file.scene_path);
     }
@@ -224,7 +228,7 @@ private:
         if (!source_.tables.steps.empty() || options_.should_stop()) return {};
         const Result<Model> model = problem.model_at(values);
         if (!model) return model.errors();
-        const Simulation simulation = simulated(*model, problem.design().steps, true, options_.should_stop);
+        const Simulation simulation = simulated(*model, problem.steps(), true, options_.should_stop);
         if (!same_poses(simulation.trajectory, source_.motion->trajectory)) {
             if (!options_.should_stop())
                 source_.notices.emplace_back(
@@ -252,7 +256,7 @@ private:
                 return {};
             }
         }
-        Simulation simulation = simulated(*model, problem.design().steps, false, options_.should_stop);
+        Simulation simulation = simulated(*model, problem.steps(), false, options_.should_stop);
         if (options_.should_stop()) return {};
         if (simulation.report.status != core::stepper::SimulationStatus::ok)
             source_.notices.push_back("The design before could not be simulated to the end: " + simulation.report.message);

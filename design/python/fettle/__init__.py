@@ -118,6 +118,7 @@ from .design import (
     Scenario as Scenario,
     Shape as Shape,
     Stroke as Stroke,
+    Worst as Worst,
     add_part as add_part,
 )
 from .errors import Error as Error, EvaluationError as EvaluationError, Fault as Fault

@@ -291,6 +291,14 @@ class InScenario(Record, Measured):
     scenario: int = 0
 
 
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class Worst(Record, Measured):
+    """The greatest (greatest=False: the least) of several quantities, such as one in all scenarios."""
+
+    parts: List[Any] = dataclasses.field(default_factory=list)
+    greatest: bool = True
+
+
 AnyQuantity = Union[
     Quantity,
     Clearance,
@@ -303,6 +311,7 @@ AnyQuantity = Union[
     Energy,
     Expression,
     InScenario,
+    Worst,
     "_fettle.OpaqueQuantity",
 ]
 Term = Union[Measured, Operand]  # of an expression
@@ -546,6 +555,8 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault], parameters
     if kind is Expression:
         parts = {name: _numbered(part, names, faults, parameters) for name, part in record.parts.items()}
         return Expression(_formula_of(record, parameters), parts)
+    if kind is Worst:
+        return Worst([_numbered(part, names, faults, parameters) for part in record.parts], record.greatest)
     if kind is InScenario:
         return InScenario(_numbered(record.quantity, names, faults, parameters), record.scenario)
     if kind is Mass:

@@ -6,6 +6,7 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/studies/optimise_design.hpp"
 #include "fettle/tests/design/small_design.hpp"
 
 namespace fettle::design::problem::scenarios_test {
@@ -149,9 +150,61 @@ TEST_CASE("scenarios: an expression of quantities of several, and of parameters,
     }
 }
 
+TEST_CASE("scenarios: the worst of them, whose optimum lies where two are equally bad") {
+    // Two stones fall sideways in opposite winds; their start is moved so that the farther one does not get far.
+    const fettle::tests::support::TemporaryFolder folder;
+    folder.write("stone.scene.json", R"({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.1,
+        "bodies": [{"name": "stone", "density": 1000, "shape": {"part": "box"}, "linear_velocity": ["= v", 0, 0]}], "variables": {"v": "1mm/s"}})");
+    const auto written = [&](const std::string& weight) {
+        return R"({"fettle_design": 1, "scene": "stone.scene.json", "units": "mm",
+            "parameters": [{"name": "v", "unit": "mm/s", "value": 90, "lower": -200, "upper": 300}],
+            "scenarios": [{"name": "west", "set": {"/gravity": [2, 0, 0]}}, {"name": "east", "set": {"/gravity": [-1, 0, 0]}}],
+            "objective": [{"type": "marker_path", "name": "off", "body": "stone", "point": [0, 0, 0], "points": [[5, 0, 0]], "times": [0.1],
+                           "scenario": "worst", "weight": )" +
+               weight + R"(}], "optimiser": {"tolerance": 1e-6}})";
+    };
+    auto file = reading::parse_design(written("1"), folder.file("stone.design.json"));
+    for (const Error& error : file.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
+    REQUIRE(file);
+    REQUIRE(file->design.objective.size() == 1);
+    CHECK(file->design.objective[0].name == "off [worst]");
+    const auto problem = DesignProblem::create(file->design);
+    REQUIRE(problem);
+    // Where the stone ends is linear in v; off^2 of the two are equal where the two ends lie about the target.
+    const VectorX p = VectorX::Constant(1, 0.09);
+    const DesignEvaluation at = problem->evaluate(p);
+    REQUIRE(at.usable);
+    const double west = at.terms[0].parts[0].value, east = at.terms[0].parts[1].value;
+    CHECK(at.objective * 1e-6 == Approx(std::max(west, east)));
+    REQUIRE(at.objective_branches.of.size() == 2);
+    CHECK(at.objective_branches.values[0] == Approx(at.objective));
+    for (int k = 0; k < 2; ++k) {
+        const double h = 1e-6;
+        const auto value = [&](double v) {
+            const DesignEvaluation there = problem->evaluate(VectorX::Constant(1, v), {false, {}, {}});
+            const bool is_west = (k == 0) == (west > east);
+            return there.terms[0].parts[is_west ? 0 : 1].value * 1e6;
+        };
+        CHECK(at.objective_branches.jacobian(k, 0) == Approx((value(0.09 + h) - value(0.09 - h)) / (2 * h)).epsilon(1e-5));
+    }
+    const auto outcome = studies::optimise_design(*problem, {});
+    REQUIRE(outcome);
+    CHECK(outcome->report.status == optimisers::OptimiserStatus::optimal);
+    const description::Measurement& best = outcome->final.terms[0];
+    CHECK(best.parts[0].value == Approx(best.parts[1].value).epsilon(1e-3));
+    CHECK(outcome->report.evaluations < 20);
+
+    // What is to be large: the least of them.
+    auto largest = reading::parse_design(written("-1"), folder.file("stone.design.json"));
+    REQUIRE(largest);
+    const DesignEvaluation least = DesignProblem::create(largest->design)->evaluate(p);
+    CHECK(least.terms[0].value == std::min(west, east));
+}
+
 TEST_CASE("scenarios: what no scenario changes is measured once") {
     json design = plain();
-    design["scenarios"] = json::parse(R"([{"name": "a"}, {"name": "b", "set": {"/gravity": [0, 1, -9.81]}}])");
+    design["scenarios"] =
+        json::parse(R"([{"name": "a"}, {"name": "b", "set": {"/gravity": [0, 1, -9.81], "/bodies/table/prescribed/ry/rate": 20}}])");
     const DesignProblem problem = problem_of(design);
     int masses = 0;
     for (const auto& term : problem.design().objective) masses += term.name.starts_with("mass") ? 1 : 0;

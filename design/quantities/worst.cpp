@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/quantities/worst.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "fettle/core/base/contract.hpp"
+
+namespace fettle::design::quantities {
+
+using description::Measurement;
+using description::Seeds;
+using description::Simulated;
+
+Worst::Worst(std::vector<std::shared_ptr<const Quantity>> parts, bool greatest) : parts_(std::move(parts)), greatest_(greatest) {
+    FETTLE_ASSERT(!parts_.empty(), "the worst of nothing");
+}
+
+Measurement Worst::value(const Simulated& simulated) const {
+    Measurement out;
+    for (const auto& part : parts_) out.parts.push_back(part->value(simulated));
+    const auto extreme = [&](double Measurement::*side) {
+        double found = out.parts.front().*side;
+        for (const Measurement& part : out.parts) found = greatest_ ? std::max(found, part.*side) : std::min(found, part.*side);
+        return found;
+    };
+    out.value = extreme(&Measurement::value);
+    out.lower = extreme(&Measurement::lower);
+    out.upper = extreme(&Measurement::upper);
+    for (const Measurement& part : out.parts)
+        if (out.fault.empty()) out.fault = part.fault;
+    return out;
+}
+
+int Worst::worst(const Measurement& measured) const {
+    int found = 0;
+    while (measured.parts[found].value != measured.value && found + 1 < count_of(parts_)) ++found;
+    return found;
+}
+
+void Worst::add_seeds(const Simulated& simulated, const Measurement& measured, double scale, Seeds& seeds) const {
+    const int found = worst(measured);
+    if (parts_[found]->is_about(simulated.scenario)) parts_[found]->add_seeds(simulated, measured.parts[found], scale, seeds);
+}
+
+std::vector<description::Branch> Worst::branches(const Simulated& simulated, const Measurement& measured, double limit) const {
+    const double reach = limit - measured.value;
+    std::vector<description::Branch> out;
+    for (int i = 0; i < count_of(parts_); ++i) {
+        const double value = measured.parts[i].value, behind = greatest_ ? measured.value - value : value - measured.value;
+        if (!parts_[i]->is_about(simulated.scenario) || behind > reach) continue;
+        out.push_back({value, [&part = *parts_[i], &simulated, &measured, i](double scale, Seeds& seeds) {
+                           part.add_seeds(simulated, measured.parts[i], scale, seeds);
+                       }});
+    }
+    return out;
+}
+
+bool Worst::is_at_rest() const {
+    return std::all_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->is_at_rest(); });
+}
+
+bool Worst::is_about(int scenario) const {
+    return std::any_of(parts_.begin(), parts_.end(), [&](const auto& part) { return part->is_about(scenario); });
+}
+
+std::vector<std::string> Worst::parameters() const {
+    std::vector<std::string> out;
+    for (const auto& part : parts_) {
+        const std::vector<std::string> own = part->parameters();
+        out.insert(out.end(), own.begin(), own.end());
+    }
+    return out;
+}
+
+Errors Worst::check(const core::model::Model& model, int steps) const { return parts_.front()->check(model, steps); }
+
+}  // namespace fettle::design::quantities
