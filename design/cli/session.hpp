@@ -34,6 +34,7 @@ struct Command {
     std::function<Errors()> refused = {};
 };
 
+Command add_check_resolution(CommandLine& program, const CommonOptions& common);
 Command add_clearance(CommandLine& program, const CommonOptions& common);
 Command add_completion(CommandLine& program);
 Command add_draw(CommandLine& program, const CommonOptions& common);

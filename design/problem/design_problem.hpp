@@ -85,8 +85,8 @@ public:
     int parameter_count() const { return count_of(design_.parameters); }
     int scenario_count() const { return count_of(settings_); }                      ///< at least 1
     int steps(int scenario = 0) const { return settings_[scenario].design.steps; }  ///< of its simulation
-    /// That all designs are simulated with [N/m], in the first scenario.
-    double kappa() const { return settings_.front().kappa; }
+    /// That all designs are simulated with [N/m], in that scenario.
+    double kappa(int scenario = 0) const { return settings_[scenario].kappa; }
     /// What is odd about the scene as written: its meshes, its start.
     const std::vector<std::string>& warnings() const { return warnings_; }
 

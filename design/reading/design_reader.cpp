@@ -79,6 +79,8 @@ public:
             root["output"].fail(ErrorCode::out_of_range, "the folder's name " + fault);
         if (!file_.output.empty()) file_.output = (fs::path(file_.path).parent_path() / file_.output).string();
         if (!document_.errors().empty() || !scene_errors_.empty()) return all_errors();
+        refine(design_.scene, design_.steps);
+        for (description::Scenario& scenario : design_.scenarios) refine(scenario.scene, scenario.steps);
         file_.warnings = document_.warnings();
         file_.warnings.insert(file_.warnings.end(), design_.scene.warnings.begin(), design_.scene.warnings.end());
         file_.warnings.insert(file_.warnings.end(), remarks_.begin(), remarks_.end());
@@ -130,7 +132,7 @@ private:
     // With the parameters for its variables, and with what the design, or one of its scenarios, sets. Names of bodies mean nothing without
     // the scene: its faults end the reading, together with those found so far.
     std::optional<Setting> read_setting(JsonDocument& document, const std::vector<JsonNode>& sets, const DesignFormulas& formulas) {
-        core::scene::ReadOptions options = scene_read_options(options_.mesh_dirs, options_.programs, parts_);
+        core::scene::ReadOptions options = scene_read_options(options_.mesh_dirs, options_.programs, parts_, options_.resolution.facets);
         options.inputs = formulas.inputs_of_scene();
         for (const JsonNode& set : sets)
             for (const auto& [pointer, value] : set.members()) options.replacements.push_back({pointer, value});
@@ -193,6 +195,11 @@ private:
         const std::size_t key = std::min(pointer.find('/', bodies.size()), pointer.size());
         return begins_with_one_of(std::string_view(pointer).substr(key), {"/prescribed", "/fixed", "/linear_velocity", "/angular_velocity",
                                                                           "/force", "/torque", "/damping", "/mu"});
+    }
+
+    void refine(core::scene::Scene& scene, int& steps) const {
+        scene.timestep /= options_.resolution.steps;
+        steps *= options_.resolution.steps;
     }
 
     void check_same_things(const core::scene::Scene& scene, const JsonNode& entry) const {

@@ -22,9 +22,16 @@ struct DesignFile {
     std::vector<std::string> warnings;
 };
 
+/// How many times as fine as the files say. Contract: both at least 1.
+struct Resolution {
+    int facets = 1;  ///< along what is round, of parts that are files
+    int steps = 1;   ///< in time
+};
+
 struct DesignReadOptions {
     std::vector<std::string> mesh_dirs = {};  ///< also looked in for meshes
     Programs programs = Programs::refused;    ///< scene_shapes.hpp
+    Resolution resolution = {};
 };
 
 /// Reads a design and its scene. @return the design, or every fault of both files, each with its file and JSON pointer; bodies, dimensions

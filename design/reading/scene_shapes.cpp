@@ -32,8 +32,8 @@ Result<std::map<std::string, core::base::Dimension>> dimensions_of_part(const co
     return out;
 }
 
-MadeShape shape_of_spec(const core::scene::ShapeSpec& spec, Programs programs) {
-    if (!spec.program) return as_shape(shapes::FilePart::create(spec.part, spec.dimensions, {spec.counts, spec.chord}));
+MadeShape shape_of_spec(const core::scene::ShapeSpec& spec, Programs programs, int finer_facets) {
+    if (!spec.program) return as_shape(shapes::FilePart::create(spec.part, spec.dimensions, {spec.counts, spec.chord, finer_facets}));
     if (programs == Programs::refused) {
         const std::string name = spec.program->command.empty() ? "" : spec.program->command.front();
         return Error{ErrorCode::unsupported, "program",
@@ -47,14 +47,14 @@ MadeShape shape_of_spec(const core::scene::ShapeSpec& spec, Programs programs) {
 }  // namespace
 
 core::scene::ReadOptions scene_read_options(const std::vector<std::string>& mesh_dirs, Programs programs,
-                                            const std::shared_ptr<std::vector<MadePart>>& made) {
+                                            const std::shared_ptr<std::vector<MadePart>>& made, int finer_facets) {
     core::scene::ReadOptions options;
     options.mesh_dirs = mesh_dirs;
     options.part_dimensions = dimensions_of_part;
-    options.shape_maker = [programs, made](const core::scene::ShapeSpec& spec) -> Result<core::geometry::Mesh> {
+    options.shape_maker = [programs, made, finer_facets](const core::scene::ShapeSpec& spec) -> Result<core::geometry::Mesh> {
         for (const MadePart& part : *made)
             if (part.spec == spec) return part.mesh;
-        const auto shape = shape_of_spec(spec, programs);
+        const auto shape = shape_of_spec(spec, programs, finer_facets);
         if (!shape) return shape.errors();
         Result<core::geometry::Mesh> mesh = description::drawn_mesh(**shape);
         if (mesh) made->push_back({spec, *shape, *mesh});

@@ -25,8 +25,10 @@ struct MadePart {
 
 /// What read_scene needs to make the parts of this program, and where it looks for meshes. Each part is made once, however many bodies are
 /// like it. For one thread at a time.
-/// @param made  Gets the parts.
+/// @param made          Gets the parts.
+/// @param finer_facets  So many times as many facets along what is round, of parts that are files.
 core::scene::ReadOptions scene_read_options(const std::vector<std::string>& mesh_dirs = {}, Programs programs = Programs::refused,
-                                            const std::shared_ptr<std::vector<MadePart>>& made = std::make_shared<std::vector<MadePart>>());
+                                            const std::shared_ptr<std::vector<MadePart>>& made = std::make_shared<std::vector<MadePart>>(),
+                                            int finer_facets = 1);
 
 }  // namespace fettle::design::reading

@@ -53,6 +53,8 @@ Facets facets_of(const PartFile& file, const PartOptions& options) {
         facets.chord = 0;
     }
     if (options.chord > 0) facets.chord = options.chord;
+    facets.segments *= options.finer;
+    facets.chord /= options.finer * options.finer;  // an arc's sagitta goes with the square of its angle
     return facets;
 }
 

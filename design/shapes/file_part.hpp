@@ -18,6 +18,7 @@ namespace fettle::design::shapes {
 struct PartOptions {
     core::part_files::Counts counts = {};  ///< the part's own, and `segments`, of a full circle: from 8 to 720
     double chord = 0;                      ///< how far facets may be from what is round [m]; 0: as `segments` says, or the file
+    int finer = 1;                         ///< so many times as many facets along what is round
 };
 
 class FilePart : public description::Shape {
