@@ -11,6 +11,7 @@
 #include "fettle/design/cli/optimise_answer.hpp"
 #include "fettle/design/cli/optimise_starts.hpp"
 #include "fettle/design/cli/report_made.hpp"
+#include "fettle/design/problem/overlooked_peaks.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/optimise_file.hpp"
 #include "fettle/design/studies/random_start.hpp"
@@ -58,21 +59,46 @@ struct Run {
     answers::RunFacts facts;
 };
 
-// One run, told. @param rows  the runs from all starts, of which this one is the best, replayed; empty: there is no other.
-int run_one(const Run& run, const std::vector<StartResult>& rows) {
+void found_interrupted(const Run& run) {
+    run.console.found(
+        {"all starts have been run", CheckOutcome::undecided, "interrupted", "not all starts have been run", run.options.path});
+}
+
+// How the runs from many starts have ended.
+enum class Starts { none, all, interrupted };
+
+// What there is when not all starts have been run. @param best  Its number in `rows`.
+void add_interruption(Json& json, const std::vector<StartResult>& rows, const std::optional<size_t>& best) {
+    json["status"] = "interrupted";
+    json["message"] = "stopped as asked before all starts had been run";
+    json["best_start"] = best ? Json(rows[*best].seed) : Json();
+}
+
+// One run, told. @param rows  the runs from `starts`, of which this one is the best, replayed; empty: there is no other.
+int run_one(const Run& run, const std::vector<StartResult>& rows, Starts starts) {
     Console& console = run.console;
+    const bool was_stopped = starts == Starts::interrupted;
+    std::vector<std::string> peaks;
+    const auto answer = [&](const OptimiseOutcome& outcome) {
+        Json json = answers::outcome_json(run.problem, outcome, run.facts);
+        peaks = problem::overlooked_peaks(run.problem.design(), outcome.final);
+        if (!peaks.empty()) json["warnings"] = peaks;
+        if (was_stopped) add_interruption(json, rows, best_start(rows));
+        if (!rows.empty()) json["starts"] = starts_json(rows);
+        return json;
+    };
     Json json;
     studies::RunFolder folder{run.facts.out, run.options.resume || !rows.empty()};
     folder.add_files = [&](const OptimiseOutcome& outcome, core::files::FilesTogether& files) {
-        json = answers::outcome_json(run.problem, outcome, run.facts);
-        if (!rows.empty()) json["starts"] = starts_json(rows);
+        json = answer(outcome);
         return answers::add_outcome(files, folder.directory, outcome.final, json, run.common.command);
     };
     studies::OptimiseOptions optimise;
     optimise.optimiser = run.options.optimiser;
     optimise.seed = run.facts.seed;
     optimise.repair = run.facts.repair;
-    optimise.should_stop = interrupted;
+    optimise.replay_only = was_stopped;
+    if (!was_stopped) optimise.should_stop = interrupted;
     if (rows.empty()) optimise.narrate = [&](const std::string& line) { console.narrate(line); };
     optimise.on_step = [&](const core::stepper::Progress& p) { console.progress("      simulating", p.step, p.steps); };
     const Result<studies::FileOutcome> done = studies::optimise_file(run.file, run.problem, folder, optimise);
@@ -80,36 +106,35 @@ int run_one(const Run& run, const std::vector<StartResult>& rows) {
     const OptimiseOutcome& outcome = done->outcome;
     if (!done->history_kept_as.empty()) console.narrate("the history of an earlier run is kept as " + done->history_kept_as);
     console.unwritten(done->unwritten);
-    if (json.is_null()) json = answers::outcome_json(run.problem, outcome, run.facts);
+    if (json.is_null()) json = answer(outcome);
+    tell_warnings(console, peaks, run.options.path);
     std::string told = outcome_text(run.problem.design(), outcome, console, run.facts);
     if (outcome.report.best.usable && done->unwritten.empty()) told += written_text(run.facts);
     if (!rows.empty()) {
-        json["starts"] = starts_json(rows);
-        told = "best of " + std::to_string(rows.size()) + " starts, seed " + std::to_string(run.facts.seed) + ":\n" + told +
-               "all starts:\n" + starts_text(rows);
+        const std::string of = was_stopped ? "the best so far, of seed " : "best of " + std::to_string(rows.size()) + " starts, seed ";
+        told = of + std::to_string(run.facts.seed) + ":\n" + told + "all starts:\n" + starts_text(rows);
     }
+    if (was_stopped) told = console.coloured("interrupted", false) + ": not all starts have been run\n" + told;
     if (!run.options.no_report && done->unwritten.empty())
         leave_report(folder.directory, run.common, console, json, told, report::at_hand(run.file, run.problem, outcome));
-    if (outcome.report.status == OptimiserStatus::interrupted)
+    if (was_stopped || outcome.report.status == OptimiserStatus::interrupted)
         told += "go on where it stopped: " + resume_command(run.options, folder.directory) + "\n";
     for (Check& check : outcome_checks(run.problem.design(), outcome, run.options.path)) console.found(std::move(check));
+    if (was_stopped) found_interrupted(run);
     console.result(json, told);
-    return exit_code(outcome.report.status);
+    return was_stopped ? exit_undecided : exit_code(outcome.report.status);
 }
 
-// What there is when not all starts have been run.
+// No start has a design to show.
 int tell_interrupted(const Run& run, const std::vector<StartResult>& rows) {
-    const std::optional<size_t> best = best_start(rows);
-    Json json{{"status", "interrupted"}, {"message", "stopped as asked before all starts had been run"}};
-    json["best_start"] = best ? Json(rows[*best].seed) : Json();
+    Json json;
+    add_interruption(json, rows, std::nullopt);
     json["starts"] = starts_json(rows);
     json["out"] = run.facts.out;
-    std::string told = run.console.coloured("interrupted", false) + ": not all starts have been run\n" + starts_text(rows);
-    told += best ? "the best so far is in " + rows[*best].out + "\n" : std::string("no start has ended with a design\n");
-    run.console.found(
-        {"no better design is near", CheckOutcome::undecided, "interrupted", "not all starts have been run", run.options.path});
-    told += "go on where it stopped: " + resume_command(run.options, run.facts.out) + "\n";
-    run.console.result(json, told);
+    found_interrupted(run);
+    run.console.result(json, run.console.coloured("interrupted", false) + ": not all starts have been run\n" + starts_text(rows) +
+                                 "no start has ended with a design\ngo on where it stopped: " + resume_command(run.options, run.facts.out) +
+                                 "\n");
     return exit_undecided;
 }
 
@@ -140,13 +165,14 @@ int run_all(Run run) {
     StartsRequest request{run.options.path, run.facts.out, run.options.optimiser, {}, run.options.resume, run.options.repair};
     request.seeds = studies::seeds_of_list(static_cast<std::uint64_t>(list), run.options.starts);
     const std::vector<StartResult> rows = run_starts(request, run.common, run.console);
-    if (interrupted()) return tell_interrupted(run, rows);
+    const bool was_stopped = interrupted();
+    if (was_stopped && !best_start(rows)) return tell_interrupted(run, rows);
     const size_t best = best_start(rows).value_or(0);
     if (!rows[best].result.is_object()) return tell_failed(run, rows, rows[best]);
     run.facts.seed = rows[best].seed;
     const Errors errors = adopt_history(run.facts.out, rows[best].out, run.console);
     if (!errors.empty()) return run.console.input_errors(errors);
-    return run_one(run, rows);
+    return run_one(run, rows, was_stopped ? Starts::interrupted : Starts::all);
 }
 
 int run_optimise(const OptimiseArguments& options, const CommonOptions& common, Console& console) {
@@ -163,7 +189,7 @@ int run_optimise(const OptimiseArguments& options, const CommonOptions& common, 
     if (options.starts > 0) return run_all(run);
     Run one = run;
     one.facts.seed = static_cast<std::uint64_t>(options.seed.value_or(0));
-    return run_one(one, {});
+    return run_one(one, {}, Starts::none);
 }
 
 }  // namespace

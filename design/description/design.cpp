@@ -40,6 +40,19 @@ core::scene::Scene described_scene(const Design& design) {
     return scene;
 }
 
+std::vector<bool> moved_dimensions(const core::scene::Scene& scene, const std::vector<core::scene::BoundNumber>& numbers, int body,
+                                   const Shape& shape) {
+    std::vector<std::string> pointers;
+    for (const core::scene::BoundNumber& number : numbers)
+        if (const auto place = core::scene::find_place(scene, number.place)) pointers.push_back(core::scene::pointer_to(scene, *place));
+    std::vector<bool> moved;
+    for (const ShapeDimension& dimension : shape.dimensions()) {
+        const std::string pointer = "/bodies/" + std::to_string(body) + "/shape/dimensions/" + core::scene::escaped(dimension.name);
+        moved.push_back(std::find(pointers.begin(), pointers.end(), pointer) != pointers.end());
+    }
+    return moved;
+}
+
 Errors set_number(Design& design, const std::string& place, const std::string& formula) {
     const core::scene::Scene scene = described_scene(design);
     const Result<core::scene::Place> found = core::scene::find_place(scene, place);

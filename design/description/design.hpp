@@ -84,6 +84,11 @@ void describe(const Shape& shape, core::scene::Body& body);
 /// The scene with its shapes described, and no others: what parameters can move has a place there.
 core::scene::Scene described_scene(const Design& design);
 
+/// For each dimension of a body's shape: is it one of the numbers that follow from the parameters?
+/// @param scene  With its shapes described; @param numbers  As Design::numbers; places that are not there are left out.
+std::vector<bool> moved_dimensions(const core::scene::Scene& scene, const std::vector<core::scene::BoundNumber>& numbers, int body,
+                                   const Shape& shape);
+
 /// Lets the number at a place of the scene (core/scene/place.hpp) follow from the parameters, in place of what it followed from.
 /// @param formula  Of the parameters (core/expression/parse_formula.hpp); numbers without a unit count in SI.
 /// @return what is wrong with it, or with the place; then nothing is changed.

@@ -20,7 +20,7 @@ struct ShapeDimension {
 /// A part at given dimensions.
 struct ShapeInstance {
     core::geometry::Mesh mesh;       ///< [m], in the body's file frame
-    std::vector<Matrix3X> jacobian;  ///< per dimension k: d vertices / d dimension k, 3 x n [1], exact
+    std::vector<Matrix3X> jacobian;  ///< per dimension k: d vertices / d dimension k, 3 x n [1], exact; 3 x 0 where it was not wanted
 };
 
 class Shape {
@@ -35,6 +35,10 @@ public:
     /// Errors: values that make no valid part; `where` names the dimension.
     virtual Result<ShapeInstance> at(const std::vector<double>& values) const = 0;
 
+    /// at(), with the derivatives in some dimensions only, where each costs something: those in the others may be left out (3 x 0).
+    /// @param wanted  One for each of dimensions(), in their order. Errors: those of at(), of dimensions that are wanted.
+    virtual Result<ShapeInstance> differentiated(const std::vector<double>& values, const std::vector<bool>& wanted) const;
+
     /// The mesh alone, where its derivative costs something.
     virtual Result<core::geometry::Mesh> mesh(const std::vector<double>& values) const;
 
@@ -44,8 +48,9 @@ public:
     /// Does it take seconds to make a mesh, as where a program makes it? Then fewer are made where fewer will do.
     virtual bool is_costly() const { return false; }
 
-    /// What is to be said of the part at these dimensions: how its derivative was found, and how exact it is. A sentence each.
-    virtual std::vector<std::string> remarks(const std::vector<double>& values) const;
+    /// What is to be said of the part at these dimensions: how its derivatives were found, and how exact they are. A sentence each.
+    /// @param wanted  As of differentiated().
+    virtual std::vector<std::string> remarks(const std::vector<double>& values, const std::vector<bool>& wanted) const;
 
     /// Are the triangles that at() returns always a solid's: closed, outward oriented, without self-intersection? Where this is not said,
     /// the mesh of every trial is checked, and one that is no solid is a trial that cannot be built.
@@ -54,6 +59,8 @@ public:
 
 /// The values of the part as drawn.
 std::vector<double> drawn_values(const Shape& shape);
+/// For differentiated() and remarks(): all of them are wanted.
+std::vector<bool> all_dimensions(const Shape& shape);
 /// The part as drawn; its mesh alone.
 Result<ShapeInstance> as_drawn(const Shape& shape);
 Result<core::geometry::Mesh> drawn_mesh(const Shape& shape);

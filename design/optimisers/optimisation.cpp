@@ -322,7 +322,12 @@ private:
 }  // namespace
 
 OptimiserReport optimise(const Problem& problem, const Optimiser& optimiser, const OptimiserOptions& options) {
-    return StagedRun(problem, optimiser, options).run();
+    OptimiserReport report = StagedRun(problem, optimiser, options).run();
+    if (report.best.usable) {
+        report.objective = report.best.objective;
+        report.violation = report.best.violation;
+    }
+    return report;
 }
 
 }  // namespace fettle::design::optimisers

@@ -6,6 +6,7 @@
 /// optimality.hpp says.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,7 +41,9 @@ struct OptimiserReport {
     Evaluation start;     ///< of the problem itself, at its start
     VectorX point;        ///< the best design (the start if nothing could be evaluated)
     Evaluation best;
-    bool feasible = false;  ///< best.violation <= 0
+    double objective = std::numeric_limits<double>::quiet_NaN();  ///< of `best`; NaN: nothing could be evaluated
+    double violation = std::numeric_limits<double>::quiet_NaN();
+    bool feasible = false;  ///< violation <= 0
     Optimality optimality;
     int evaluations = 0, failures = 0, iterations = 0;
     bool budget_spent = false;  ///< max_evaluations ended the run

@@ -85,27 +85,32 @@ private:
 
     void check_scenario(const Design& own) {
         if (own.steps < 0) add(ErrorCode::out_of_range, "steps", "the number of time steps is not negative");
-        for (size_t i = 0; i < own.shapes.size(); ++i) check_shape(own, static_cast<int>(i));
         const core::scene::Scene scene = description::described_scene(own);
+        for (size_t i = 0; i < own.shapes.size(); ++i) check_shape(own, scene, static_cast<int>(i));
         std::set<core::scene::Place> places;
         for (const core::scene::BoundNumber& number : own.numbers) check_number(scene, number, places);
     }
 
-    void check_shape(const Design& own, int body) {
+    // @param scene  With its shapes described.
+    void check_shape(const Design& own, const core::scene::Scene& scene, int body) {
         const Shape* shape = description::shape_of(own, body);
         if (shape == nullptr) return;
         if (body >= count_of(own.scene.bodies)) return add(ErrorCode::out_of_range, "shapes", "there are more shapes than bodies");
         const core::scene::Body& of = own.scene.bodies[body];
         const std::string where = "shape of body `" + of.name + "`";
-        const Result<description::ShapeInstance> drawn = description::as_drawn(*shape);
+        const std::vector<bool> moved = description::moved_dimensions(scene, own.numbers, body, *shape);
+        const Result<description::ShapeInstance> drawn = shape->differentiated(description::drawn_values(*shape), moved);
         if (!drawn) {
             for (const Error& error : drawn.errors()) add(error.code, where + ": " + error.where, error.message);
             return;
         }
         const auto vertices = drawn->mesh.vertices.cols();
-        const bool fits =
-            std::all_of(drawn->jacobian.begin(), drawn->jacobian.end(), [&](const Matrix3X& j) { return j.cols() == vertices; });
-        if (!fits || drawn->jacobian.size() != shape->dimensions().size() || shape->dimensions().empty())
+        bool fits = !moved.empty() && drawn->jacobian.size() == moved.size();
+        for (size_t k = 0; fits && k < moved.size(); ++k) {
+            const Eigen::Index columns = drawn->jacobian[k].cols();
+            fits = columns == vertices || (!moved[k] && columns == 0);
+        }
+        if (!fits)
             add(ErrorCode::inconsistent, where,
                 "its Jacobian has a 3 x n matrix for each of its dimensions, n its vertices; it has one or more");
         if (!core::geometry::have_same_shape(drawn->mesh, of.mesh))

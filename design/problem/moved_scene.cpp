@@ -65,8 +65,8 @@ private:
             body.pose.rotation = core::kinematics::rotation(body.turn) * body.pose.rotation;
     }
 
-    Result<ShapeInstance> part_of(const Shape& shape, const std::vector<double>& values) const {
-        if (derivative_ == SceneDerivative::wanted) return shape.at(values);
+    Result<ShapeInstance> part_of(const Shape& shape, const std::vector<double>& values, const std::vector<bool>& is_moved) const {
+        if (derivative_ == SceneDerivative::wanted) return shape.differentiated(values, is_moved);
         Result<core::geometry::Mesh> mesh = shape.mesh(values);
         if (!mesh) return mesh.errors();
         return ShapeInstance{std::move(mesh).value(), {}};
@@ -85,7 +85,7 @@ private:
             is_moved.push_back(is_moved_.count(&value) > 0);
         }
         if (std::find(is_moved.begin(), is_moved.end(), true) == is_moved.end()) return;
-        Result<ShapeInstance> part = part_of(*shape, values);
+        Result<ShapeInstance> part = part_of(*shape, values, is_moved);
         if (!part) {
             for (Error error : part.errors()) {
                 error.where = "body " + body.name + ": " + error.where;

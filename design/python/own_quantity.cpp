@@ -8,19 +8,21 @@
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/model_arrays.hpp"
 #include "fettle/design/python/own_shape.hpp"
+#include "fettle/design/quantities/body_turn.hpp"
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/contact_force.hpp"
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/quantities/in_scenario.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
+#include "fettle/design/quantities/joint_position.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
 #include "fettle/design/quantities/mass.hpp"
 #include "fettle/design/quantities/stroke.hpp"
 #include "fettle/design/quantities/worst.hpp"
 
-FETTLE_WORDS(fettle::design::quantities::Over, "end", "sum", "mean", "largest", "least")
+FETTLE_WORDS(fettle::design::quantities::Over, "end", "sum", "mean", "largest", "least", "peak")
 FETTLE_WORDS(fettle::design::quantities::EnergyKind, "kinetic", "potential", "spring", "total")
 FETTLE_WORDS(fettle::design::quantities::JointLoadKind, "force", "torque", "effort")
 
@@ -313,6 +315,10 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
         const MarkerSpeed::Of of{body(), of_q.get<Vector3>("point"), of_q.get<Vector3>("axis")};
         return std::make_shared<MarkerSpeed>(of, over());
     }
+    if (is("JointPosition"))
+        return std::make_shared<JointPosition>(
+            JointPosition::Of{of_q.get<std::string>("joint"), of_q.get<Dimension>("coordinate_dimension")}, over());
+    if (is("BodyTurn")) return std::make_shared<BodyTurn>(body(), of_q.get<Vector3>("axis"), over());
     if (is("JointLoad")) {
         JointLoad::Of of{of_q.get<JointLoadKind>("kind"), of_q.get<std::string>("name"), of_q.get<Vector3>("axis"),
                          of_q.get<Dimension>("effort_dimension")};
@@ -395,6 +401,9 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
         return record_class("InScenario")(quantity_to_python(q->quantity()), q->scenario());
     if (const auto* q = dynamic_cast<const MarkerSpeed*>(quantity.get()))
         return record_class("MarkerSpeed")(q->of().body, q->of().point, q->over(), q->of().axis);
+    if (const auto* q = dynamic_cast<const JointPosition*>(quantity.get()))
+        return record_class("JointPosition")(q->of().joint, q->over(), q->of().dimension);
+    if (const auto* q = dynamic_cast<const BodyTurn*>(quantity.get())) return record_class("BodyTurn")(q->body(), q->axis(), q->over());
     if (const auto* q = dynamic_cast<const JointLoad*>(quantity.get()))
         return record_class("JointLoad")(q->of().kind, q->of().name, q->over(), q->of().axis, q->of().effort_dimension);
     if (const auto* q = dynamic_cast<const ContactForce*>(quantity.get()))

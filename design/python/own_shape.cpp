@@ -267,12 +267,22 @@ void bind_shapes(py::module_& module) {
         "(mesh, {dimension: d vertices / d dimension, (n, 3)}) of a shape at these dimensions, metres or \"3mm\"; those left out are as "
         "drawn.");
     module.def(
+        "shape_mesh",
+        [](const py::object& given) {
+            const auto shape = shape_from_python(given);
+            return mesh_to_python([&] {
+                const py::gil_scoped_release unlocked;
+                return value_or_raise(description::drawn_mesh(*shape));
+            }());
+        },
+        py::arg("shape"), "The mesh of a shape as drawn, without derivatives.");
+    module.def(
         "shape_remarks",
         [](const py::object& given, const py::dict& values) {
             const auto shape = shape_from_python(given);
             const std::vector<double> ordered = in_order(*shape, lengths_from(values));
             const py::gil_scoped_release unlocked;
-            return shape->remarks(ordered);
+            return shape->remarks(ordered, description::all_dimensions(*shape));
         },
         py::arg("shape"), py::arg("values") = py::dict(),
         "How a shape's derivative was found at these dimensions, and how exact it is; empty: it is exact.");

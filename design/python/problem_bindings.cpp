@@ -112,8 +112,10 @@ void bind_problem(py::module_& module) {
             "Raises Error where p has not a finite value for each parameter, or one far outside its bounds. What takes p asks this first.")
         .def(
             "model_at",
-            [](const DesignProblem& self, const py::object& p) {
-                return std::make_shared<Model>(value_or_raise(self.model_at(checked(self, p))));
+            [](const DesignProblem& self, const py::object& given) {
+                const VectorX p = checked(self, given);
+                const py::gil_scoped_release unlocked;
+                return std::make_shared<Model>(value_or_raise(self.model_at(p)));
             },
             py::arg("p"), "The model at p.")
         .def(

@@ -135,7 +135,12 @@ void bind_studies(py::module_& module) {
         "Optimises a *.design.json into a folder, as `fettle optimise` does: history, final design, trajectory, motion.glb, result.json "
         "and report.html; resume goes on with what is there.");
     module.def(
-        "start_of_seed", [](const DesignProblem& problem, std::int64_t seed) { return studies::start_of_seed(problem, seed_from(seed)); },
+        "start_of_seed",
+        [](const DesignProblem& problem, std::int64_t given) {
+            const std::uint64_t seed = seed_from(given);
+            const py::gil_scoped_release unlocked;
+            return studies::start_of_seed(problem, seed);
+        },
         py::arg("problem"), py::arg("seed"),
         "(n) SI: where a run of that seed begins: a sample that meets the relations and can be made and assembled, if one is found.");
     module.def(

@@ -17,9 +17,10 @@ FETTLE_RECORD(fettle::design::optimisers::Optimality, "Optimality", field("judge
               field("held", &Type::held), field("refused", &Type::refused), field("improvable", &Type::improvable),
               field("noise", &Type::noise), field("noise_in_objective", &Type::noise_in_objective), field("roughest", &Type::roughest))
 FETTLE_RECORD(fettle::design::optimisers::OptimiserReport, "OptimiserReport", field("status", &Type::status),
-              field("message", &Type::message), field("point", &Type::point), field("feasible", &Type::feasible),
-              field("optimality", &Type::optimality), field("evaluations", &Type::evaluations), field("failures", &Type::failures),
-              field("iterations", &Type::iterations), field("budget_spent", &Type::budget_spent), field("stages", &Type::stages))
+              field("message", &Type::message), field("point", &Type::point), field("objective", &Type::objective),
+              field("violation", &Type::violation), field("feasible", &Type::feasible), field("optimality", &Type::optimality),
+              field("evaluations", &Type::evaluations), field("failures", &Type::failures), field("iterations", &Type::iterations),
+              field("budget_spent", &Type::budget_spent), field("stages", &Type::stages))
 FETTLE_RECORD(fettle::design::studies::OptimiseOutcome, "OptimiseOutcome", field("report", &Type::report), field("start", &Type::start),
               field("objective_start", &Type::objective_start), field("final", &Type::final), field("clearance", &Type::clearance),
               field("limits", &Type::limits), field("unbuildable", &Type::unbuildable), field("replayed", &Type::replayed))

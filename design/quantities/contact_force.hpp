@@ -21,6 +21,7 @@ public:
     ContactForce(const Of& of, Over over) : StepSeries(over), of_(of) {}
 
     const Of& of() const { return of_; }
+    bool has_direction() const override { return !of_.axis.isZero(0); }
     Dimension dimension() const override { return of_.about ? Dimension::torque : Dimension::force; }
     /// A body that is not there, the same twice, two that never touch.
     Errors check(const core::model::Model& model, int steps) const override;

@@ -28,6 +28,7 @@ public:
     JointLoad(Of of, Over over) : StepSeries(over), of_(std::move(of)) {}
 
     const Of& of() const { return of_; }
+    bool has_direction() const override { return of_.kind == JointLoadKind::effort || !of_.axis.isZero(0); }
     Dimension dimension() const override;
     Errors check(const core::model::Model& model, int steps) const override;
 

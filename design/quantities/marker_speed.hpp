@@ -17,6 +17,7 @@ public:
     MarkerSpeed(const Of& of, Over over) : StepSeries(over), of_(of) {}
 
     const Of& of() const { return of_; }
+    bool has_direction() const override { return !of_.axis.isZero(0); }
     Dimension dimension() const override { return Dimension::speed; }
     /// A body that is not there; a quasi-static simulation.
     Errors check(const core::model::Model& model, int steps) const override;

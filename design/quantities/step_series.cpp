@@ -19,6 +19,22 @@ std::vector<double> negated(std::vector<double> y) {
     return y;
 }
 
+// The greatest of y, of -y, or of both.
+struct SignedExtreme {
+    Extreme extreme;
+    double sign = 1;
+
+    double value() const { return sign * extreme.value; }
+};
+
+SignedExtreme extreme_of(Over over, const std::vector<double>& y) {
+    const Extreme up = over == Over::least ? Extreme{} : smooth_maximum(y),
+                  down = over == Over::largest ? Extreme{} : smooth_maximum(negated(y));
+    return over == Over::largest || (over == Over::peak && up.value >= down.value) ? SignedExtreme{up, 1} : SignedExtreme{down, -1};
+}
+
+bool is_extreme(Over over) { return over == Over::largest || over == Over::least || over == Over::peak; }
+
 double number(Over over, const std::vector<double>& y) {
     FETTLE_ASSERT(!y.empty(), "a number of each step needs a step");
     const double sum = std::accumulate(y.begin(), y.end(), 0.0);
@@ -30,9 +46,10 @@ double number(Over over, const std::vector<double>& y) {
         case Over::mean:
             return sum / static_cast<double>(y.size());
         case Over::largest:
-            return smooth_maximum(y).value;
         case Over::least:
-            return -smooth_maximum(negated(y)).value;
+            return extreme_of(over, y).value();
+        case Over::peak:
+            return extreme_of(over, y).extreme.value;
     }
     return 0;
 }
@@ -40,10 +57,11 @@ double number(Over over, const std::vector<double>& y) {
 std::vector<double> weights_of(Over over, const std::vector<double>& y) {
     std::vector<double> out(y.size(), over == Over::sum ? 1.0 : over == Over::mean ? 1 / static_cast<double>(y.size()) : 0.0);
     if (over == Over::end) out.back() = 1;
-    if (over != Over::largest && over != Over::least) return out;
-    const Extreme extreme = smooth_maximum(over == Over::largest ? y : negated(y));
+    if (!is_extreme(over)) return out;
+    const auto [extreme, sign] = extreme_of(over, y);
     for (size_t k = 0; k < 3; ++k)
-        if (extreme.weights[k] != 0) out[static_cast<size_t>(extreme.first) + k] = extreme.weights[k];
+        if (extreme.weights[k] != 0)
+            out[static_cast<size_t>(extreme.first) + k] = over == Over::peak ? sign * extreme.weights[k] : extreme.weights[k];
     return out;
 }
 

@@ -83,7 +83,7 @@ public:
         for (description::Scenario& scenario : design_.scenarios) refine(scenario.scene, scenario.steps);
         file_.warnings = document_.warnings();
         file_.warnings.insert(file_.warnings.end(), design_.scene.warnings.begin(), design_.scene.warnings.end());
-        file_.warnings.insert(file_.warnings.end(), remarks_.begin(), remarks_.end());
+        add_remarks();
         return std::move(file_);
     }
 
@@ -122,6 +122,12 @@ private:
         return std::nullopt;
     }
 
+    /// What is to be said of parts whose derivative is not exact.
+    struct Remark {
+        std::string text;
+        std::vector<std::string> bodies;
+    };
+
     /// A scene and what of it a design can move.
     struct Setting {
         core::scene::Scene scene;
@@ -146,6 +152,7 @@ private:
         Setting out{std::move(scene).value(), {}, {}};
         take_shapes(out);
         take_numbers(out);
+        take_remarks(out);
         return out;
     }
 
@@ -275,11 +282,29 @@ private:
             const description::Shape& shape = *found->shape;
             setting.shapes.back() = found->shape;
             description::describe(shape, body);
-            for (const std::string& remark : shape.remarks(description::drawn_values(shape))) {
-                const std::string text = "body " + body.name + ": " + remark;
-                if (std::find(remarks_.begin(), remarks_.end(), text) == remarks_.end()) remarks_.push_back(text);
+        }
+    }
+
+    // Of the derivatives that the design takes.
+    void take_remarks(const Setting& setting) {
+        for (size_t i = 0; i < setting.shapes.size(); ++i) {
+            if (!setting.shapes[i]) continue;
+            const description::Shape& shape = *setting.shapes[i];
+            const std::vector<bool> moved = description::moved_dimensions(setting.scene, setting.numbers, static_cast<int>(i), shape);
+            for (const std::string& remark : shape.remarks(description::drawn_values(shape), moved)) {
+                auto known = std::find_if(remarks_.begin(), remarks_.end(), [&](const Remark& other) { return other.text == remark; });
+                if (known == remarks_.end()) known = remarks_.insert(remarks_.end(), {remark, {}});
+                const std::string& body = setting.scene.bodies[i].name;
+                if (std::find(known->bodies.begin(), known->bodies.end(), body) == known->bodies.end()) known->bodies.push_back(body);
             }
         }
+    }
+
+    // One for all bodies that are alike.
+    void add_remarks() {
+        for (const Remark& remark : remarks_)
+            file_.warnings.push_back((remark.bodies.size() == 1 ? "body " : "bodies ") + core::base::joined(remark.bodies) + ": " +
+                                     remark.text);
     }
 
     static int steps_of(const core::scene::Scene& scene) {
@@ -350,8 +375,8 @@ private:
     DesignFile file_;
     description::Design& design_ = file_.design;
     Errors scene_errors_;
-    std::shared_ptr<std::vector<MadePart>> parts_ = std::make_shared<std::vector<MadePart>>();  // of the scene
-    std::vector<std::string> remarks_;                                                          // of parts whose derivative is not exact
+    std::shared_ptr<std::vector<MadePart>> parts_ = options_.made ? options_.made : std::make_shared<std::vector<MadePart>>();
+    std::vector<Remark> remarks_;
 };
 
 }  // namespace

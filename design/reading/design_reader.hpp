@@ -2,6 +2,7 @@
 /// Reads design files (*.design.json), described by design.schema.json beside this file. Rewriting: design_text.hpp.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct DesignReadOptions {
     std::vector<std::string> mesh_dirs = {};  ///< also looked in for meshes
     Programs programs = Programs::refused;    ///< scene_shapes.hpp
     Resolution resolution = {};
+    /// Parts that need not be made again; gets those that are made. Null: there are none.
+    std::shared_ptr<std::vector<MadePart>> made = {};
 };
 
 /// Reads a design and its scene. @return the design, or every fault of both files, each with its file and JSON pointer; bodies, dimensions

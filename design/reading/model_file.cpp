@@ -55,8 +55,9 @@ Errors foreign_error(const std::string& path) {
 }
 
 /// Of a design the meshes are read as its scene says; asked to be strict, the scene is looked at once more.
-Errors strict_faults(const std::string& scene_path, const InputOptions& options) {
-    core::scene::ReadOptions read_options = scene_read_options(options.mesh_dirs, options.programs);
+/// @param made  Its parts.
+Errors strict_faults(const std::string& scene_path, const InputOptions& options, const std::shared_ptr<std::vector<MadePart>>& made) {
+    core::scene::ReadOptions read_options = scene_read_options(options.mesh_dirs, options.programs, made);
     read_options.strict_meshes = true;
     const Result<core::scene::Scene> scene = core::scene_files::read_scene(scene_path, read_options);
     if (!scene) return scene.errors();
@@ -165,13 +166,14 @@ Result<DesignFile> open_design(const std::string& path, const InputOptions& opti
     if (!options.scenario.empty())
         return Error{ErrorCode::unsupported, "--scenario",
                      "this is about all scenarios of a design; simulate, clearance, draw and export take one of them"};
-    Result<DesignFile> file = read_design(path, {options.mesh_dirs, options.programs});
+    const auto made = std::make_shared<std::vector<MadePart>>();
+    Result<DesignFile> file = read_design(path, {.mesh_dirs = options.mesh_dirs, .programs = options.programs, .made = made});
     if (!file) {
         Errors errors = not_wanted(path, file_kind(path), "design");
         return errors.empty() ? file.errors() : errors;
     }
     if (!options.strict) return file;
-    Errors errors = strict_faults(file->scene_path, options);
+    Errors errors = strict_faults(file->scene_path, options, made);
     if (!errors.empty()) return errors;
     return file;
 }

@@ -5,11 +5,13 @@
 
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
+#include "fettle/design/quantities/body_turn.hpp"
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/contact_force.hpp"
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
+#include "fettle/design/quantities/joint_position.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
 #include "fettle/design/quantities/mass.hpp"
@@ -123,7 +125,7 @@ std::shared_ptr<const Quantity> read_mass(const JsonNode& node, const ReadContex
 }
 
 quantities::Over read_over(const JsonNode& node) {
-    static const std::vector<std::string_view> names{"end", "sum", "mean", "largest", "least"};
+    static const std::vector<std::string_view> names{"end", "sum", "mean", "largest", "least", "peak"};
     const std::string name = node.choice(names).value_or("end");
     return static_cast<quantities::Over>(std::find(names.begin(), names.end(), name) - names.begin());
 }
@@ -168,17 +170,35 @@ std::shared_ptr<const Quantity> read_joint_torque(const JsonNode& node, const Re
     return read_joint_load(node, context, quantities::JointLoadKind::torque);
 }
 
+bool turns(const core::scene::Joint& joint) {
+    return joint.kind == core::scene::JointKind::revolute || joint.kind == core::scene::JointKind::screw;
+}
+
+std::shared_ptr<const Quantity> read_joint_position(const JsonNode& node, const ReadContext& context) {
+    const core::scene::Joint* joint = read_part(node.require("joint"), context.scene.mechanism.joints, "joint");
+    const quantities::Over over = read_over(node["over"]);
+    if (joint == nullptr) return nullptr;
+    const Dimension dimension = turns(*joint) ? Dimension::angle : Dimension::length;
+    return std::make_shared<quantities::JointPosition>(quantities::JointPosition::Of{joint->name, dimension}, over);
+}
+
+std::shared_ptr<const Quantity> read_turn(const JsonNode& node, const ReadContext& context) {
+    const auto body = context.body(node.require("body"));
+    const auto axis = context.axis(node.require("axis"));
+    const quantities::Over over = read_over(node["over"]);
+    if (!body || !axis) return nullptr;
+    return std::make_shared<quantities::BodyTurn>(*body, *axis, over);
+}
+
 std::shared_ptr<const Quantity> read_motor_effort(const JsonNode& node, const ReadContext& context) {
     const core::scene::Mechanism& mechanism = context.scene.mechanism;
     const core::scene::Motor* motor = read_part(node.require("motor"), mechanism.motors, "motor");
     const quantities::Over over = read_over(node["over"]);
     if (motor == nullptr) return nullptr;
-    bool turns = false;
-    for (const core::scene::Joint& joint : mechanism.joints)
-        if (joint.name == motor->joint)
-            turns = joint.kind == core::scene::JointKind::revolute || joint.kind == core::scene::JointKind::screw;
     quantities::JointLoad::Of of{quantities::JointLoadKind::effort, motor->name};
-    of.effort_dimension = turns ? Dimension::torque : Dimension::force;
+    of.effort_dimension = Dimension::force;
+    for (const core::scene::Joint& joint : mechanism.joints)
+        if (joint.name == motor->joint && turns(joint)) of.effort_dimension = Dimension::torque;
     return std::make_shared<quantities::JointLoad>(of, over);
 }
 
@@ -250,6 +270,8 @@ std::string mass_name(const JsonNode& node) {
 
 std::string joint_force_name(const JsonNode& node) { return "joint_force " + text(node["joint"]); }
 std::string joint_torque_name(const JsonNode& node) { return "joint_torque " + text(node["joint"]); }
+std::string joint_position_name(const JsonNode& node) { return "joint_position " + text(node["joint"]); }
+std::string turn_name(const JsonNode& node) { return "turn " + text(node["body"]); }
 std::string motor_effort_name(const JsonNode& node) { return "motor_effort " + text(node["motor"]); }
 std::string contact_of(const JsonNode& node) { return text(node["body"]) + (node["of"].is_string() ? ":" + text(node["of"]) : ""); }
 std::string contact_force_name(const JsonNode& node) { return "contact_force " + contact_of(node); }
@@ -299,6 +321,18 @@ const std::vector<QuantityType>& quantity_table() {
          joint_torque_name,
          "N m",
          "torque that a joint carries about its point: along an `axis`, else its magnitude"},
+        {"joint_position",
+         {"joint", "over"},
+         read_joint_position,
+         joint_position_name,
+         "rad or m",
+         "angle of a joint that turns, travel of one that slides, at the steps' ends; angles count turns"},
+        {"turn",
+         {"body", "axis", "over"},
+         read_turn,
+         turn_name,
+         "rad",
+         "how far a body has turned about an axis since the start, at the steps' ends: of a part that a real pin holds"},
         {"motor_effort",
          {"motor", "over"},
          read_motor_effort,

@@ -28,122 +28,125 @@ double largest_column(const Matrix3X& m) { return m.cols() > 0 ? m.colwise().nor
 
 }  // namespace
 
-/// The meshes that a derivative is taken from: at the dimensions, and by each dimension at + h, - h, + h/2, - h/2.
+/// The meshes that the derivative in a dimension is taken from: with its value + h, - h, + h/2, - h/2.
 struct RebuiltShape::Stencil {
-    std::shared_ptr<const Result<Mesh>> middle;
-    double rounding = 0;
-    std::vector<double> steps;
-    std::vector<std::array<double, 4>> at;  // the dimension's values
-    std::vector<std::array<std::shared_ptr<const Result<Mesh>>, 4>> beside;
+    double rounding = 0, step = 0;  // h
+    std::array<double, 4> at;       // the dimension's values
+    std::array<std::shared_ptr<const Result<Mesh>>, 4> beside;
 };
 
-template <class T>
-std::shared_ptr<const T> RebuiltShape::kept(const Kept<T>& store, const Key& key) const {
-    const std::lock_guard lock(mutex_);
-    const auto found = store.by_values.find(key);
-    return found == store.by_values.end() ? nullptr : found->second;
+template <class Key, class T, class Make>
+std::shared_ptr<const T> RebuiltShape::kept(Kept<Key, T>& store, const Key& key, const Make& make) const {
+    std::shared_ptr<typename Kept<Key, T>::Entry> entry;
+    {
+        const std::lock_guard lock(mutex_);
+        const auto [place, is_new] = store.by_key.try_emplace(key);
+        if (is_new) {
+            place->second = std::make_shared<typename Kept<Key, T>::Entry>();
+            store.order.push_back(key);
+        }
+        entry = place->second;
+        if (store.order.size() > options_.kept) {
+            store.by_key.erase(store.order.front());
+            store.order.pop_front();
+        }
+    }
+    const std::lock_guard making(entry->making);
+    if (!entry->value) entry->value.emplace(make());
+    return {entry, &*entry->value};
 }
 
-template <class T>
-void RebuiltShape::keep(Kept<T>& store, const Key& key, std::shared_ptr<const T> value) const {
-    const std::lock_guard lock(mutex_);
-    if (!store.by_values.emplace(key, std::move(value)).second) return;
-    store.order.push_back(key);
-    if (store.order.size() <= options_.kept) return;
-    store.by_values.erase(store.order.front());
-    store.order.pop_front();
-}
-
-std::shared_ptr<const Result<Mesh>> RebuiltShape::made(const Key& values) const {
-    if (auto known = kept(meshes_, values)) return known;
-    auto fresh = std::make_shared<const Result<Mesh>>(maker_(values));
-    keep(meshes_, values, fresh);
-    return fresh;
-}
-
-std::shared_ptr<const Result<RebuiltShape::Derived>> RebuiltShape::derived(const Key& values) const {
-    if (auto known = kept(derived_, values)) return known;
-    auto fresh = std::make_shared<const Result<Derived>>(derive(values));
-    keep(derived_, values, fresh);
-    return fresh;
+std::shared_ptr<const Result<Mesh>> RebuiltShape::made(const Values& values) const {
+    return kept(meshes_, values, [&] { return maker_(values); });
 }
 
 Result<Mesh> RebuiltShape::mesh(const std::vector<double>& values) const { return *made(values); }
 
 Result<ShapeInstance> RebuiltShape::at(const std::vector<double>& values) const {
-    const auto found = derived(values);
-    if (!*found) return found->errors();
-    return (*found)->instance;
+    return differentiated(values, description::all_dimensions(*this));
 }
 
-std::vector<std::string> RebuiltShape::remarks(const std::vector<double>& values) const {
-    const auto found = derived(values);
-    return *found ? (*found)->remarks : std::vector<std::string>();
+Result<ShapeInstance> RebuiltShape::differentiated(const std::vector<double>& values, const std::vector<bool>& wanted) const {
+    const auto middle = made(values);
+    if (!*middle) return middle->errors();
+    ShapeInstance part{**middle, {}};
+    for (const auto& derivative : derivatives(part.mesh, values, wanted)) {
+        if (derivative && !*derivative) return derivative->errors();
+        part.jacobian.push_back(derivative ? (*derivative)->velocity : Matrix3X(3, 0));
+    }
+    return part;
 }
 
-Result<RebuiltShape::Derived> RebuiltShape::derive(const Key& values) const {
+std::vector<std::string> RebuiltShape::remarks(const std::vector<double>& values, const std::vector<bool>& wanted) const {
+    const auto middle = made(values);
+    if (!*middle) return {};
+    std::vector<std::string> remarks;
+    for (const auto& derivative : derivatives(**middle, values, wanted)) {
+        if (derivative && !*derivative) return {};
+        if (derivative) remarks.push_back((*derivative)->remark);
+    }
+    return remarks;
+}
+
+// The meshes of all of them are made at once.
+RebuiltShape::Derivatives RebuiltShape::derivatives(const Mesh& middle, const Values& values, const std::vector<bool>& wanted) const {
+    Derivatives out(dimensions_.size());
+    core::base::parallel_for(count_of(dimensions_), 1, [&](int task) {
+        const auto k = static_cast<std::size_t>(task);
+        if (wanted[k])
+            out[k] = kept(derivatives_, std::pair(k, values), [&] { return differentiate(middle, stencil_of(middle, values, k), k); });
+    });
+    return out;
+}
+
+RebuiltShape::Stencil RebuiltShape::stencil_of(const Mesh& middle, const Values& values, std::size_t k) const {
     Stencil stencil;
-    stencil.middle = made(values);
-    if (!*stencil.middle) return stencil.middle->errors();
-    const Mesh& middle = **stencil.middle;
     stencil.rounding = options_.rounding.value_or(coordinate_rounding(middle.vertices, options_.unit));
     const double size = (middle.vertices.rowwise().maxCoeff() - middle.vertices.rowwise().minCoeff()).norm();
-    const std::size_t n = dimensions_.size();
-    for (const double value : values) {
-        const double h = difference_step(stencil.rounding, size, value);
-        stencil.steps.push_back(h);
-        stencil.at.push_back({value + h, value - h, value + h / 2, value - h / 2});
-    }
-    stencil.beside.resize(n);
-    core::base::parallel_for(static_cast<int>(4 * n), 1, [&](int task) {
-        const std::size_t k = static_cast<std::size_t>(task) / 4, side = static_cast<std::size_t>(task) % 4;
-        Key moved = values;
-        moved[k] = stencil.at[k][side];
-        stencil.beside[k][side] = made(moved);
+    const double value = values[k], h = difference_step(stencil.rounding, size, value);
+    stencil.step = h;
+    stencil.at = {value + h, value - h, value + h / 2, value - h / 2};
+    core::base::parallel_for(4, 1, [&](int side) {
+        Values moved = values;
+        moved[k] = stencil.at[side];
+        stencil.beside[side] = made(moved);
     });
-    Derived derived;
-    derived.instance.mesh = middle;
-    for (std::size_t k = 0; k < n; ++k) {
-        Errors errors = differentiate(stencil, k, derived);
-        if (!errors.empty()) return errors;
-    }
-    return derived;
+    return stencil;
 }
 
-Errors RebuiltShape::differentiate(const Stencil& stencil, std::size_t k, Derived& derived) const {
+Result<RebuiltShape::Derivative> RebuiltShape::differentiate(const Mesh& middle, const Stencil& stencil, std::size_t k) const {
     const std::string& name = dimensions_[k].name;
     const auto refuse = [&](const Errors& cause) {
         Errors errors = cause;
         for (Error& error : errors) {
             char text[120];
-            std::snprintf(text, sizeof text, "built for its derivative, up to %.4g mm beside: ", 1000 * stencil.steps[k]);
+            std::snprintf(text, sizeof text, "built for its derivative, up to %.4g mm beside: ", 1000 * stencil.step);
             error.message = text + error.message;
             error.where = name;
         }
         return errors;
     };
-    for (const auto& mesh : stencil.beside[k])
+    for (const auto& mesh : stencil.beside)
         if (!*mesh) return refuse(mesh->errors());
     const auto velocity = [&](std::size_t first) {
-        return mesh_velocity(**stencil.middle, **stencil.beside[k][first], **stencil.beside[k][first + 1],
-                             stencil.at[k][first] - stencil.at[k][first + 1]);
+        return mesh_velocity(middle, **stencil.beside[first], **stencil.beside[first + 1], stencil.at[first] - stencil.at[first + 1]);
     };
     const Result<MeshVelocity> wide = velocity(0), narrow = velocity(2);
     if (!wide) return refuse(wide.errors());
     if (!narrow) return refuse(narrow.errors());
-    const double noise = std::sqrt(3.0) * stencil.rounding / stencil.steps[k];  // of `wide`; `narrow` has twice that
+    const double noise = std::sqrt(3.0) * stencil.rounding / stencil.step;  // of `wide`; `narrow` has twice that
     const double change = largest_column(wide->velocity - narrow->velocity);
     const bool straight = change <= 3 * noise;
-    Matrix3X best = straight ? wide->velocity : Matrix3X((4 * narrow->velocity - wide->velocity) / 3);
+    Derivative derivative;
+    derivative.velocity = straight ? wide->velocity : Matrix3X((4 * narrow->velocity - wide->velocity) / 3);
     const double error = (straight ? noise : change / 3 + 3 * noise) + std::max(wide->misfit, narrow->misfit);
     char text[300];
     std::snprintf(
-        text, sizeof text, "d/d %s: from meshes built %.4g mm beside, %s, to about %.1e of it", name.c_str(), 1000 * stencil.steps[k],
+        text, sizeof text, "d/d %s: from meshes built %.4g mm beside, %s, to about %.1e of it", name.c_str(), 1000 * stencil.step,
         narrow->by_normals || wide->by_normals ? "by the normal velocity of their surfaces (their triangles differ)" : "vertex by vertex",
-        error / std::max(largest_column(best), 1e-300));
-    derived.remarks.emplace_back(text);
-    derived.instance.jacobian.push_back(std::move(best));
-    return {};
+        error / std::max(largest_column(derivative.velocity), 1e-300));
+    derivative.remark = text;
+    return derivative;
 }
 
 }  // namespace fettle::design::shapes

@@ -2,7 +2,8 @@
 /// A part from anything that makes a mesh when it is given dimensions: a program (mesh_program.hpp), a function of Python's. Its derivative
 /// comes from rebuilt meshes: central differences in each dimension, of two widths, extrapolated where they differ by more than rounding
 /// explains (mesh_velocity.hpp says how vertices are distinguished).
-/// Meshes are kept by their dimensions, so that nothing is built twice; those beside a design are built in parallel.
+/// Meshes and derivatives are kept by their dimensions, so that nothing is built twice, whoever asks at the same time; meshes beside a
+/// design are built in parallel, and only for the dimensions whose derivatives are wanted: four for each.
 #pragma once
 
 #include <array>
@@ -13,6 +14,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fettle/design/description/shape.hpp"
@@ -39,37 +41,44 @@ public:
     Result<core::geometry::Mesh> mesh(const std::vector<double>& values) const override;
     /// Errors: what the maker says, here or beside; a topology that changes beside.
     Result<description::ShapeInstance> at(const std::vector<double>& values) const override;
-    /// A sentence for each dimension: the step of its differences, how vertices were distinguished, how far the derivative may be off.
-    std::vector<std::string> remarks(const std::vector<double>& values) const override;
+    /// The others' are left out.
+    Result<description::ShapeInstance> differentiated(const std::vector<double>& values, const std::vector<bool>& wanted) const override;
+    /// A sentence for each dimension that is wanted: the step of its differences, how vertices were distinguished, how far the derivative
+    /// may be off.
+    std::vector<std::string> remarks(const std::vector<double>& values, const std::vector<bool>& wanted) const override;
 
 private:
-    struct Derived {
-        description::ShapeInstance instance;
-        std::vector<std::string> remarks;
+    using Values = std::vector<double>;
+    struct Derivative {
+        Matrix3X velocity;
+        std::string remark;
     };
-    using Key = std::vector<double>;
-    template <class T>
+    /// By what they were made for, the last ones asked for first. Who asks for one that is being made waits for it.
+    template <class Key, class T>
     struct Kept {
-        std::map<Key, std::shared_ptr<const T>> by_values;
+        struct Entry {
+            std::mutex making;
+            std::optional<T> value;
+        };
+        std::map<Key, std::shared_ptr<Entry>> by_key;
         std::deque<Key> order;
     };
+    using Derivatives = std::vector<std::shared_ptr<const Result<Derivative>>>;  ///< per dimension; null where it is not wanted
 
-    template <class T>
-    std::shared_ptr<const T> kept(const Kept<T>& store, const Key& key) const;
-    template <class T>
-    void keep(Kept<T>& store, const Key& key, std::shared_ptr<const T> value) const;
-    std::shared_ptr<const Result<Derived>> derived(const Key& values) const;
-    std::shared_ptr<const Result<core::geometry::Mesh>> made(const Key& values) const;
-    Result<Derived> derive(const Key& values) const;
+    template <class Key, class T, class Make>
+    std::shared_ptr<const T> kept(Kept<Key, T>& store, const Key& key, const Make& make) const;
+    std::shared_ptr<const Result<core::geometry::Mesh>> made(const Values& values) const;
+    Derivatives derivatives(const core::geometry::Mesh& middle, const Values& values, const std::vector<bool>& wanted) const;
     struct Stencil;
-    Errors differentiate(const Stencil& stencil, std::size_t dimension, Derived& derived) const;
+    Stencil stencil_of(const core::geometry::Mesh& middle, const Values& values, std::size_t dimension) const;
+    Result<Derivative> differentiate(const core::geometry::Mesh& middle, const Stencil& stencil, std::size_t dimension) const;
 
     std::vector<description::ShapeDimension> dimensions_;
     MeshMaker maker_;
     RebuiltOptions options_;
     mutable std::mutex mutex_;
-    mutable Kept<Result<core::geometry::Mesh>> meshes_;
-    mutable Kept<Result<Derived>> derived_;
+    mutable Kept<Values, Result<core::geometry::Mesh>> meshes_;
+    mutable Kept<std::pair<std::size_t, Values>, Result<Derivative>> derivatives_;
 };
 
 }  // namespace fettle::design::shapes

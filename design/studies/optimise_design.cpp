@@ -71,6 +71,7 @@ public:
         with_derivatives_.should_stop = options.should_stop;
         with_derivatives_.on_step = options.on_step;
         compute_ = [this](const problem::DesignProblem& model, const VectorX& p, Recorded wanted) {
+            if (options_.replay_only) throw optimisers::Interrupted();
             ++computed_;
             const bool values = wanted == Recorded::values;
             return history_entry(design_, p, model.evaluate(p, values ? problem::without_gradients(with_derivatives_) : with_derivatives_));

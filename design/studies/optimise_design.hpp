@@ -26,6 +26,8 @@ struct OptimiseOptions {
     std::function<void(const std::string&)> narrate;              ///< optional: a line per evaluation
     std::function<void(const core::stepper::Progress&)> on_step;  ///< optional
     History* history = nullptr;                                   ///< optional: answers what it has, and keeps what is computed
+    /// Nothing is tried that the history does not have: the run ends there, interrupted, with the best design so far.
+    bool replay_only = false;
 };
 
 struct OptimiseOutcome {

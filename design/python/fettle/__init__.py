@@ -76,6 +76,7 @@ from ._fettle import (
     read_trajectory as read_trajectory,
     sample_of_seed as sample_of_seed,
     shape_at as shape_at,
+    shape_mesh as shape_mesh,
     shape_remarks as shape_remarks,
     seeds_of_list as seeds_of_list,
     simulate as simulate,
@@ -90,6 +91,7 @@ from ._fettle import (
     write_trajectory as write_trajectory,
 )
 from .design import (
+    BodyTurn as BodyTurn,
     Bounds as Bounds,
     Clearance as Clearance,
     Constraint as Constraint,
@@ -102,6 +104,7 @@ from .design import (
     FunctionShape as FunctionShape,
     InScenario as InScenario,
     JointLoad as JointLoad,
+    JointPosition as JointPosition,
     MarkerPath as MarkerPath,
     MarkerSpeed as MarkerSpeed,
     Mass as Mass,

@@ -243,13 +243,31 @@ class MarkerSpeed(Record, Measured):
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class JointLoad(Record, Measured):
     """Force [N] or torque [N m] that a joint carries, or the effort of a motor [N m or N], at the steps' ends; `over` them: "end", "sum",
-    "mean", "largest" or "least"."""
+    "mean", "largest", "least" or "peak", the largest absolute value."""
 
     kind: str  #: "force", "torque"; "effort" of a motor
     name: str  #: of the joint, of the motor
     over: str = "end"
     axis: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: the component along this unit vector; zeros: the magnitude
     effort_dimension: str = "torque"  #: of a motor's effort; "force" where it drives a travel
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class JointPosition(Record, Measured):
+    """Angle of a joint that turns [rad], travel of one that slides [m], at the steps' ends; angles count turns; `over` as in JointLoad."""
+
+    joint: str
+    over: str = "end"
+    coordinate_dimension: str = "angle"  #: "length" of a joint that slides
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class BodyTurn(Record, Measured):
+    """How far a body has turned about an axis since the start, at the steps' ends [rad]; `over` as in JointLoad."""
+
+    body: Which
+    axis: Vector  #: a unit vector, world
+    over: str = "end"
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -307,6 +325,8 @@ AnyQuantity = Union[
     MarkerPath,
     MarkerSpeed,
     JointLoad,
+    JointPosition,
+    BodyTurn,
     ContactLoad,
     Energy,
     Expression,
@@ -563,7 +583,7 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault], parameters
         if all(not isinstance(body, str) for body, _ in record.bodies):
             return record
         return Mass([(_body_number(body, names, "Mass/bodies", faults), of) for body, of in record.bodies])
-    if kind not in (Clearance, Stroke, MarkerPath, MarkerSpeed, ContactLoad):
+    if kind not in (Clearance, Stroke, MarkerPath, MarkerSpeed, BodyTurn, ContactLoad):
         return record
     members = {name: getattr(record, name) for name in ("a", "b", "body", "other") if name in kind.__dataclass_fields__}
     numbers = {
@@ -604,7 +624,7 @@ class DesignFile(Record):
 
 def add_part(design: Design, body: Body, shape: AnyShape) -> int:
     """Adds a body with the shape as drawn for its mesh. Returns its index."""
-    body.mesh, _ = _fettle.shape_at(shape, {})
+    body.mesh = _fettle.shape_mesh(shape)
     design.scene.bodies.append(body)
     design.shapes += [None] * (len(design.scene.bodies) - len(design.shapes))
     design.shapes[-1] = shape

@@ -434,6 +434,8 @@ class OptimiserReport(Record):
     status: Literal["optimal", "feasible", "infeasible", "interrupted", "start_failed"] = "start_failed"
     message: str = ""
     point: Array = dataclasses.field(default_factory=_empty)  #: (n) the best design, SI
+    objective: float = math.nan  #: its objective (repair=True: the squared change); NaN: nothing could be evaluated
+    violation: float = math.nan  #: largest, in the constraints' units; 0: every requirement is met, proven
     feasible: bool = False
     optimality: Optimality = dataclasses.field(default_factory=Optimality)
     evaluations: int = 0

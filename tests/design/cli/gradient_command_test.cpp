@@ -77,6 +77,39 @@ TEST_CASE("gradient --check: torques on a body and of a motor, the size of a par
     }
 }
 
+TEST_CASE("gradient and optimise warn where a motor turns backwards and its largest effort is asked for, once") {
+    const std::string scene = R"({ "fettle_scene": 1, "units": "mm", "gravity": [0, 0, 0], "timestep": 0.01, "end_time": 0.1,
+      "bodies": [{ "name": "wheel", "density": 1000, "shape": { "part": "box", "dimensions": { "size_x": 80, "size_y": 20, "size_z": 10 } } }],
+      "joints": [{ "name": "axle", "type": "revolute", "b": "wheel", "point": [0, 0, 0], "axis": [0, 0, 1], "damping": 0.001 }],
+      "motors": [{ "name": "drive", "joint": "axle", "angle": { "times": [0, 0.1], "values": [0, -20] } }] })";
+    const auto design = [](const std::string& over) {
+        return R"({ "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+          "parameters": [{ "name": "length", "value": 80, "lower": 60, "upper": 90 }],
+          "set": { "/bodies/wheel/shape/dimensions/size_x": "= length" },
+          "objective": [{ "type": "motor_effort", "motor": "drive", "over": ")" +
+               over +
+               R"(" }], "constraints": [{ "type": "motor_effort", "motor": "drive", "over": "peak", "name": "peak", "upper": 5 }] })";
+    };
+    const auto count = [](const std::string& text) {
+        std::size_t n = 0;
+        for (std::size_t at = text.find("\"peak\" takes"); at != std::string::npos; at = text.find("\"peak\" takes", at + 1)) ++n;
+        return n;
+    };
+    const DesignFolder backwards(design("largest"), scene), peak(design("peak"), scene);
+    for (const std::string& command : {std::string("gradient "), "optimise --no-report --out " + backwards.file("out") + " "}) {
+        const Answer text = run(command + backwards.design(), true), json = run(command + backwards.design() + " --json");
+        CAPTURE(command, text.out);
+        CHECK(count(text.out) == 1);
+        REQUIRE(json.json().at("warnings").size() == 1);
+        CHECK(json.json().at("warnings").at(0).get<std::string>().starts_with("objective `motor_effort drive`: all steps are negative"));
+    }
+    const nlohmann::json told = run("gradient --check " + peak.design() + " --json").json();
+    CHECK(told.at("status") == "ok");
+    CHECK_FALSE(told.contains("warnings"));
+    CHECK(told.at("objective").get<double>() > 0);
+    CHECK(told.at("constraints").at(0).at("value") == told.at("objective"));
+}
+
 TEST_CASE("gradient --check counts in the design's units, as the lines above it do") {
     const DesignFolder folder(turned_design, turned_scene);
     const Answer answer = run("gradient " + folder.design() + " --check");

@@ -24,6 +24,25 @@ using fettle::tests::support::Answer;
 using fettle::tests::support::contents;
 using fettle::tests::support::run;
 
+// What an interrupted run from many starts leaves: the best design of what has been tried.
+void check_best_so_far(const std::filesystem::path& out) {
+    const Json answer = Json::parse(contents(out / "result.json"));
+    CHECK(answer.at("status") == "interrupted");
+    REQUIRE(answer.at("best_start").is_number());
+    CHECK(answer.at("seed") == answer["best_start"]);
+    const std::filesystem::path best = out / ("start-" + std::to_string(answer["best_start"].get<int>()));
+    const Json of_best = Json::parse(contents(best / "result.json"));
+    for (const char* key : {"objective", "constraint_violation", "parameters", "evaluations"}) CHECK(answer.at(key) == of_best.at(key));
+    for (const Json& row : answer.at("starts"))
+        if (row.value("constraint_violation", Json()) == 0 && of_best["constraint_violation"] == 0)
+            CHECK(answer["objective"].get<double>() <= row["objective"].get<double>());
+    CHECK(contents(out / "history.jsonl") == contents(best / "history.jsonl"));
+    CHECK(contents(out / "trajectory.json") == contents(best / "trajectory.json"));
+    const Answer final = run("gradient " + (out / "design.final.json").string() + " --json");
+    CHECK(final.code == 0);
+    CHECK(final.json().at("objective") == answer["objective"]);
+}
+
 StartResult ended(double violation, double objective) {
     StartResult start;
     start.result = {{"constraint_violation", violation}, {"objective", objective}};
@@ -134,7 +153,7 @@ TEST_CASE("many starts, killed and resumed, end as they do undisturbed; so do th
     const std::string whole = (folder.path / "whole").string(), cut = (folder.path / "cut").string();
     const std::string arguments = "optimise " + folder.design() + " --starts 3 --seed 5 --json --out ";
     const Json undisturbed = run(arguments + whole).json();
-    for (const int signal : {SIGKILL, SIGTERM}) {
+    for (const int signal : {SIGKILL, SIGTERM, SIGINT}) {
         CAPTURE(signal);
         std::filesystem::remove_all(cut);
         const pid_t process = fork();
@@ -155,10 +174,11 @@ TEST_CASE("many starts, killed and resumed, end as they do undisturbed; so do th
         kill(process, signal);
         int status = 0;
         REQUIRE(waitpid(process, &status, 0) == process);
-        if (signal == SIGTERM) {
+        if (signal != SIGKILL) {
             CHECK(WIFEXITED(status));
             CHECK(WEXITSTATUS(status) == 2);
             CHECK(contents(folder.path / "log").find("--resume") != std::string::npos);
+            check_best_so_far(cut);
         }
         const Json resumed = run(arguments + cut + " --resume").json();
         CHECK(resumed["parameters"] == undisturbed["parameters"]);

@@ -44,12 +44,28 @@ def test_the_mass_is_known(tilted):
     assert tilted.evaluate(tilted.values).terms[1].value == pytest.approx(1000 * h * 4 * (a * a + a * b + b * b) / 3)
 
 
+def test_the_peak_is_the_largest_absolute_value():
+    design = tilted_plate()
+    design.constraints = [
+        fettle.Constraint(f"{over} {sign}", fettle.Bounds(lower=-10), fettle.MarkerSpeed("part", [0, 0, 0], over, [0, 0, sign]))
+        for sign in (1, -1)
+        for over in ("largest", "least", "peak")
+    ]
+    problem = fettle.DesignProblem(design)
+    at = problem.evaluate(problem.values)
+    assert at.usable, at.reason
+    for largest, least, peak in np.reshape([c.value for c in at.constraints], (2, 3)):
+        assert peak == max(largest, -least) > 0
+
+
 def test_optimised_and_again_the_same_bits(tilted):
     lines = []
     outcome = fettle.optimise(tilted, progress=lines.append)
     assert outcome.report.evaluations > 2
     assert outcome.final.objective < tilted.value(tilted.values)
     assert outcome.final.usable
+    assert outcome.report.objective == outcome.final.objective
+    assert outcome.report.violation == outcome.final.violation == 0 and outcome.report.feasible
     assert lines
     again = fettle.optimise(fettle.DesignProblem(tilted_plate()))
     assert np.array_equal(again.report.point, outcome.report.point)

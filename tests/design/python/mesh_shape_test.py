@@ -54,6 +54,21 @@ def test_a_design_with_a_function_of_meshes():
     assert "above 0" in made.evaluate(p).reason
 
 
+def test_a_function_is_called_for_the_dimensions_that_a_design_moves():
+    called = []
+
+    def counted(values):
+        called.append(values)
+        return frustum_mesh(values)
+
+    design = tilted_plate(shape=fettle.MeshShape(counted, DRAWN))
+    assert len(called) == 1  # its mesh as drawn
+    design.numbers = [number for number in design.numbers if not number.place.endswith(("/top", "/foot"))]
+    problem = fettle.DesignProblem(design)
+    assert problem.evaluate(problem.values).usable
+    assert len(called) == 1 + 1 + 4
+
+
 def test_a_mesh_shape_pickles():
     shape = fettle.MeshShape(frustum_mesh, DRAWN)
     assert pickle.loads(pickle.dumps(shape)) == shape

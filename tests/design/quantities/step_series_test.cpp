@@ -140,6 +140,8 @@ Named quantities_of(bool is_static) {
     };
     load(JointLoadKind::effort, "drive", Vector3::Zero(), Over::mean);
     load(JointLoadKind::effort, "drive", Vector3::Zero(), Over::largest);
+    load(JointLoadKind::effort, "drive", Vector3::Zero(), Over::peak);
+    load(JointLoadKind::force, "main", Vector3(0.6, 0.8, 0), Over::peak);
     load(JointLoadKind::force, "wrist", Vector3::Zero(), Over::end);
     load(JointLoadKind::force, "main", Vector3(0.6, 0.8, 0), Over::sum);
     load(JointLoadKind::torque, "guide", Vector3::Zero(), Over::mean);
@@ -211,6 +213,24 @@ TEST_CASE("joint loads, efforts and energies are those that the simulation repor
         const double kinetic = is_static ? 0 : last.kinetic_energy;
         CHECK(energy(EnergyKind::total) == Approx(kinetic + last.potential_energy + last.spring_energy).epsilon(1e-9));
     }
+}
+
+TEST_CASE("the peak is the largest absolute value, of whichever sign") {
+    const core::model::Model model = built(slider_crank(Integrator::implicit_euler).scene);
+    const core::stepper::Simulation done = run(model, 9, true);
+    const description::Simulated simulated{model, done.trajectory};
+    int of_the_least = 0;
+    for (const Vector3& axis : {x_axis, Vector3(-x_axis), y_axis, Vector3(-y_axis), Vector3(0.6, 0.8, 0)}) {
+        const auto load = [&](Over over) { return JointLoad({JointLoadKind::force, "main", axis}, over).value(simulated).value; };
+        CHECK(load(Over::peak) == std::max(load(Over::largest), -load(Over::least)));
+        CHECK(load(Over::peak) > 0);
+        of_the_least += load(Over::peak) == -load(Over::least) ? 1 : 0;
+    }
+    CHECK(of_the_least >= 2);  // of x and -x, and of y and -y, one each
+    const JointLoad with_axis({JointLoadKind::force, "main", x_axis}, Over::peak), magnitude({JointLoadKind::force, "main"}, Over::peak);
+    CHECK(with_axis.has_direction());
+    CHECK_FALSE(magnitude.has_direction());
+    CHECK(JointLoad({JointLoadKind::effort, "drive"}, Over::peak).has_direction());
 }
 
 TEST_CASE("energies of Newmark's steps are those that the simulation reports", "[joints]") {

@@ -11,6 +11,7 @@
 
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/reading/model_file.hpp"
 #include "fettle/tests/support/program.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/text.hpp"
@@ -36,6 +37,10 @@ struct Shop {
         program = {.command = {"sh", "part.sh", "{out}", "{length}"}, .directory = folder.path.string(), .format = "off", .unit = 1e-3};
     }
     bool ran() const { return std::filesystem::exists(folder.path / "it_ran"); }
+    std::ptrdiff_t all_runs() const {
+        std::ifstream lines(folder.path / "it_ran");
+        return std::distance(std::istream_iterator<std::string>(lines), {});
+    }
     // How often it made a part of that length.
     std::ptrdiff_t runs(const std::string& length) const {
         std::ifstream lines(folder.path / "it_ran");
@@ -175,6 +180,41 @@ TEST_CASE("parts that are alike are made once") {
     REQUIRE(scene);
     CHECK(scene->bodies[1].mesh.vertices == scene->bodies[0].mesh.vertices);
     CHECK(shop.runs("12.5") == 1);
+
+    // What is to be said of their derivative is said once.
+    const std::string design = shop.folder.write("a.design.json", R"({ "fettle_design": 1, "scene": "a.scene.json", "units": "mm",
+        "parameters": [ { "name": "length", "value": 12.5, "lower": 10, "upper": 20 } ],
+        "set": { "/bodies/one/shape/dimensions/length": "= length", "/bodies/two/shape/dimensions/length": "= length" },
+        "objective": [ { "type": "mass", "bodies": ["one", "two"] } ] })");
+    const auto file = reading::read_design(design, {{}, reading::Programs::allowed});
+    REQUIRE(file);
+    REQUIRE(file->warnings.size() == 1);
+    CHECK(file->warnings[0].starts_with("bodies one, two: d/d length: "));
+    CHECK(shop.all_runs() == 2 + 4);  // the scene's and the design's part as drawn, and the design's four beside it
+}
+
+TEST_CASE("a part is made once for a design that is read strictly, in which scenarios are simulated at the same time") {
+    const Shop shop;
+    shop.folder.write("a.scene.json", R"({ "fettle_scene": 1, "units": "mm", "bodies": [ { "name": "part", "density": 1000, "shape": {
+        "program": ["sh", "part.sh", "{out}", "{length}"], "format": "off", "dimensions": { "length": 12.5 } } } ] })");
+    const std::string path = shop.folder.write("a.design.json", R"({ "fettle_design": 1, "scene": "a.scene.json", "units": "mm",
+        "simulation": { "steps": 1 }, "parameters": [ { "name": "length", "value": 12.5, "lower": 10, "upper": 20 } ],
+        "set": { "/bodies/part/shape/dimensions/length": "= length" },
+        "scenarios": [ { "name": "up", "set": { "/gravity": [0, 0, 1] } }, { "name": "down", "set": { "/gravity": [0, 0, -1] } } ],
+        "objective": [ { "type": "mass", "bodies": ["part"] } ] })");
+    reading::InputOptions options;
+    options.programs = reading::Programs::allowed;
+    options.strict = true;
+    auto file = reading::open_design(path, options);
+    for (const Error& error : file.errors()) UNSCOPED_INFO(error.where + ": " + error.message);
+    REQUIRE(file);
+    CHECK(shop.all_runs() == 1 + 4);
+    const auto problem = problem::DesignProblem::create(std::move(file->design));
+    REQUIRE(problem);
+    CHECK(problem->evaluate(VectorX::Constant(1, 0.0125)).usable);
+    CHECK(shop.all_runs() == 1 + 4);
+    CHECK(problem->evaluate(VectorX::Constant(1, 0.015)).usable);
+    CHECK(shop.all_runs() == 2 * (1 + 4));
 }
 
 }  // namespace fettle::design::shapes::mesh_program_test

@@ -2,9 +2,12 @@
 /// Parts from anything that makes meshes: velocities against the exact ones of files, rounding, another cut of triangles, refusals.
 #include "fettle/design/shapes/rebuilt_shape.hpp"
 
+#include <array>
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/quantities/clearance.hpp"
@@ -81,7 +84,7 @@ TEST_CASE("the velocity of a rebuilt part is the exact one, to what its digits a
             INFO(digits << " digits, d/d " << part->dimensions()[k].name);
             CHECK((found->jacobian[k] - exact.jacobian[k]).cwiseAbs().maxCoeff() < limit);
         }
-        const auto remarks = shape.remarks(description::drawn_values(shape));
+        const auto remarks = shape.remarks(description::drawn_values(shape), description::all_dimensions(shape));
         REQUIRE(remarks.size() == exact.jacobian.size());
         CHECK(remarks[0].find("vertex by vertex") != std::string::npos);
     }
@@ -179,8 +182,86 @@ TEST_CASE("nothing is built twice") {
     CHECK(built == 1 + 4 * 2);
     REQUIRE(description::as_drawn(shape));
     REQUIRE(description::drawn_mesh(shape));
-    CHECK(shape.remarks(description::drawn_values(shape)).size() == 2);
+    CHECK(shape.remarks(description::drawn_values(shape), {true, true}).size() == 2);
     CHECK(built == 1 + 4 * 2);
+}
+
+TEST_CASE("derivatives that are not wanted are not built, and are those of all together where they are") {
+    std::atomic<int> built = 0;
+    const Values edges{0.01, 0.02, 0.03};
+    const auto box = [&](const Values& v) -> Result<Mesh> {
+        ++built;
+        return tests::support::box_mesh(Vector3(-v[0], -v[1], -v[2]), Vector3(v[0], v[1], v[2]));
+    };
+    const std::vector<description::ShapeDimension> dimensions{{"a", 0.01}, {"b", 0.02}, {"c", 0.03}};
+    const RebuiltShape shape(dimensions, box);
+    const auto part = shape.differentiated(edges, {false, true, false});
+    REQUIRE(part);
+    CHECK(built == 1 + 4);
+    REQUIRE(part->jacobian.size() == 3);
+    CHECK(part->jacobian[0].cols() == 0);
+    CHECK(part->jacobian[2].cols() == 0);
+    CHECK(shape.remarks(edges, {false, true, false}).size() == 1);
+    CHECK(shape.remarks(edges, {false, false, false}).empty());
+    CHECK(built == 1 + 4);
+    const auto all = shape.at(edges);
+    REQUIRE(all);
+    CHECK(built == 1 + 4 * 3);  // what was known of b is taken
+    CHECK(all->jacobian[1] == part->jacobian[1]);
+    CHECK(shape.remarks(edges, {true, true, true}).size() == 3);
+
+    // One that cannot be differentiated in what is not wanted.
+    const RebuiltShape bounded(dimensions, [&](const Values& v) -> Result<Mesh> {
+        if (v[2] > 0.03) return Error{ErrorCode::out_of_range, "c", "too wide"};
+        return box(v);
+    });
+    CHECK(bounded.differentiated(edges, {true, true, false}));
+    CHECK_FALSE(bounded.differentiated(edges, {true, true, true}));
+    CHECK(bounded.remarks(edges, {true, true, false}).size() == 2);
+}
+
+TEST_CASE("what several threads ask for at the same time is built once") {
+    std::atomic<int> built = 0;
+    const RebuiltShape shape({{"a", 0.01}}, [&](const Values& v) -> Result<Mesh> {
+        ++built;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        return tests::support::box_mesh(Vector3(-v[0], -0.01, -0.01), Vector3(v[0], 0.01, 0.01));
+    });
+    std::array<Matrix3X, 3> found;
+    std::vector<std::thread> threads;
+    for (Matrix3X& jacobian : found) threads.emplace_back([&] { jacobian = description::as_drawn(shape).value().jacobian[0]; });
+    for (std::thread& thread : threads) thread.join();
+    CHECK(built == 1 + 4);
+    CHECK(found[0] == found[1]);
+    CHECK(found[0] == found[2]);
+}
+
+TEST_CASE("an evaluation builds a part for the dimensions that its design moves") {
+    std::atomic<int> built = 0;
+    const auto part = std::make_shared<RebuiltShape>(
+        std::vector<description::ShapeDimension>{{"a", 0.01}, {"b", 0.02}, {"c", 0.03}}, [&](const Values& v) -> Result<Mesh> {
+            ++built;
+            return tests::support::box_mesh(Vector3(-v[0], -v[1], -v[2]), Vector3(v[0], v[1], v[2]));
+        });
+    description::Design design;
+    core::scene::Body block;
+    block.name = "block";
+    REQUIRE(add_part(design, block, part));
+    CHECK(built == 1);
+    design.steps = 1;
+    design.parameters = {{"width", 0.02, 0.01, 0.03, *find_unit("mm")}};
+    REQUIRE(set_number(design, "/bodies/block/shape/dimensions/b", "width").empty());
+    design.objective = {{"mass", 1, 1e-3, std::make_shared<quantities::Mass>(design.scene, std::vector<int>{0})}};
+    const auto problem = problem::DesignProblem::create(std::move(design));
+    REQUIRE(problem);
+    CHECK(problem->evaluate(VectorX::Constant(1, 0.02)).usable);
+    CHECK(built == 1 + 4);
+    CHECK(problem->evaluate(VectorX::Constant(1, 0.025)).usable);
+    CHECK(built == 2 * (1 + 4));
+    problem::EvaluateOptions values;
+    values.gradients = false;
+    CHECK(problem->evaluate(VectorX::Constant(1, 0.015), values).usable);
+    CHECK(built == 2 * (1 + 4) + 1);
 }
 
 TEST_CASE("a design of a rebuilt part has the gradient of the exact one's") {

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/problem/overlooked_peaks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "fettle/core/base/text.hpp"
+#include "fettle/design/description/requirement_text.hpp"
+#include "fettle/design/quantities/expression.hpp"
+#include "fettle/design/quantities/in_scenario.hpp"
+#include "fettle/design/quantities/step_series.hpp"
+#include "fettle/design/quantities/worst.hpp"
+
+namespace fettle::design::problem {
+
+namespace {
+
+using description::Quantity;
+using description::Simulated;
+using quantities::Over;
+using quantities::StepSeries;
+
+constexpr double clearly = 1.01;  // by so much larger is the other sign's
+
+/// A series as it is asked for, in one scenario.
+struct Asked {
+    const StepSeries* series;
+    const Simulated* simulated;
+    bool in_expression;
+    bool both_extremes;  // the expression takes the other one, too
+};
+
+class Search {
+public:
+    Search(const description::Design& design, const DesignEvaluation& evaluation) : design_(design), simulated_(design, evaluation) {}
+
+    std::vector<std::string> run() {
+        for (const description::ObjectiveTerm& term : design_.objective)
+            look_at(*term.quantity, "objective `" + term.name + "`", term.unit);
+        for (const description::Constraint& constraint : design_.constraints) {
+            const auto* series = dynamic_cast<const StepSeries*>(constraint.quantity.get());
+            if (series != nullptr && series->over() == Over::largest && constraint.bounds.upper < 0) continue;
+            look_at(*constraint.quantity, "constraint `" + constraint.name + "`", constraint.bounds.unit);
+        }
+        return std::move(sentences_);
+    }
+
+private:
+    void look_at(const Quantity& quantity, const std::string& name, double unit) {
+        std::vector<Asked> asked;
+        collect(quantity, simulated_.in(0), false, asked);
+        for (const Asked& one : asked) {
+            if (told_.count(one.series) > 0 || one.both_extremes) continue;
+            const std::string sentence = sentence_of(one, one.in_expression ? 1 : unit);
+            if (sentence.empty()) continue;
+            told_.insert(one.series);
+            sentences_.push_back(name + ": " + sentence);
+        }
+    }
+
+    void collect(const Quantity& quantity, const Simulated& in, bool in_expression, std::vector<Asked>& out) const {
+        if (const auto* series = dynamic_cast<const StepSeries*>(&quantity)) {
+            const bool is_extreme = series->over() == Over::largest || series->over() == Over::least;
+            if (is_extreme && series->has_direction()) out.push_back({series, &in, in_expression, false});
+        } else if (const auto* one = dynamic_cast<const quantities::InScenario*>(&quantity)) {
+            collect(*one->quantity(), in.in(one->scenario()), in_expression, out);
+        } else if (const auto* worst = dynamic_cast<const quantities::Worst*>(&quantity)) {
+            for (const auto& part : worst->parts()) collect(*part, in, in_expression, out);
+        } else if (const auto* expression = dynamic_cast<const quantities::Expression*>(&quantity)) {
+            std::vector<Asked> own;
+            for (const quantities::NamedQuantity& part : expression->parts()) collect(*part.quantity, in, true, own);
+            for (Asked& a : own)
+                a.both_extremes = std::any_of(own.begin(), own.end(), [&](const Asked& b) {
+                    return a.series->over() != b.series->over() && a.series->steps(*a.simulated) == b.series->steps(*b.simulated);
+                });
+            out.insert(out.end(), own.begin(), own.end());
+        }
+    }
+
+    static std::string sentence_of(const Asked& asked, double unit) {
+        const std::vector<double> steps = asked.series->steps(*asked.simulated);
+        const auto [least, largest] = std::minmax_element(steps.begin(), steps.end());
+        const bool is_largest = asked.series->over() == Over::largest;
+        const double extreme = is_largest ? *largest : *least, other = is_largest ? *least : *largest;
+        const bool is_told = is_largest ? extreme < 0 || -other > clearly * extreme : extreme < 0 && other > -clearly * extreme;
+        if (!is_told) return {};
+        const std::string name = core::base::unit_name(asked.series->dimension(), unit);
+        const auto amount = [&](double value) { return description::amount_text(value, unit, name, 4); };
+        const std::string what = "\"over\": \"peak\" takes the largest absolute value";
+        if (is_largest && extreme < 0)
+            return "all steps are negative, and the largest, " + amount(extreme) + ", is the one with the least absolute value: " + what;
+        const auto step = static_cast<long>((is_largest ? least : largest) - steps.begin()) + 1;
+        return std::string(is_largest ? "the largest" : "the least") + " of the steps is " + amount(extreme) + ", but step " +
+               std::to_string(step) + " has " + amount(other) + ", a larger absolute value: " + what;
+    }
+
+    const description::Design& design_;
+    const SimulatedDesign simulated_;
+    std::set<const StepSeries*> told_;
+    std::vector<std::string> sentences_;
+};
+
+}  // namespace
+
+std::vector<std::string> overlooked_peaks(const description::Design& design, const DesignEvaluation& evaluation) {
+    if (!evaluation.usable) return {};
+    return Search(design, evaluation).run();
+}
+
+}  // namespace fettle::design::problem

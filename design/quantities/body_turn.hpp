@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+/// How far a body has turned about a fixed axis n of the world since the start, at each step's end: with x normal to n, y = n x x and
+/// u = R_t R_0^T x,
+///   angle = atan2(y . u, x . u)   [rad], turns counted from step to step
+/// For bodies that real pins hold, which have no joint. A body that tilts is measured as seen along n; contract of the derivative: u is not
+/// along n.
+#pragma once
+
+#include "fettle/design/quantities/step_series.hpp"
+
+namespace fettle::design::quantities {
+
+class BodyTurn : public StepSeries {
+public:
+    /// @param axis  A unit vector, world.
+    BodyTurn(int body, const Vector3& axis, Over over) : StepSeries(over), body_(body), axis_(axis) {}
+
+    int body() const { return body_; }
+    const Vector3& axis() const { return axis_; }
+    Dimension dimension() const override { return Dimension::angle; }
+    Errors check(const core::model::Model& model, int steps) const override;
+
+protected:
+    std::vector<double> series(const description::Simulated& simulated) const override;
+    void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
+                          description::Seeds& seeds) const override;
+
+private:
+    int body_;
+    Vector3 axis_;
+};
+
+}  // namespace fettle::design::quantities

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+/// The coordinate of a joint at each step's end: the angle of a revolute, the travel of a prismatic one, as motors and limits count it
+/// (core/measure/measure.hpp). Angles count turns, as the start does (Mechanism::angles_start).
+#pragma once
+
+#include <string>
+
+#include "fettle/design/quantities/step_series.hpp"
+
+namespace fettle::design::quantities {
+
+class JointPosition : public StepSeries {
+public:
+    struct Of {
+        std::string joint;
+        Dimension dimension = Dimension::angle;  ///< of its coordinate: angle or length
+    };
+    JointPosition(Of of, Over over) : StepSeries(over), of_(std::move(of)) {}
+
+    const Of& of() const { return of_; }
+    Dimension dimension() const override { return of_.dimension; }
+    /// A joint that is not there, or has no coordinate of that dimension.
+    Errors check(const core::model::Model& model, int steps) const override;
+
+protected:
+    std::vector<double> series(const description::Simulated& simulated) const override;
+    void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
+                          description::Seeds& seeds) const override;
+
+private:
+    Of of_;
+};
+
+}  // namespace fettle::design::quantities
