@@ -153,6 +153,20 @@ SweepScene hinged_contact() {
     return sweep("hinged contact", scene, 20);
 }
 
+// A slide whose spring presses it squarely onto a wall, with nothing else that pushes: all forces on it cancel to rounding.
+SweepScene plunger() {
+    core::scene::Scene scene = scene_of({bar("plunger", 0.05), bar("wall", 0.1, Vector3(-0.101, 0, 0), Vector3::Zero(), 0.03)}, 0.01);
+    for (core::scene::Body& body : scene.bodies) body.group = -1;
+    scene.bodies[1].type = core::scene::BodyType::static_body;
+    scene.integrator = Integrator::quasi_static;
+    scene.dhat = 2e-3;
+    scene.kappa = 5000;
+    scene.mechanism.joints = {joint("slide", JointKind::prismatic, {"", Vector3::Zero(), x_axis}, {"plunger", Vector3::Zero(), x_axis})};
+    scene.mechanism.joints[0].forces.stiffness = 500;
+    scene.mechanism.joints[0].forces.preload = 1;
+    return sweep("plunger", scene, 3);
+}
+
 std::vector<SweepScene> joint_scenes() {
     return {arm(),
             arm(Integrator::bdf2),
@@ -356,6 +370,28 @@ TEST_CASE("joints, springs and motors: gradients agree with differences of simul
             CAPTURE(scene.name, to_string(kind), derivative);
             CHECK(error < 1e-6);
         }
+    }
+}
+
+TEST_CASE("forces that cancel squarely are no imbalance", "[adjoint][joints]") {
+    const SweepScene scene = plunger();
+    const core::stepper::Trajectory trajectory = trajectory_of(scene);
+    std::mt19937_64 random(43);
+    const TrajectoryGradient seed = random_seed(scene, random);
+    const auto gradients = reverse_sweep(scene.model, trajectory, {seed});
+    if (!gradients) UNSCOPED_INFO(gradients.errors()[0].message);
+    REQUIRE(gradients);
+    for (const bool is_stiffness : {true, false}) {
+        ModelTangent direction = fettle::adjoint::zero_model_tangent(scene.model, scene.steps);
+        (is_stiffness ? direction.mechanism.term_coefficient[0] : direction.mechanism.term_reference[0]) = is_stiffness ? 100 : 1e-3;
+        const double derivative = mechanism_pairing((*gradients)[0].mechanism, direction.mechanism);
+        const auto at = [&](double s) {
+            return objective(seed, run(with_mechanism(scene.model, direction.mechanism, s), scene.steps, true).trajectory);
+        };
+        const double error = difference_error(at, derivative);
+        CAPTURE(is_stiffness, derivative);
+        CHECK(std::abs(derivative) > 1e-6);
+        CHECK(error < 1e-6);
     }
 }
 
