@@ -104,6 +104,16 @@ double forwards(const adjoint::TrajectoryGradient& seed, const Trajectory& traje
     return sum + within_steps(seed.velocity_bar, motion.within.velocities) + within_steps(seed.lag_bar, motion.within.lags);
 }
 
+// What the quantity would change by if every body moved as far as the direction moves the start.
+double reach_of(const adjoint::TrajectoryGradient& seed, const Trajectory& trajectory, const ModelTangent& direction) {
+    double sum = 0;
+    for (size_t t = 0; t < seed.pose_bar.size(); ++t)
+        for (size_t i = 0; i < seed.pose_bar[t].size(); ++i)
+            sum += std::abs(
+                seed.pose_bar[t][i].cwiseProduct(motion_matrix(direction.bodies[i].pose_start_dot, trajectory.poses[t][i].rotation)).sum());
+    return sum;
+}
+
 // Of the objective and of each constraint: what depends on the motion of one scenario.
 std::vector<adjoint::TrajectoryGradient> motion_seeds(const description::Design& design, const problem::DesignEvaluation& at,
                                                       const description::Simulated& simulated) {
@@ -151,7 +161,9 @@ void compare(const description::Simulated& simulated, const std::vector<adjoint:
         for (size_t q = 0; q < seeds.size(); ++q) {
             const Pairing back = backwards(model, (*gradients)[q], direction);
             const double forth = forwards(seeds[q], trajectory, motion);
-            const double scale = std::max({std::abs(back.sum), std::abs(forth), 1e-2 * back.parts});
+            // Of a linkage that motors drive nothing in the direction moves the quantity, and both are rounding.
+            const double nothing = 1e-6 * reach_of(seeds[q], trajectory, direction);
+            const double scale = std::max({std::abs(back.sum), std::abs(forth), 1e-2 * back.parts, nothing});
             double apart = back.sum == forth ? 0 : std::abs(back.sum - forth) / scale;
             if (!std::isfinite(apart)) apart = core::base::infinity;
             if (apart <= out.disagreement) continue;
