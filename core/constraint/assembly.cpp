@@ -36,14 +36,15 @@ VectorX kept_values(const VectorX& values, const std::vector<DependentRow>& left
 
 class Assembler {
 public:
-    Assembler(const AssemblyProblem& problem, const std::vector<Pose>& start, const std::vector<DependentRow>& left_out)
+    Assembler(const AssemblyProblem& problem, const std::vector<Pose>& start, const std::vector<Pose>& attempt,
+              const std::vector<DependentRow>& left_out)
         : problem_(problem),
           start_(start),
           rows_(kept_rows(problem.rows, left_out)),
           targets_(kept_values(problem.targets, left_out)),
           solver_(problem.dofs) {
-        at_.poses = start;
-        at_.angles = angles_at(problem.set, start, {});
+        at_.poses = attempt;
+        at_.angles = angles_at(problem.set, attempt, {});
         measure_gaps(at_);
         multipliers_ = VectorX::Zero(rows_.size());
     }
@@ -186,19 +187,20 @@ double closed_gap(double size, const std::vector<Pose>& poses) {
     return std::max(1e-12 * size, 16 * std::numeric_limits<double>::epsilon() * farthest);
 }
 
-Assembly assemble(const AssemblyProblem& problem, const std::vector<Pose>& start) {
+Assembly assemble(const AssemblyProblem& problem, const std::vector<Pose>& start, const std::vector<Pose>& attempt) {
     const double close = closed_gap(problem.size, start);
+    const std::vector<Pose>& first = attempt.empty() ? start : attempt;
     Assembly out;
-    out.poses = start;
-    out.angles = angles_at(problem.set, start, {});
-    out.gaps = gaps_at(problem, start, out.angles);
-    out.dependent = dependent_at(problem, start);
+    out.poses = first;
+    out.angles = angles_at(problem.set, first, {});
+    out.gaps = gaps_at(problem, first, out.angles);
+    out.dependent = dependent_at(problem, first);
     out.is_met = !(out.gaps.size() > 0 && out.gaps.maxCoeff() > close);
-    if (out.is_met) return out;
+    if (out.is_met && attempt.empty()) return out;
     constexpr int most_tries = 3;  // what depends on what is known where the bodies fit
     for (int k = 0; k < most_tries; ++k) {
         std::vector<DependentRow> left_out = std::move(out.dependent);
-        out = Assembler(problem, start, left_out).run();
+        out = Assembler(problem, start, first, left_out).run();
         out.has_moved = true;
         out.dependent = dependent_at(problem, out.poses);
         out.gaps = gaps_at(problem, out.poses, out.angles);

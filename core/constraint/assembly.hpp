@@ -34,7 +34,10 @@ struct Assembly {
     int iterations = 0;
 };
 
-Assembly assemble(const AssemblyProblem& problem, const std::vector<kinematics::Pose>& start);
+/// @param start    P0.
+/// @param attempt  where the search begins; empty: at `start`. Of several stationary poses it decides which one is found.
+Assembly assemble(const AssemblyProblem& problem, const std::vector<kinematics::Pose>& start,
+                  const std::vector<kinematics::Pose>& attempt = {});
 
 /// The velocity nearest to `velocities` (6 per body: v, omega) that keeps to the rows, by mass: minimises 1/2 (u - v)^T M (u - v) subject
 /// to C u = rates.

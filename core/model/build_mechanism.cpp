@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "fettle/core/model/branch_of_joint.hpp"
 #include "fettle/core/model/choose_kappa.hpp"
 #include "fettle/core/model/mechanism_start.hpp"
 
@@ -68,6 +69,7 @@ public:
         for_each(from.joints, Origin::List::joint, [&](const scene::Joint& joint) {
             if (scene::couples_joints(joint.kind)) add_coupling(joint);
         });
+        if (errors_.empty()) errors_ = add_branches(scene_, model_);
         check_names(from.springs, "spring or damper");
         check_names(from.motors, "motor");
         check_names(from.loads, "load");

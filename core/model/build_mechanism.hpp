@@ -22,9 +22,9 @@ struct TermScales {
 /// Adds Model::mechanism; moves pose_start and velocity_start of dynamic bodies as little as their masses allow, with a warning of each
 /// body that had to. Rows that follow from others are left out, with a warning.
 /// Contract: bodies, masses, dhat, kappa and diagonal of the model are set.
-/// Errors: names that are not there, joints of a body with itself, axes of length 0, motors that turn by half a turn in a time step
-/// (inconsistent, out_of_range); loops that cannot be closed, with the joints and the gaps that remain; joints that contradict one another;
-/// Newmark, which has no rows (unsupported).
+/// Errors: names that are not there, branches that cannot be said so (branch_of_joint.hpp) or on which a loop does not close, joints of a
+/// body with itself, axes of length 0, motors that turn by half a turn in a time step (inconsistent, out_of_range); loops that cannot be
+/// closed, with the joints and the gaps that remain; joints that contradict one another; Newmark, which has no rows (unsupported).
 base::Errors build_mechanism(const scene::Scene& scene, Model& model, const TermScales& scales = {});
 
 }  // namespace fettle::core::model

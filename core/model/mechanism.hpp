@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "fettle/core/constraint/branch.hpp"
 #include "fettle/core/constraint/row.hpp"
 #include "fettle/core/measure/measure.hpp"
 #include "fettle/core/scene/mechanism.hpp"
@@ -67,6 +68,7 @@ struct Mechanism {
     std::vector<MeasureTerm> terms;
     std::vector<Joint> joints;                       ///< and the motors that drive coordinates
     std::vector<std::pair<int, int>> not_colliding;  ///< bodies that joints join, (a < b), sorted
+    std::vector<constraint::Branch> branches;        ///< on which side loops are assembled; Branch::joint is a place in `joints`
     std::vector<double> angles_start;                ///< of the measures, at the start
     WrittenStart written;
     bool empty() const { return rows.empty() && terms.empty() && joints.empty(); }

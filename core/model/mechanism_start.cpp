@@ -2,6 +2,7 @@
 #include "fettle/core/model/mechanism_start.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -9,6 +10,7 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/constraint/assembly.hpp"
 #include "fettle/core/kinematics/path.hpp"
+#include "fettle/core/model/branch_of_joint.hpp"
 
 namespace fettle::core::model {
 namespace {
@@ -56,6 +58,47 @@ Errors describe_gaps(const scene::Scene& scene, const Model& model, const Assemb
             << base::length_text(found.gaps.maxCoeff(), model.length_unit)
             << " remain where the bodies come closest to it; are the lengths of a loop too short, or is a motor's curve out of reach?";
     return {{ErrorCode::inconsistent, where, message.str()}};
+}
+
+bool is_on_sides(const Mechanism& mechanism, const std::vector<kinematics::Pose>& poses) {
+    return std::all_of(mechanism.branches.begin(), mechanism.branches.end(),
+                       [&](const constraint::Branch& branch) { return is_on_side(mechanism, branch, poses); });
+}
+
+// The mirror image of what was found first, then legs at some angles: where the written poses lead to another branch, or to none.
+Assembly on_branches(const AssemblyProblem& problem, const Mechanism& mechanism, const std::vector<kinematics::Pose>& written,
+                     Assembly found) {
+    const auto is_there = [&](const Assembly& at) { return at.is_met && is_on_sides(mechanism, at.poses); };
+    if (is_there(found)) return found;
+    const std::optional<double> bends[] = {std::nullopt, 0.5, 1.0, 1.4};
+    for (const std::vector<kinematics::Pose>& from : {found.poses, written})
+        for (const std::optional<double>& bend : bends) {
+            std::vector<kinematics::Pose> attempt = from;
+            for (const constraint::Branch& branch : mechanism.branches)
+                if (bend || !is_on_side(mechanism, branch, attempt)) turn_over(branch, mechanism.set.frames, problem.dofs, bend, attempt);
+            Assembly next = assemble(problem, written, attempt);
+            if (is_there(next)) return next;
+            if (next.is_met && !found.is_met) found = std::move(next);
+        }
+    return found;
+}
+
+// Bodies meet their joints, but not on the side that a joint says.
+Errors describe_other_side(const scene::Scene& scene, const Mechanism& mechanism, const Assembly& found) {
+    Errors errors;
+    for (const constraint::Branch& branch : mechanism.branches) {
+        if (is_on_side(mechanism, branch, found.poses)) continue;
+        const std::string& name = mechanism.joints[branch.joint].name;
+        const auto joint = std::find_if(scene.mechanism.joints.begin(), scene.mechanism.joints.end(),
+                                        [&](const scene::Joint& from) { return from.name == name; });
+        const std::string where = joint->where.empty() ? "joint `" + name + "`" : joint->where + "/assemble";
+        errors.push_back(
+            {ErrorCode::inconsistent, where,
+             "the bodies cannot be assembled so that " + words_of_side(mechanism, branch, branch.sign) +
+                 ": their joints are met only where " + words_of_side(mechanism, branch, -branch.sign) +
+                 ". Are the two sides one for these lengths, or are the poses of a loop that no motor drives on the other side?"});
+    }
+    return errors;
 }
 
 void warn_of_dependent(const Assembly& found, Model& model) {
@@ -154,8 +197,9 @@ Errors settle_start(const scene::Scene& scene, Model& model) {
     mechanism.written.poses = written;
     if (mechanism.rows.empty()) return {};
     const AssemblyProblem problem = start_problem(model);
-    const Assembly found = assemble(problem, written);
+    const Assembly found = on_branches(problem, mechanism, written, assemble(problem, written));
     if (!found.is_met) return describe_gaps(scene, model, problem, found);
+    if (Errors errors = describe_other_side(scene, mechanism, found); !errors.empty()) return errors;
     if (found.has_moved) move_bodies(found, model);
     mechanism.angles_start = found.angles;
     warn_of_dependent(found, model);

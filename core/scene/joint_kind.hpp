@@ -29,8 +29,8 @@ inline const std::vector<JointKindInfo>& joint_kinds() {
     };
     static const std::vector<JointKindInfo> kinds{
         {JointKind::ball, "ball", 3, "", "a point of one body stays on a point of the other", pair},
-        {JointKind::revolute, "revolute", 1, "angle", "hinge: turns about an axis", with_axis()},
-        {JointKind::prismatic, "prismatic", 1, "slide", "slides along an axis, without turning", with_axis()},
+        {JointKind::revolute, "revolute", 1, "angle", "hinge: turns about an axis", with_axis({"assemble"})},
+        {JointKind::prismatic, "prismatic", 1, "slide", "slides along an axis, without turning", with_axis({"assemble"})},
         {JointKind::cylindrical, "cylindrical", 2, "slide", "slides along an axis and turns about it", with_axis()},
         {JointKind::planar, "planar", 3, "", "a point stays in the plane across an axis, free to turn about it", with_axis()},
         {JointKind::fixed, "fixed", 0, "", "the two bodies are one", pair},

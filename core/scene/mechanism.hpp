@@ -35,6 +35,18 @@ struct CoordinateForces {
     std::optional<std::array<double, 2>> limits;  ///< stops, with the stiffness of contact
 };
 
+/// On which side a closed linkage has a joint; see Assemble.
+enum class AssembleSide { left, right, ahead, behind };
+
+/// Which of its assemblies a closed linkage takes, said at the joint between its two bodies that no motor drives:
+///   left, right    the way from joint `from` to this one, and on to joint `to`, turns so, seen with this joint's axis towards the viewer
+///   ahead, behind  one of the three joints is prismatic: of the other two, in that order, the second lies so along the slide's axis
+/// `from` joins one of this joint's bodies to something else, `to` the other.
+struct Assemble {
+    AssembleSide side = AssembleSide::left;
+    std::string from, to;  ///< empty: the only other joint of this one's body a; of b
+};
+
 /// Two bodies, or one and the world. The joint's coordinate: the angle about the axis from a to b (revolute, screw), 0 at the start as
 /// written, or the slide of b's point from a's along the axis (prismatic, cylindrical). Which way b is turned about the axis against a
 /// where the joint fixes it (prismatic, fixed) is how the start has it.
@@ -47,6 +59,7 @@ struct Joint {
     double ratio = 1;               ///< gear: angle of the second joint per angle of the first; rack: slide per angle [m/rad]
     CoordinateForces forces;
     bool collide = false;  ///< do the two bodies feel contact with each other?
+    std::optional<Assemble> assemble;
 };
 
 /// Between two points, or about or along a joint's coordinate; a damper is one without stiffness.

@@ -255,6 +255,21 @@ private:
         if (joint.kind == scene::JointKind::screw) joint.pitch = node.require("pitch").length(unit_).value_or(0);
         if (has_coordinate(joint.kind)) joint.forces = read_forces(node, unit_of(joint.kind));
         joint.collide = node["collide"].boolean().value_or(false);
+        if (node["assemble"].exists()) joint.assemble = read_assemble(node["assemble"]);
+    }
+
+    // The joints that it names may come later in the list: the model looks for them (model/branch_of_joint.hpp).
+    static scene::Assemble read_assemble(const JsonNode& node) {
+        static constexpr std::string_view sides[] = {"left", "right", "ahead", "behind"};  // in the order of AssembleSide
+        scene::Assemble out;
+        node.allow_keys({"side", "from", "to"});
+        if (!node.is_object()) return out;
+        const std::vector<std::string_view> names(std::begin(sides), std::end(sides));
+        const auto side = node.require("side").choice(names);
+        if (side) out.side = static_cast<scene::AssembleSide>(std::find(names.begin(), names.end(), *side) - names.begin());
+        out.from = node["from"].string().value_or("");
+        out.to = node["to"].string().value_or("");
+        return out;
     }
 
     void read_coupling(const JsonNode& node, scene::Joint& joint) {

@@ -6,6 +6,7 @@
 
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/answers/check_faults.hpp"
+#include "fettle/design/answers/motion_warnings.hpp"
 #include "fettle/design/description/constraint.hpp"
 
 namespace fettle::design::answers {
@@ -78,6 +79,7 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
     }
     json["constraints"] = list;
     json["relations"] = relations_json(design, evaluation.relations);
+    if (const auto warnings = motion_warnings(design, evaluation); !warnings.empty()) json["warnings"] = warnings;
     json["forward_seconds"] = evaluation.forward_seconds;
     json["backward_seconds"] = evaluation.backward_seconds;
     return json;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/answers/motion_warnings.hpp"
 
 namespace fettle::design::answers {
 
@@ -169,6 +170,7 @@ Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, 
     for (const core::scene::Body& body : design.scene.bodies) names.push_back(body.name);
     json["clearance"] = clearance_json(outcome.clearance, names);
     json["unbuildable"] = outcome.unbuildable;
+    if (const auto warnings = motion_warnings(design, outcome.final); !warnings.empty()) json["warnings"] = warnings;
     if (!outcome.limits.empty()) json["limits"] = outcome.limits;
     json["limited_by"] = report.best.usable ? Json(limited_by(design, outcome)) : Json::array();
     json["out"] = run.out;

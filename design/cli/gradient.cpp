@@ -8,13 +8,13 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/design/answers/check_faults.hpp"
 #include "fettle/design/answers/gradient_json.hpp"
+#include "fettle/design/answers/motion_warnings.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/description/requirement_text.hpp"
 #include "fettle/design/gradient_audit/design_line.hpp"
 #include "fettle/design/gradient_audit/difference_check.hpp"
 #include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/problem/overlooked_peaks.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 
 namespace fettle::design::cli {
@@ -255,10 +255,8 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
         console.result(answers::not_evaluated_json(evaluation), "the design cannot be evaluated: " + evaluation.reason + "\n");
         return exit_undecided;
     }
-    const std::vector<std::string> peaks = problem::overlooked_peaks(design, evaluation);
-    tell_warnings(console, peaks, options.path);
+    tell_warnings(console, answers::motion_warnings(design, evaluation), options.path);
     Json json = answers::values_json(design, evaluation);
-    if (!peaks.empty()) json["warnings"] = peaks;
     std::string text = values_text(design, evaluation, console);
     int code = exit_done;
     if (options.check) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/design/answers/motion_warnings.hpp"
 #include "fettle/design/answers/optimise_json.hpp"
 #include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/answers/run_folder.hpp"
@@ -11,7 +12,6 @@
 #include "fettle/design/cli/optimise_answer.hpp"
 #include "fettle/design/cli/optimise_starts.hpp"
 #include "fettle/design/cli/report_made.hpp"
-#include "fettle/design/problem/overlooked_peaks.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/optimise_file.hpp"
 #include "fettle/design/studies/random_start.hpp"
@@ -78,11 +78,8 @@ void add_interruption(Json& json, const std::vector<StartResult>& rows, const st
 int run_one(const Run& run, const std::vector<StartResult>& rows, Starts starts) {
     Console& console = run.console;
     const bool was_stopped = starts == Starts::interrupted;
-    std::vector<std::string> peaks;
     const auto answer = [&](const OptimiseOutcome& outcome) {
         Json json = answers::outcome_json(run.problem, outcome, run.facts);
-        peaks = problem::overlooked_peaks(run.problem.design(), outcome.final);
-        if (!peaks.empty()) json["warnings"] = peaks;
         if (was_stopped) add_interruption(json, rows, best_start(rows));
         if (!rows.empty()) json["starts"] = starts_json(rows);
         return json;
@@ -107,7 +104,7 @@ int run_one(const Run& run, const std::vector<StartResult>& rows, Starts starts)
     if (!done->history_kept_as.empty()) console.narrate("the history of an earlier run is kept as " + done->history_kept_as);
     console.unwritten(done->unwritten);
     if (json.is_null()) json = answer(outcome);
-    tell_warnings(console, peaks, run.options.path);
+    tell_warnings(console, answers::motion_warnings(run.problem.design(), outcome.final), run.options.path);
     std::string told = outcome_text(run.problem.design(), outcome, console, run.facts);
     if (outcome.report.best.usable && done->unwritten.empty()) told += written_text(run.facts);
     if (!rows.empty()) {

@@ -13,6 +13,7 @@
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/stepper/balance.hpp"
+#include "fettle/core/stepper/branch_warnings.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/core/stepper/split_path.hpp"
 #include "fettle/core/stepper/step_count.hpp"
@@ -204,6 +205,10 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
         console.unwritten(core::records::write_poses(options.poses, simulation.trajectory, model, answers::unit_name(model.length_unit)));
     const std::optional<core::stepper::Balance>& balance = simulation.balance;
     if (balance) add_balance(model, *balance, options.path, json, console);
+    for (const std::string& warning : core::stepper::branch_warnings(model, simulation.trajectory)) {
+        tell_warnings(console, {warning}, options.path);
+        json["warnings"].push_back(warning);
+    }
     bool written = false;
     if (writes_out) {
         json["out"] = options.out;

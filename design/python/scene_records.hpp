@@ -48,6 +48,7 @@ FETTLE_WORDS(fettle::core::scene::MeshPolicy, "strict", "tolerant", "lenient")
 FETTLE_WORDS(fettle::core::scene::Integrator, "implicit_euler", "bdf2", "newmark", "quasi_static")
 FETTLE_WORDS(fettle::core::scene::CurveKind, "linear", "cubic", "trapezoid", "control_points")
 FETTLE_WORDS(fettle::core::scene::JointKind, "ball", "revolute", "prismatic", "cylindrical", "planar", "fixed", "screw", "gear", "rack")
+FETTLE_WORDS(fettle::core::scene::AssembleSide, "left", "right", "ahead", "behind")
 FETTLE_WORDS(fettle::core::scene::MotorKind, "motion", "effort")
 FETTLE_WORDS(fettle::core::scene::Orientation::Kind, "angles", "vector")
 
@@ -75,9 +76,11 @@ FETTLE_RECORD(fettle::core::scene::Attachment, "Attachment", field("body", &Type
 FETTLE_RECORD(fettle::core::scene::CoordinateForces, "CoordinateForces", field("stiffness", &Type::stiffness), field("rest", &Type::rest),
               field("preload", &Type::preload), field("damping", &Type::damping), field("friction", &Type::friction),
               field("limits", &Type::limits))
+FETTLE_RECORD(fettle::core::scene::Assemble, "Assemble", field("side", &Type::side), field("from_", &Type::from), field("to", &Type::to))
 FETTLE_RECORD(fettle::core::scene::Joint, "Joint", field("name", &Type::name), field("where", &Type::where), field("kind", &Type::kind),
               field("a", &Type::a), field("b", &Type::b), field("pitch", &Type::pitch), field("of", &Type::of),
-              field("ratio", &Type::ratio), field("forces", &Type::forces), field("collide", &Type::collide))
+              field("ratio", &Type::ratio), field("forces", &Type::forces), field("collide", &Type::collide),
+              field("assemble", &Type::assemble))
 FETTLE_RECORD(fettle::core::scene::Spring, "Spring", field("name", &Type::name), field("where", &Type::where), field("joint", &Type::joint),
               field("a", &Type::a), field("b", &Type::b), field("forces", &Type::forces))
 FETTLE_RECORD(fettle::core::scene::Motor, "Motor", field("name", &Type::name), field("where", &Type::where), field("joint", &Type::joint),

@@ -168,6 +168,7 @@ from .results import (
     Witness as Witness,
 )
 from .scene import (
+    Assemble as Assemble,
     Attachment as Attachment,
     Body as Body,
     BoundNumber as BoundNumber,

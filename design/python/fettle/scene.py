@@ -241,6 +241,15 @@ class CoordinateForces(Record):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
+class Assemble(Record):
+    """On which side of a joint a closed linkage is assembled."""
+
+    side: Literal["left", "right", "ahead", "behind"] = "left"
+    from_: str = ""  #: a joint at the other end of one of its bodies; "": the only one of `a`
+    to: str = ""  #: of the other body; "": the only one of `b`
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Joint(Record):
     name: str = ""
     where: str = ""
@@ -252,6 +261,7 @@ class Joint(Record):
     ratio: Number = number("any", 1.0)  #: of a gear; of a rack its radius [m]
     forces: CoordinateForces = dataclasses.field(default_factory=CoordinateForces)
     collide: bool = False
+    assemble: Optional[Assemble] = None
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)

@@ -126,4 +126,54 @@ TEST_CASE("assembly and start velocities: forwards and backwards agree", "[adjoi
     }
 }
 
+TEST_CASE("a linkage assembled on the branch that is asked for has that branch's derivatives", "[adjoint][assembly]") {
+    // A driven four-bar, all bars written on one another: poses that are nearest to the other branch or to none.
+    const Vector3 z = Vector3::UnitZ(), origin = Vector3::Zero();
+    const auto scene_at = [&](core::scene::AssembleSide side, double crank, double coupler, double angle) {
+        core::scene::Scene scene = scene_of({bar("crank", 0.1), bar("coupler", 0.33), bar("rocker", 0.25)}, 0.01);
+        scene.mechanism.joints = {
+            joint("O", JointKind::revolute, {"", origin, z}, {"crank", origin, z}),
+            joint("A", JointKind::revolute, {"crank", Vector3(crank, 0, 0), z}, {"coupler", origin, z}),
+            joint("B", JointKind::revolute, {"coupler", Vector3(coupler, 0, 0), z}, {"rocker", Vector3(0.25, 0, 0), z}),
+            joint("C", JointKind::revolute, {"", Vector3(0.35, -0.05, 0), z}, {"rocker", origin, z})};
+        scene.mechanism.joints[2].assemble = core::scene::Assemble{side, "", ""};
+        core::scene::Curve curve;
+        curve.times = {0};
+        curve.values = {angle};
+        scene.mechanism.motors = {motor("drive", "O", curve)};
+        return built(scene);
+    };
+    for (const auto side : {core::scene::AssembleSide::left, core::scene::AssembleSide::right}) {
+        const core::model::Model model = scene_at(side, 0.1, 0.33, 0.7);
+        std::mt19937_64 random(3);
+        std::uniform_real_distribution<double> unit(-1, 1);
+        ModelGradient gradient = zero_model_gradient(model, 0);
+        std::vector<Matrix34> weights(3);
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (int k = 0; k < 12; ++k) weights[i].reshaped()[k] = unit(random);
+            gradient.bodies[i].pose_start_bar = weights[i];
+        }
+        const auto sum_at = [&](double crank, double coupler, double angle) {
+            const core::model::Model there = scene_at(side, crank, coupler, angle);
+            double sum = 0;
+            for (std::size_t i = 0; i < 3; ++i) sum += weights[i].cwiseProduct(pose_matrix(there.bodies[i].pose_start)).sum();
+            return sum;
+        };
+        const auto difference = [&](const Vector3& along) {
+            const auto at = [&](double s) { return sum_at(0.1 + s * along[0], 0.33 + s * along[1], 0.7 + s * along[2]); };
+            const auto central = [&](double h) { return (at(h) - at(-h)) / (2 * h); };
+            return (4 * central(5e-5) - central(1e-4)) / 3;
+        };
+        written_start_adjoint(model, gradient);
+        const MechanismGradient& bar = gradient.mechanism;  // frames 2 k and 2 k + 1: the ends of joint k
+        const double of_crank = bar.frames[2].point.x(), of_coupler = bar.frames[4].point.x();
+        double of_angle = 0;
+        for (const auto& values : bar.row_values)
+            for (const double v : values) of_angle += v;
+        CHECK(of_crank == Approx(difference(Vector3::UnitX())).epsilon(1e-7));
+        CHECK(of_coupler == Approx(difference(Vector3::UnitY())).epsilon(1e-7));
+        CHECK(of_angle == Approx(difference(Vector3::UnitZ())).epsilon(1e-7));
+    }
+}
+
 }  // namespace fettle::adjoint::model::mechanism_start_tangent_test

@@ -57,7 +57,82 @@ const std::string turned_design = R"({
   ]
 })";
 
+// A driven four-bar, its bars written on one another.
+const std::string linkage_scene = R"({
+  "fettle_scene": 1, "units": "mm", "timestep": 0.05, "end_time": 0.5, "integrator": "quasi_static",
+  "variables": { "crank": 100, "coupler": 330, "rocker": 250 },
+  "bodies": [
+    { "name": "crank", "density": 1000, "shape": { "part": "box", "dimensions": { "size_x": 100, "size_y": 10, "size_z": 5 } }, "group": 1 },
+    { "name": "coupler", "density": 1000, "shape": { "part": "box", "dimensions": { "size_x": 330, "size_y": 10, "size_z": 5 } }, "group": 1 },
+    { "name": "rocker", "density": 1000, "shape": { "part": "box", "dimensions": { "size_x": 250, "size_y": 10, "size_z": 5 } }, "group": 1 }
+  ],
+  "joints": [
+    { "name": "O", "type": "revolute", "b": "crank", "point_a": [0, 0, 0], "point_b": [0, 0, 0], "axis": [0, 0, 1] },
+    { "name": "A", "type": "revolute", "a": "crank", "b": "coupler", "point_a": ["= crank", 0, 0], "point_b": [0, 0, 0], "axis": [0, 0, 1] },
+    { "name": "B", "type": "revolute", "a": "coupler", "b": "rocker", "point_a": ["= coupler", 0, 0], "point_b": ["= rocker", 0, 0],
+      "axis": [0, 0, 1], "assemble": { "side": "right" } },
+    { "name": "D", "type": "revolute", "b": "rocker", "point_a": [350, -50, 0], "point_b": [0, 0, 0], "axis": [0, 0, 1] }
+  ],
+  "motors": [{ "name": "drive", "joint": "O", "angle": { "rate": 200, "times": [0], "values": [40] } }]
+})";
+
+const std::string linkage_design = R"({
+  "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+  "parameters": [
+    { "name": "a", "value": 100, "lower": 50, "upper": 150 },
+    { "name": "b", "value": 330, "lower": 100, "upper": 400 },
+    { "name": "c", "value": 250, "lower": 20, "upper": 400 }
+  ],
+  "set": { "/variables/crank": "= a", "/variables/coupler": "= b", "/variables/rocker": "= c" },
+  "objective": [
+    { "type": "marker_path", "body": "coupler", "point": [150, 60, 0], "points": [[200, 120, 0], [150, 150, 0]], "times": [0.1, 0.4], "weight": 1 }
+  ]
+})";
+
 }  // namespace
+
+TEST_CASE("gradient --check: a linkage assembled on either side, whatever its poses as written") {
+    std::vector<double> values;
+    for (const char* side : {"right", "left"}) {
+        const DesignFolder folder(linkage_design, replaced(linkage_scene, "right", side));
+        const Answer answer = run("gradient " + folder.design() + " --check --json");
+        CAPTURE(side, answer.out);
+        CHECK(answer.code == 0);
+        const nlohmann::json told = answer.json();
+        CHECK(told.at("largest_relative_error").get<double>() < 1e-6);
+        CHECK(told.count("warnings") == 0);
+        values.push_back(told.at("objective").get<double>());
+    }
+    CHECK(std::abs(values[0] - values[1]) > 0.1 * std::abs(values[0]));
+    // Lengths that close on no side.
+    const DesignFolder folder(replaced(linkage_design, "\"value\": 250", "\"value\": 30"), linkage_scene);
+    const Answer answer = run("gradient " + folder.design() + " --json");
+    CAPTURE(answer.out);
+    CHECK(answer.code == 3);
+    CHECK(answer.says("the joints cannot be met"));
+}
+
+TEST_CASE("gradient, simulate: a linkage that goes over to its other side is a warning") {
+    // A double rocker that its rocker drives: coupler and rocker come in line on the way.
+    std::string scene =
+        replaced(linkage_scene, R"("crank": 100, "coupler": 330, "rocker": 250)", R"("crank": 250, "coupler": 150, "rocker": 250)");
+    scene = replaced(scene, "[350, -50, 0]", "[300, 0, 0]");
+    scene = replaced(scene, R"("joint": "O", "angle": { "rate": 200, "times": [0], "values": [40] })",
+                     R"("joint": "D", "angle": { "times": [0, 0.5], "values": [136, 147] })");
+    std::string design = replaced(linkage_design, "\"value\": 100", "\"value\": 250");
+    design = replaced(replaced(design, "\"value\": 330", "\"value\": 150"), "\"upper\": 150", "\"upper\": 300");
+    const DesignFolder folder(design, scene);
+    const Answer gradient = run("gradient " + folder.design() + " --json"), simulate = run("simulate " + folder.design() + " --json");
+    for (const Answer& answer : {gradient, simulate}) {
+        CAPTURE(answer.out);
+        CHECK(answer.code == 0);
+        bool told = false;
+        const nlohmann::json json = answer.json();
+        for (const auto& warning : json.at("warnings"))
+            told = told || warning.get<std::string>().find("the linkage has gone over to its other assembly by t = ") == 0;
+        CHECK(told);
+    }
+}
 
 TEST_CASE("gradient --check: torques on a body and of a motor, the size of a part with stops and friction") {
     for (const char* integrator : {"implicit_euler", "bdf2"}) {

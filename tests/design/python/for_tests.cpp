@@ -59,6 +59,7 @@ py::dict defaults() {
     add_default<fettle::design::description::Design>(all);
     add_default<fettle::design::description::Measurement>(all);
     add_default<fettle::core::scene::BoundNumber>(all);
+    add_default<fettle::core::scene::Assemble>(all);
     add_default<fettle::core::scene::Orientation>(all);
     add_default<fettle::core::scene::Variable>(all);
     add_default<fettle::design::description::ObjectiveTerm>(all);

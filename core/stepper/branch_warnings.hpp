@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+/// Does a motion keep to the branches that the scene asks for at its start (constraint/branch.hpp)? A linkage can leave them at a dead
+/// centre.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/core/model/model.hpp"
+#include "fettle/core/stepper/trajectory.hpp"
+
+namespace fettle::core::stepper {
+
+/// One sentence per branch that is on the other side at the end of some step, with the first time; looked at nowhere in between.
+std::vector<std::string> branch_warnings(const model::Model& model, const Trajectory& trajectory);
+
+}  // namespace fettle::core::stepper

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/answers/motion_warnings.hpp"
+
+#include "fettle/core/stepper/branch_warnings.hpp"
+#include "fettle/design/problem/overlooked_peaks.hpp"
+
+namespace fettle::design::answers {
+
+std::vector<std::string> motion_warnings(const description::Design& design, const problem::DesignEvaluation& evaluation) {
+    std::vector<std::string> out;
+    for (int scenario = 0; scenario < count_of(evaluation.runs); ++scenario) {
+        const problem::Run& run = evaluation.runs[scenario];
+        if (!run.model) continue;
+        for (const std::string& warning : core::stepper::branch_warnings(*run.model, run.simulation.trajectory))
+            out.push_back(description::scenario_prefix(design, scenario) + warning);
+    }
+    const std::vector<std::string> peaks = problem::overlooked_peaks(design, evaluation);
+    out.insert(out.end(), peaks.begin(), peaks.end());
+    return out;
+}
+
+}  // namespace fettle::design::answers

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+/// What is to be said about the motions of a design that was evaluated, besides its numbers.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fettle/design/problem/design_problem.hpp"
+
+namespace fettle::design::answers {
+
+/// Linkages that leave the branch that they were assembled on (core/stepper/branch_warnings.hpp), of each scenario that was simulated;
+/// extremes that are hardly meant (problem/overlooked_peaks.hpp).
+std::vector<std::string> motion_warnings(const description::Design& design, const problem::DesignEvaluation& evaluation);
+
+}  // namespace fettle::design::answers
