@@ -136,6 +136,7 @@ Json contact_changes_json(const Design& design, const CheckReport& report) {
                         {"contacts", change.count},
                         {"others", change.at.others},
                         {"gradient_jumps", is_kink(change.at.event)}});
+        if (!change.scenario.empty()) list.back()["scenario"] = change.scenario;
     }
     return list;
 }

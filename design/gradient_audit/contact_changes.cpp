@@ -135,7 +135,8 @@ std::string sentence_of(const ContactChange& change) {
     std::array<char, 32> time{};
     std::snprintf(time.data(), time.size(), "%.4g", change.time);
     const EventWords& words = words_at(change.at.event);
-    std::string text = std::string("at t = ") + time.data() + " s '" + change.body_a + "' and '" + change.body_b + "' " +
+    const std::string where = change.scenario.empty() ? "" : change.scenario + ": ";
+    std::string text = where + "at t = " + time.data() + " s '" + change.body_a + "' and '" + change.body_b + "' " +
                        (change.at.others && words.words_with_others != nullptr ? words.words_with_others : words.words) + ", " +
                        features(change.at.is);
     if (change.at.event == ContactEvent::new_features) text += " in place of " + features(change.at.was);

@@ -48,6 +48,7 @@ struct ContactChange {
     std::string body_a, body_b;  ///< their names
     double time = 0;             ///< of the step's end [s]
     int count = 1;               ///< contacts that change so at `to`, all steps together
+    std::string scenario = {};   ///< of the design, its name; empty: it has none
 };
 
 /// Collects what simulations at several moves of one parameter to one side show.

@@ -62,7 +62,7 @@ struct ParameterDifferences {
 // Where the gradients are checked: how it was simulated, and its contacts.
 struct CheckedDesign {
     const problem::DesignEvaluation& evaluation;
-    std::vector<std::vector<ContactState>> contacts;
+    std::vector<std::vector<std::vector<ContactState>>> contacts;  ///< of each scenario
 };
 
 class ParameterCheck {
@@ -76,8 +76,8 @@ public:
           steps_(steps),
           options_(options),
           at_(at),
-          above_(at.contacts),
-          below_(at.contacts) {}
+          above_(at.contacts.begin(), at.contacts.end()),
+          below_(at.contacts.begin(), at.contacts.end()) {}
 
     ParameterDifferences run(const std::function<void()>& on_simulation) {
         on_simulation_ = on_simulation;
@@ -91,11 +91,16 @@ public:
             if (result_.interrupted || good_enough(step)) break;
         }
         result_.kinks = kinks(step);
-        result_.contacts_reach = {below_.reach(), above_.reach()};
-        for (const auto& [side, watch] : {std::pair(-1.0, &below_), std::pair(1.0, &above_)})
-            for (ContactChange& change : watch->changes(name(), side, range_, *at_.evaluation.runs.front().model,
-                                                        at_.evaluation.runs.front().simulation.trajectory))
-                result_.contact_changes.push_back(std::move(change));
+        result_.contacts_reach = {below_.front().reach(), above_.front().reach()};
+        for (size_t s = 0; s < above_.size(); ++s) {
+            const problem::Run& at = at_.evaluation.runs[s];
+            const auto& scenarios = problem_.design().scenarios;
+            for (const auto& [side, watch] : {std::pair(-1.0, &below_[s]), std::pair(1.0, &above_[s])})
+                for (ContactChange& change : watch->changes(name(), side, range_, *at.model, at.simulation.trajectory)) {
+                    if (!scenarios.empty()) change.scenario = scenarios[s].name;
+                    result_.contact_changes.push_back(std::move(change));
+                }
+        }
         return std::move(result_);
     }
 
@@ -115,9 +120,10 @@ private:
         Trial trial{problem_.evaluate(p, options), p[parameter_]};
         on_simulation_();
         result_.interrupted = result_.interrupted || trial.evaluation.interrupted;
-        if (trial.evaluation.usable)
-            (side > 0 ? above_ : below_)
-                .add(step, *trial.evaluation.runs.front().model, trial.evaluation.runs.front().simulation.trajectory);
+        for (size_t s = 0; trial.evaluation.usable && s < above_.size(); ++s) {
+            const problem::Run& run = trial.evaluation.runs[s];
+            (side > 0 ? above_ : below_)[s].add(step, *run.model, run.simulation.trajectory);
+        }
         return trial;
     }
 
@@ -186,7 +192,7 @@ private:
     const DifferenceSteps& steps_;
     const CheckOptions& options_;
     const CheckedDesign& at_;
-    ContactWatch above_, below_;
+    std::vector<ContactWatch> above_, below_;  // of each scenario
     std::function<void()> on_simulation_;
     std::vector<VectorX> differences_, bends_;
     ParameterDifferences result_;
@@ -380,7 +386,8 @@ CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX
     }
     const std::vector<int> chosen = parameters_to_check(problem, at.gradient, options.most_parameters);
     std::vector<ParameterDifferences> found(n);
-    const CheckedDesign checked{at, contact_states(*at.runs.front().model, at.runs.front().simulation.trajectory)};
+    CheckedDesign checked{at, {}};
+    for (const problem::Run& run : at.runs) checked.contacts.push_back(contact_states(*run.model, run.simulation.trajectory));
     core::base::parallel_for(count_of(chosen), 1, [&](int i) {
         const int k = chosen[i];
         found[k] = ParameterCheck(problem, p, k, steps, options, checked).run(count);

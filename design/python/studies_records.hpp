@@ -58,7 +58,8 @@ FETTLE_RECORD(fettle::design::gradient_audit::ContactDifference, "ContactDiffere
               field("step", &Type::step), field("was", &Type::was), field("is_", &Type::is), field("others", &Type::others))
 FETTLE_RECORD(fettle::design::gradient_audit::ContactChange, "ContactChange", field("parameter", &Type::parameter),
               field("from_", &Type::from), field("to", &Type::to), field("share", &Type::share), field("at", &Type::at),
-              field("body_a", &Type::body_a), field("body_b", &Type::body_b), field("time", &Type::time), field("count", &Type::count))
+              field("body_a", &Type::body_a), field("body_b", &Type::body_b), field("time", &Type::time), field("count", &Type::count),
+              field("scenario", &Type::scenario))
 FETTLE_RECORD(fettle::design::gradient_audit::CheckReport, "CheckReport", field("rows", &Type::rows), field("along", &Type::along),
               field("sweeps", &Type::sweeps), field("left_out", &Type::left_out),
               field("largest_relative_error", &Type::largest_relative_error), field("roughness", &Type::roughness),

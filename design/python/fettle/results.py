@@ -564,6 +564,7 @@ class ContactChange(Record):
     body_b: str = ""
     time: float = 0.0
     count: int = 1
+    scenario: str = ""  #: its name; empty: the design has none
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)

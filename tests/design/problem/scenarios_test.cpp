@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/design/gradient_audit/sweep_agreement.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/optimise_design.hpp"
@@ -199,6 +200,20 @@ TEST_CASE("scenarios: the worst of them, whose optimum lies where two are equall
     REQUIRE(largest);
     const DesignEvaluation least = DesignProblem::create(largest->design)->evaluate(p);
     CHECK(least.terms[0].value == std::min(west, east));
+}
+
+TEST_CASE("scenarios: the check of gradients compares its sweeps in each") {
+    const DesignProblem problem = problem_of(with_scenarios());
+    const VectorX p = start_of(problem);
+    const gradient_audit::SweepAgreement sweeps = gradient_audit::compare_sweeps(problem, problem.evaluate(p));
+    CHECK(sweeps.failure.empty());
+    CHECK(sweeps.disagreement < 1e-9);
+    // A motion that was not simulated from its model is noticed, whichever scenario it is of.
+    DesignEvaluation wrong = problem.evaluate(p);
+    wrong.runs[2].simulation.trajectory.poses[3][1].position.z() += 1e-6;
+    wrong.runs[2].simulation.trajectory.steps[2].nodes.back()[1].position.z() += 1e-6;
+    const gradient_audit::SweepAgreement noticed = gradient_audit::compare_sweeps(problem, wrong);
+    CHECK((!noticed.failure.empty() || noticed.disagreement > 1e-9));
 }
 
 TEST_CASE("scenarios: what no scenario changes is measured once") {
