@@ -158,6 +158,7 @@ private:
             if (evaluator.start_evaluation().usable) {
                 OptimiserOptions options = options_;
                 options.tolerance *= early_tolerance;
+                options.meets_requirements = false;  // those are the problem's own
                 if (begun) options.radius = std::min(options.radius, later_radius);
                 const NativeOutcome native = minimise(evaluator, options);
                 point = evaluator.best_point();

@@ -15,6 +15,7 @@ struct OptimiserOptions {
     int max_evaluations = 200;
     double tolerance = 1e-4;            ///< of the objective: a gain that is smaller is not worth an evaluation (least_gain)
     double radius = 0.25;               ///< of the first step, of each variable's range
+    bool meets_requirements = true;     ///< a step that meets what is missed is worth an evaluation, however small the gain; "sqp" asks
     std::function<bool()> should_stop;  ///< optional (Ctrl-C)
     std::function<void(int, const VectorX&, const Evaluation&, bool best)> on_evaluation;  ///< optional
     std::function<void(const std::string&)> narrate;  ///< optional: what the evaluations that follow are for

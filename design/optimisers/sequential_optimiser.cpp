@@ -33,17 +33,32 @@ public:
             telling_ = with_telling_derivatives(evaluator_, point_, *at_);
             const QuadraticSolution step = steered_step();
             if (!step.solved) return end("no next design could be computed");
+            if (restores(step)) {
+                take(step);
+                if (radius_ < least_radius()) return end(too_rough);
+                continue;
+            }
             const double worth = least_gain(evaluator_, options_, at_->objective);
             if (step.decrease <= worth) return end("no change near by promises a gain above the tolerance");
             if (step.step.lpNorm<Eigen::Infinity>() < least_radius())
                 return end("steps became so short that they change nothing that matters");
             take(step);
-            if (radius_ < least_radius())
-                return end("predicted gains do not come true, however small the change: the simulated values are rough here");
+            if (radius_ < least_radius()) return end(too_rough);
         }
     }
 
 private:
+    static constexpr const char* too_rough =
+        "predicted gains do not come true, however small the change: the simulated values are rough here";
+
+    // Does the step meet, or nearly, what is missed? Such a one is worth an evaluation however short it is: the tolerance is the
+    // objective's.
+    bool restores(const QuadraticSolution& step) const {
+        constexpr double nearly = 0.1, rounding = 1e-9;
+        return options_.meets_requirements && at_->violation > 0 && step.step.lpNorm<Eigen::Infinity>() > rounding &&
+               step.violation <= nearly * target_violation(evaluator_, *at_);
+    }
+
     double least_radius() const { return 0.03 * std::sqrt(options_.tolerance); }
     NativeOutcome end(const char* words) const { return {iterations_, words}; }
 

@@ -65,6 +65,7 @@ public:
         design_.numbers = setting->numbers;
         read_simulation(root["simulation"]);
         const ScenarioNames scenarios = read_scenarios(root["scenarios"], root["set"], formulas);
+        if (!scene_errors_.empty()) return all_errors();  // of one of them
         std::vector<quantities::NamedQuantity> named;
         const ReadContext context{design_.scene, to_si(1, file_.length_unit), design_.steps * design_.scene.timestep, formulas, named,
                                   scenarios};
@@ -167,6 +168,7 @@ private:
             const std::string name = entry.require("name").string().value_or("");
             const bool taken = std::find(names.names.begin(), names.names.end(), name) != names.names.end();
             const std::string fault = core::base::name_fault(name);
+            if (name.empty() && entry["name"].exists()) entry["name"].fail(ErrorCode::out_of_range, "a scenario has a name");
             if (!fault.empty()) entry["name"].fail(ErrorCode::out_of_range, "a scenario's name " + fault);
             if (taken || is_scenario_word(name))
                 entry["name"].fail(ErrorCode::inconsistent,

@@ -54,6 +54,28 @@ TEST_CASE("the smallest change that meets a constraint is the one along the shor
     }
 }
 
+TEST_CASE("a requirement that is nearly met is met in the end, however rough the tolerance of the objective") {
+    // The logarithm of the same constraint: each linearisation promises more than comes true, so that every step falls a little short.
+    for (const double tolerance : {1e-4, 1e-2, 1e-1}) {
+        CAPTURE(tolerance);
+        Problem problem = outside_of_ellipse(0.6, 0.4);
+        problem.constraint_lower = VectorX::Constant(1, std::log(4.0) + 1e-6);  // with a margin, as designs have
+        problem.evaluate = [evaluate = problem.evaluate](const VectorX& at) {
+            Evaluation e = evaluate(at);
+            e.jacobian /= e.constraints[0];
+            e.constraints[0] = std::log(e.constraints[0]);
+            e.violation = std::max(0.0, std::log(4.0) - e.constraints[0]);
+            return e;
+        };
+        OptimiserOptions options;
+        options.tolerance = tolerance;
+        const OptimiserReport report = optimise(nearest_to(problem.start, problem), **make_optimiser("sqp"), options);
+        CHECK(report.feasible);
+        CHECK(std::sqrt(report.best.objective) == Approx(0.1).epsilon(std::max(1e-2, tolerance)));
+        CHECK(report.evaluations < 20);
+    }
+}
+
 TEST_CASE("what meets every constraint is left as it is, after one evaluation") {
     const Problem problem = outside_of_ellipse(3, 1);
     const OptimiserReport report = optimise(nearest_to(problem.start, problem), **make_optimiser("sqp"), {});

@@ -233,6 +233,8 @@ TEST_CASE("scenarios: faults have their place") {
     json design = with_scenarios();
     design["scenarios"][1]["name"] = "quick";
     CHECK(is_told(design, "/scenarios/2/name", "another scenario"));
+    design["scenarios"][1]["name"] = "";
+    CHECK(is_told(design, "/scenarios/1/name", "has a name"));
     design["scenarios"][1]["name"] = "all";
     CHECK(is_told(design, "/scenarios/1/name", "several"));
     design = with_scenarios();
