@@ -47,8 +47,8 @@ struct OptimiserReport {
     Optimality optimality;
     int evaluations = 0, failures = 0, iterations = 0;
     bool budget_spent = false;  ///< max_evaluations ended the run
-    std::vector<StageReport>
-        stages;  ///< of the smoother models, then of the problem itself (twice: from where they led to, then from the start)
+    /// Of the smoother models, then of the problem itself: from where they led to and, if that ended worse than the start, from the start.
+    std::vector<StageReport> stages;
 };
 
 /// Deterministic: the same problem and options give the same sequence of evaluations.

@@ -14,13 +14,25 @@ py::object record_class(const char* name) { return py::module_::import("fettle")
 
 py::object record_list(py::object list) { return py::module_::import("fettle._record").attr("Records")(std::move(list)); }
 
+namespace {
+
+// py::getattr with a default, and py::hasattr, would swallow whatever is raised meanwhile: Ctrl-C too, which comes where Python code runs.
+py::object attribute_or_none(py::handle of, const char* name) {
+    if (PyObject* const found = PyObject_GetAttrString(of.ptr(), name)) return py::reinterpret_steal<py::object>(found);
+    if (PyErr_ExceptionMatches(PyExc_AttributeError) == 0) throw py::error_already_set();
+    PyErr_Clear();
+    return py::none();
+}
+
+}  // namespace
+
 py::object prepared(py::handle record) {
-    const py::object itself = py::reinterpret_borrow<py::object>(record), prepare = py::getattr(record, "_prepared", py::none());
-    return prepare.is_none() ? itself : prepare();
+    const py::object prepare = attribute_or_none(record, "_prepared");
+    return prepare.is_none() ? py::reinterpret_borrow<py::object>(record) : prepare();
 }
 
 py::object paths_as_text(py::object given) {
-    if (py::hasattr(given, "__fspath__")) return py::module_::import("os").attr("fspath")(given);
+    if (!attribute_or_none(given, "__fspath__").is_none()) return py::module_::import("os").attr("fspath")(given);
     if (!py::isinstance<py::list>(given) && !py::isinstance<py::tuple>(given)) return given;
     py::list texts;
     for (const py::handle each : given) texts.append(paths_as_text(py::reinterpret_borrow<py::object>(each)));
@@ -51,7 +63,7 @@ std::string place_of(py::handle record, const char* record_name) {
         if (std::isupper(*c) != 0 && !place.empty()) place += ' ';
         place += static_cast<char>(std::tolower(*c));
     }
-    const py::object name = py::getattr(record, "name", py::none());
+    const py::object name = attribute_or_none(record, "name");
     if (py::isinstance<py::str>(name) && py::len(name) > 0) place += " `" + name.cast<std::string>() + "`";
     return place;
 }

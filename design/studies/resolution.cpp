@@ -53,6 +53,7 @@ Result<ResolutionReport> check_resolution(const std::string& path, reading::Desi
                                 {"with twice the facets", {times, 1}, &ResolvedQuantity::finer_facets},
                                 {"with half the time step", {1, times}, &ResolvedQuantity::finer_steps},
                                 {"with both", {times, times}, &ResolvedQuantity::finer_both}};
+    read.made.reset();  // whose parts have other facets
     ResolutionReport report;
     std::optional<DesignProblem> written;
     for (const Variant& variant : variants) {

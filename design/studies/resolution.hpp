@@ -37,7 +37,7 @@ struct ResolutionOptions {
     std::function<void(const std::string& what)> on_variant;  ///< optional: before each simulation
 };
 
-/// @param path, read  Of the design; `read.resolution` is not looked at.
+/// @param path, read  Of the design; `read.resolution` and `read.made` are not looked at.
 /// Errors: those of reading the design, and of DesignProblem::create.
 Result<ResolutionReport> check_resolution(const std::string& path, reading::DesignReadOptions read, const ResolutionOptions& options = {});
 

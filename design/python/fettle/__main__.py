@@ -127,6 +127,7 @@ def progress_line(done: int, of: int, result: Dict[str, Any]) -> str:
 
 def run(options: argparse.Namespace) -> int:
     def tell(done: int, of: int, result: Dict[str, Any]) -> None:
+        Stopped.check()
         if not options.quiet:
             print(progress_line(done, of, result), file=sys.stderr)
 
@@ -134,6 +135,7 @@ def run(options: argparse.Namespace) -> int:
     sweep = sweep_of(options.sweep, design)
     if not sweep and options.samples == 0 and options.starts == 0:
         raise Error([Fault("missing_key", "command line", "nothing to explore: give --sweep, --samples or --starts")])
+    Stopped.check()
     try:
         found = explore(
             options.design,
@@ -228,9 +230,17 @@ def put(text: str) -> None:
 class Stopped(KeyboardInterrupt):
     """Ctrl-C or SIGTERM."""
 
+    came: Optional[int] = None  # the first one's number; libraries, and Python in its finalisers, drop what is raised there
+
     def __init__(self, number: int):
         super().__init__(number)
         self.number = number
+
+    @classmethod
+    def check(cls) -> None:
+        """Raises it again if one came."""
+        if cls.came is not None:
+            raise cls(cls.came)
 
 
 def stop_on_signals() -> None:
@@ -239,8 +249,14 @@ def stop_on_signals() -> None:
 
     def stop(number: int, _: Any) -> NoReturn:
         signal.signal(number, signal.SIG_DFL)
+        Stopped.came = number
         raise Stopped(number)
 
+    def tell_unless_stopped(dropped: Any) -> None:
+        if not isinstance(dropped.exc_value, Stopped):
+            sys.__unraisablehook__(dropped)
+
+    sys.unraisablehook = tell_unless_stopped
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, stop)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT, signal.SIGTERM))

@@ -15,7 +15,7 @@ import pytest
 import fettle
 from conftest import EXAMPLES, MeanHeight, tilted_plate
 from fettle import exploration
-from fettle.__main__ import main, progress_line
+from fettle.__main__ import Stopped, main, progress_line
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -202,7 +202,11 @@ def interrupted_exploration(words, cwd, when, number=signal.SIGINT):
         while not when() and process.poll() is None and time.monotonic() < deadline:
             time.sleep(0.01)
         os.killpg(process.pid, number)
-        out, err = process.communicate(timeout=60)
+        try:
+            out, err = process.communicate(timeout=60)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            raise
     return process.returncode, out, err
 
 
@@ -236,6 +240,32 @@ def test_ctrl_c_at_any_time_is_no_traceback(tmp_path):
             continue
         assert (code, err) == (130, ""), pause
         assert said.startswith("interrupted"), pause
+
+
+def test_ctrl_c_while_a_record_is_read_is_not_dropped():
+    """A flag of the interpreter becomes an exception wherever Python code runs next: also where a member that may be absent is asked for."""
+
+    class InterruptedPath:
+        @property
+        def __fspath__(self):
+            raise KeyboardInterrupt
+
+    class InterruptedDesign(fettle.Design):
+        @property
+        def _prepared(self):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fettle.read_scene(InterruptedPath())
+    with pytest.raises(KeyboardInterrupt):
+        fettle.DesignProblem(InterruptedDesign())
+
+
+def test_an_interruption_that_something_dropped_ends_the_work_all_the_same(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(Stopped, "came", signal.SIGTERM)
+    words = ["explore", str(short_file(tmp_path)), "--out", str(tmp_path / "out.jsonl"), "--samples", "3"]
+    assert main(words) == 128 + signal.SIGTERM
+    assert capsys.readouterr() == ("interrupted before the first design was done\n", "")
 
 
 def told(capsys, *words):
