@@ -35,7 +35,8 @@ struct Hinge {
 class Facets {
 public:
     Facets(const Mesh& mesh, const std::vector<HalfEdge>& halves, double flatness) : mesh_(mesh), flatness_(flatness) {
-        hinges_of_.resize(mesh.triangles.size());
+        hinges_of_.assign(mesh.triangles.size(), {-1, -1, -1});
+        hinges_.reserve(halves.size() / 2);
         visit_edges(halves, [&](std::size_t first, std::size_t last) { add_hinge(halves, first, last); });
         facet_.assign(mesh.triangles.size(), -1);
         for (const int seed : by_area()) grow(seed);
@@ -63,13 +64,14 @@ private:
         const Vector3 origin = mesh_.vertices.col(edge.low), along = mesh_.vertices.col(edge.high) - origin;
         const auto side = [&](int v) { return Vector3(along.cross(mesh_.vertices.col(v) - origin)); };
         if (!(side(far[0]).dot(side(far[1])) < 0)) return;
-        for (const int t : triangle) hinges_of_[at(t)].push_back(count_of(hinges_));
+        for (const int t : triangle) *std::find(hinges_of_[at(t)].begin(), hinges_of_[at(t)].end(), -1) = count_of(hinges_);
         hinges_.push_back({first, triangle, far});
     }
 
     // The largest first: their planes are the best known.
     std::vector<int> by_area() const {
         std::vector<std::pair<double, int>> order;
+        order.reserve(mesh_.triangles.size());
         for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
             order.emplace_back(-area_vector(mesh_, t).squaredNorm(), static_cast<int>(t));
         std::sort(order.begin(), order.end());
@@ -83,18 +85,19 @@ private:
         facet_[at(seed)] = seed;
         const Vector3 normal = area_vector(mesh_, at(seed)).normalized();
         const Vector3 origin = mesh_.vertices.col(mesh_.triangles[at(seed)][0]);
-        std::vector<int> open{seed};
-        while (!open.empty()) {
-            const int t = open.back();
-            open.pop_back();
+        open_.assign(1, seed);
+        while (!open_.empty()) {
+            const int t = open_.back();
+            open_.pop_back();
             for (const int k : hinges_of_[at(t)]) {
+                if (k < 0) break;
                 const Hinge& hinge = hinges_[at(k)];
                 const int side = hinge.triangle[0] == t ? 1 : 0;
                 const double height = std::abs(normal.dot(mesh_.vertices.col(hinge.far[at(side)]) - origin));
                 if (facet_[at(hinge.triangle[at(side)])] >= 0 || !(height <= flatness_)) continue;
                 facet_[at(hinge.triangle[at(side)])] = seed;
                 height_ = std::max(height_, height);
-                open.push_back(hinge.triangle[at(side)]);
+                open_.push_back(hinge.triangle[at(side)]);
             }
         }
     }
@@ -102,8 +105,9 @@ private:
     const Mesh& mesh_;
     double flatness_, height_ = 0;
     std::vector<Hinge> hinges_;
-    std::vector<std::vector<int>> hinges_of_;  // [triangle]
-    std::vector<int> facet_;                   // [triangle] the one it has grown from; -1: none yet
+    std::vector<std::array<int, 3>> hinges_of_;  // [triangle]; -1: no more
+    std::vector<int> facet_;                     // [triangle] the one it has grown from; -1: none yet
+    std::vector<int> open_;                      // triangles of the facet that grows, whose hinges are still to be crossed
 };
 
 }  // namespace
