@@ -48,8 +48,29 @@ BarrierByDmin barrier_by_dmin(double distance_squared, const BarrierParameters& 
             p.factor * (slope * b.first + gap_dot * b.second + hat_dot * first_hat)};
 }
 
+BarrierByDmin pair_barrier_by_dmin(const ContactPair& pair, const BarrierParameters& p, double slope) {
+    const core::contact::RoundGap& round = pair.round;
+    if (round.side == 0) return barrier_by_dmin(pair.closest.distance_squared, p, slope);
+    const double d = std::sqrt(pair.closest.distance_squared), radius = round.radius();
+    if (!(d > 0)) return {};
+    const double s = round.side * (d - radius);
+    BarrierByDmin b = barrier_by_dmin(s * s, p, slope);
+    b.first *= round.side * s / d;
+    if (!round.has_far) return b;
+    const BarrierByDmin far = barrier_by_dmin((radius + d) * (radius + d), p, slope);
+    return {b.value + far.value, b.first + far.first * (radius + d) / d};
+}
+
+std::array<Vector3, 4> pair_forces_radius_derivative(const ContactPair& pair, const BarrierParameters& p) {
+    const double slope = p.factor * pair.weight * core::contact::round_barrier(pair, p).slope_by_radius;
+    const Vector3 n = core::contact::contact_normal(pair);
+    std::array<Vector3, 4> out;
+    for (int i = 0; i < 4; ++i) out[i] = slope * pair.closest.weight[i] * n;
+    return out;
+}
+
 std::array<Vector3, 4> pair_forces_dmin_derivative(const ContactPair& pair, const BarrierParameters& p, double slope) {
-    const BarrierByDmin b = barrier_by_dmin(pair.closest.distance_squared, p, slope);
+    const BarrierByDmin b = pair_barrier_by_dmin(pair, p, slope);
     const bool mollified = is_mollified(pair);
     const Vector3 e1 = pair.x[1] - pair.x[0], e2 = pair.x[3] - pair.x[2], n = e1.cross(e2);
     const core::contact::ScalarDerivatives m =
@@ -69,7 +90,7 @@ std::array<Vector3, 4> pair_forces_dmin_derivative(const ContactPair& pair, cons
 double pair_potential_dmin_derivative(const ContactPair& pair, const BarrierParameters& p, double slope) {
     const double m =
         is_mollified(pair) ? core::contact::edge_mollifier(core::contact::edge_cross_squared(pair.x), pair.mollifier_eps).value : 1;
-    return pair.weight * m * barrier_by_dmin(pair.closest.distance_squared, p, slope).value;
+    return pair.weight * m * pair_barrier_by_dmin(pair, p, slope).value;
 }
 
 std::array<Vector3, 4> mollifier_eps_gradient(const Vector3& ea0, const Vector3& ea1, const Vector3& eb0, const Vector3& eb1) {

@@ -16,10 +16,7 @@
 
 namespace fettle::adjoint::contact {
 
-/// Is the mollifier below 1, so that the potential depends on eps?
-inline bool is_mollified(const core::contact::ContactPair& pair) {
-    return pair.type == core::geometry::PairType::edge_edge && core::contact::edge_cross_squared(pair.x) < pair.mollifier_eps;
-}
+using core::contact::is_mollified;
 
 /// df_i/deps (world) [N s^2/m^4 with the weight h^2]. Contract: is_mollified(pair).
 std::array<Vector3, 4> pair_forces_eps_derivative(const core::contact::ContactPair& pair,
@@ -28,11 +25,19 @@ std::array<Vector3, 4> pair_forces_eps_derivative(const core::contact::ContactPa
 /// d(potential)/deps = factor b dm/deps. Contract: is_mollified(pair).
 double pair_potential_eps_derivative(const core::contact::ContactPair& pair, const core::contact::BarrierParameters& parameters);
 
+/// df_i/dR of round surfaces (world) [N s^2/m with the weight h^2].
+std::array<Vector3, 4> pair_forces_radius_derivative(const core::contact::ContactPair& pair,
+                                                     const core::contact::BarrierParameters& parameters);
+
 /// factor b and factor b' changing with dmin, at a distance held. @param slope  dfactor/ddmin over the factor [1/m]
 struct BarrierByDmin {
     double value = 0, first = 0;
 };
 BarrierByDmin barrier_by_dmin(double distance_squared, const core::contact::BarrierParameters& parameters, double slope);
+
+/// The same of a pair's b and db/dD, D = |r|^2; weight and mollifier are left out.
+BarrierByDmin pair_barrier_by_dmin(const core::contact::ContactPair& pair, const core::contact::BarrierParameters& parameters,
+                                   double slope);
 
 /// The slope of a factor in proportion to 1/(dmin + dhat)^2: the barrier's.
 inline double barrier_factor_slope(const core::contact::BarrierParameters& parameters) { return -2 / parameters.activation; }

@@ -37,7 +37,8 @@ void subtract_contact_vertices_adjoint(const ContactsAtPose& at, const std::vect
             const std::array<int, 4> body = bodies_of(list, pair);
             const Four force = pair_forces(pair, at.parameters),
                        force_dmin = pair_forces_dmin_derivative(pair, at.parameters, barrier_factor_slope(at.parameters));
-            const bool mollified = is_mollified(pair);
+            const bool mollified = is_mollified(pair), is_round = pair.round.side != 0;
+            const Four force_radius = is_round ? pair_forces_radius_derivative(pair, at.parameters) : Four{};
             Four force_eps, eps_gradient;
             if (mollified) {
                 const Four X = undeformed(at.model, body, pair);
@@ -55,10 +56,15 @@ void subtract_contact_vertices_adjoint(const ContactsAtPose& at, const std::vect
                 const Four change = pair_hessian_product(pair, at.parameters, v);
                 const double eps_bar = mollified ? dot(force_eps, v) : 0.0;
                 for (int i = 0; i < 4; ++i) {
-                    auto vertex_bar = model_bar[s].bodies[body[i]].vertices_bar.col(pair.vertex[i]);
-                    vertex_bar -= at.poses[body[i]].rotation.transpose() * (change[i] - lambda[s][body[i]].tail<3>().cross(force[i]));
-                    if (mollified) vertex_bar -= eps_bar * eps_gradient[i];
+                    Vector3 vertex_bar =
+                        at.poses[body[i]].rotation.transpose() * (change[i] - lambda[s][body[i]].tail<3>().cross(force[i]));
+                    if (mollified) vertex_bar += eps_bar * eps_gradient[i];
+                    add_vertex_gradient(at.model.bodies[body[i]], pair.vertex[i], -vertex_bar, model_bar[s].bodies[body[i]].vertices_bar);
                 }
+                if (!is_round) continue;
+                const double radius_bar = -dot(force_radius, v);
+                add_reach_gradient(at.model.bodies[list.first], pair.round, 0, radius_bar, model_bar[s].bodies[list.first].vertices_bar);
+                add_reach_gradient(at.model.bodies[list.second], pair.round, 1, radius_bar, model_bar[s].bodies[list.second].vertices_bar);
             }
         }
 }
@@ -73,7 +79,7 @@ void add_contact_gradient_tangent(const ContactsAtPose& at, const std::vector<Ma
             const Four X = undeformed(at.model, body, pair);
             Four X_dot, v;
             for (int i = 0; i < 4; ++i) {
-                X_dot[i] = direction.bodies[body[i]].vertices_dot.col(pair.vertex[i]);
+                X_dot[i] = vertex_tangent(at.model.bodies[body[i]], pair.vertex[i], direction.bodies[body[i]].vertices_dot);
                 v[i] = poses_dot[body[i]] * X[i].homogeneous() + at.poses[body[i]].rotation * X_dot[i];
             }
             const Four force = pair_forces(pair, at.parameters);
@@ -82,6 +88,13 @@ void add_contact_gradient_tangent(const ContactsAtPose& at, const std::vector<Ma
                 const double eps_dot = dot(mollifier_eps_gradient(X[0], X[1], X[2], X[3]), X_dot);
                 const Four force_eps = pair_forces_eps_derivative(pair, at.parameters);
                 for (int i = 0; i < 4; ++i) force_dot[i] += eps_dot * force_eps[i];
+            }
+            if (pair.round.side != 0) {
+                const double radius_dot =
+                    reach_tangent(at.model.bodies[list.first], pair.round, 0, direction.bodies[list.first].vertices_dot) +
+                    reach_tangent(at.model.bodies[list.second], pair.round, 1, direction.bodies[list.second].vertices_dot);
+                const Four force_radius = pair_forces_radius_derivative(pair, at.parameters);
+                for (int i = 0; i < 4; ++i) force_dot[i] += radius_dot * force_radius[i];
             }
             if (direction.dmin_dot != 0) {
                 const Four force_dmin = pair_forces_dmin_derivative(pair, at.parameters, barrier_factor_slope(at.parameters));

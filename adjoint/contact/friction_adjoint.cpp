@@ -31,6 +31,9 @@ struct Lagged {
     std::array<Vector3, 2> r{};                                    // r_a
     Matrix2 l = Matrix2::Identity();                               // K = l l^T
     const std::vector<core::contact::AreaShare>* of_weight = nullptr;
+    double by_radius = 0;                                                   // of round surfaces
+    std::array<const Matrix3*, 2> rotation{};                               // of the lag's poses
+    Vector3 along_first = Vector3::Zero(), along_second = Vector3::Zero();  // the normal in the bodies' frames
 };
 
 void find_free_directions(Lagged& g) {
@@ -49,6 +52,15 @@ void find_free_directions(Lagged& g) {
 // lambda = -2 factor w m b' d.
 void find_force(const BarrierParameters& p, Lagged& g) {
     const double d = g.distance, scale = -2 * p.factor * g.pair.weight;
+    if (const int side = g.pair.round.side; side != 0) {
+        const core::contact::RoundBarrier b = core::contact::round_barrier(g.pair, p);
+        const double factor = -side * p.factor * g.pair.weight;
+        g.force = factor * b.in_distance.first;
+        g.by_distance = factor * b.in_distance.second;
+        g.by_radius = factor * b.slope_by_radius;
+        g.by_dmin = -side * 2 * g.pair.weight * d * pair_barrier_by_dmin(g.pair, p, barrier_factor_slope(p)).first;
+        return;
+    }
     const core::contact::ScalarDerivatives b = core::contact::barrier(d * d - p.dmin * p.dmin, p.gap_hat);
     core::contact::ScalarDerivatives m{1, 0, 0};
     if (is_mollified(g.pair)) {
@@ -68,11 +80,16 @@ void find_force(const BarrierParameters& p, Lagged& g) {
 Lagged lagged(const FrictionAtPose& at, const BodyPairContacts& list, const ContactPair& pair) {
     Lagged g{pair, bodies_of(list, pair), {}, std::sqrt(pair.closest.distance_squared), {}, Vector3::Zero(), Vector3::Zero()};
     g.X = undeformed(at.model, g.body, pair);
-    g.normal = pair.closest.difference / g.distance;
+    g.normal = contact_normal(pair);
+    g.rotation = {&at.lag.poses[list.first].rotation, &at.lag.poses[list.second].rotation};
+    g.along_first = g.rotation[0]->transpose() * g.normal;
+    g.along_second = g.rotation[1]->transpose() * g.normal;
     for (int i = 0; i < 4; ++i) {
         const bool on_first = i < first_count(pair.type);
         (on_first ? g.point_first : g.point_second) += (on_first ? 1 : -1) * pair.closest.weight[i] * g.X[i];
     }
+    g.point_first -= pair.round.reach[0] * g.along_first;
+    g.point_second += pair.round.reach[1] * g.along_second;
     find_free_directions(g);
     find_force(at.parameters, g);
     return g;
@@ -95,8 +112,15 @@ struct LagParts {
 
 Vector3 across(const Vector3& n, const Vector3& v) { return v - n * n.dot(v); }
 
-// Along changes of the vertices in space and in their bodies.
-LagParts lag_tangent(const Lagged& g, const Four& x_dot, const Four& X_dot) {
+// What moves the lag of a contact.
+struct LagChange {
+    Four x, X;                          // its vertices in space, and in their bodies
+    std::array<double, 2> reach{};      // of round surfaces
+    std::array<Matrix3, 2> rotation{};  // of the lag's poses, entry by entry; only of round surfaces
+};
+
+LagParts lag_tangent(const Lagged& g, const LagChange& lag_dot) {
+    const Four &x_dot = lag_dot.x, &X_dot = lag_dot.X;
     const core::geometry::ClosestPoints& c = g.pair.closest;
     Vector3 moved = Vector3::Zero();
     for (int i = 0; i < 4; ++i) moved += c.weight[i] * x_dot[i];
@@ -123,17 +147,31 @@ LagParts lag_tangent(const Lagged& g, const Four& x_dot, const Four& X_dot) {
         else
             out.point_second -= change;
     }
+    if (g.pair.round.side == 0) return out;
+    // The points are off the centre lines by reach R^T n.
+    const std::array<double, 2>& reach = g.pair.round.reach;
+    out.force += g.by_radius * (lag_dot.reach[0] + lag_dot.reach[1]);
+    out.point_first -= lag_dot.reach[0] * g.along_first +
+                       reach[0] * (lag_dot.rotation[0].transpose() * g.normal + g.rotation[0]->transpose() * out.normal);
+    out.point_second += lag_dot.reach[1] * g.along_second +
+                        reach[1] * (lag_dot.rotation[1].transpose() * g.normal + g.rotation[1]->transpose() * out.normal);
     return out;
 }
 
-struct VertexBars {
-    Four x, X;  // in space, and of the undeformed ones in their bodies
-};
-
-VertexBars lag_adjoint(const Lagged& g, const LagParts& bar) {
+// The gradient in it.
+LagChange lag_adjoint(const Lagged& g, const LagParts& bar) {
     const core::geometry::ClosestPoints& c = g.pair.closest;
-    const Vector3 difference_bar = across(g.normal, bar.normal) / g.distance;
-    VertexBars out;
+    LagChange out;
+    Vector3 normal_bar = bar.normal;
+    out.rotation.fill(Matrix3::Zero());
+    if (g.pair.round.side != 0) {
+        const std::array<double, 2>& reach = g.pair.round.reach;
+        out.reach = {g.by_radius * bar.force - g.along_first.dot(bar.point_first),
+                     g.by_radius * bar.force + g.along_second.dot(bar.point_second)};
+        normal_bar += -reach[0] * (*g.rotation[0] * bar.point_first) + reach[1] * (*g.rotation[1] * bar.point_second);
+        out.rotation = {-reach[0] * g.normal * bar.point_first.transpose(), reach[1] * g.normal * bar.point_second.transpose()};
+    }
+    const Vector3 difference_bar = across(g.normal, normal_bar) / g.distance;
     std::array<double, 4> weight_bar;
     for (int i = 0; i < 4; ++i) {
         const Vector3 point_bar = i < first_count(g.pair.type) ? bar.point_first : Vector3(-bar.point_second);
@@ -231,12 +269,18 @@ void subtract_friction_adjoint(const FrictionAtPose& at, const std::vector<std::
             lag_bar.point_second =
                 -(slide.moved_second.leftCols<3>().transpose() * moved_bar + v_second.leftCols<3>().transpose() * slide.force());
             if (g.of_weight != nullptr) add_weight_gradient(*g.of_weight, -lag_bar.force * g.force / g.pair.weight, bar.areas_bar[s]);
-            const VertexBars vertices = lag_adjoint(g, lag_bar);
+            const LagChange change = lag_adjoint(g, lag_bar);
             for (int i = 0; i < 4; ++i) {
                 const auto body = static_cast<std::size_t>(g.body[i]);
-                bar.lag_poses_bar[s][body] -= vertices.x[i] * g.X[i].homogeneous().transpose();
-                bar.model_bar[s].bodies[body].vertices_bar.col(g.pair.vertex[i]) -=
-                    vertices.X[i] + at.lag.poses[body].rotation.transpose() * vertices.x[i];
+                bar.lag_poses_bar[s][body] -= change.x[i] * g.X[i].homogeneous().transpose();
+                add_vertex_gradient(at.model.bodies[body], g.pair.vertex[i],
+                                    -(change.X[i] + at.lag.poses[body].rotation.transpose() * change.x[i]),
+                                    bar.model_bar[s].bodies[body].vertices_bar);
+            }
+            for (std::size_t k = 0; k < 2 && g.pair.round.side != 0; ++k) {
+                const auto body = static_cast<std::size_t>(k == 0 ? list.first : list.second);
+                bar.lag_poses_bar[s][body].leftCols<3>() -= change.rotation[k];
+                add_reach_gradient(at.model.bodies[body], g.pair.round, k, -change.reach[k], bar.model_bar[s].bodies[body].vertices_bar);
             }
             bar.slip_reference_bar[s][list.first] += moved_bar * first.transpose();
             bar.slip_reference_bar[s][list.second] -= moved_bar * second.transpose();
@@ -248,13 +292,18 @@ void subtract_friction_adjoint(const FrictionAtPose& at, const std::vector<std::
 
 void add_friction_tangent(const FrictionAtPose& at, const FrictionTangent& dot, const ModelTangent& direction, PoseGradientTangent& out) {
     for_each_contact(at, [&](const BodyPairContacts& list, const Lagged& g, const Sliding& slide) {
-        Four x_dot, X_dot;
+        LagChange lag_dot;
         for (int i = 0; i < 4; ++i) {
             const auto body = static_cast<std::size_t>(g.body[i]);
-            X_dot[i] = direction.bodies[body].vertices_dot.col(g.pair.vertex[i]);
-            x_dot[i] = dot.lag_poses_dot[body] * g.X[i].homogeneous() + at.lag.poses[body].rotation * X_dot[i];
+            lag_dot.X[i] = vertex_tangent(at.model.bodies[body], g.pair.vertex[i], direction.bodies[body].vertices_dot);
+            lag_dot.x[i] = dot.lag_poses_dot[body] * g.X[i].homogeneous() + at.lag.poses[body].rotation * lag_dot.X[i];
         }
-        LagParts change = lag_tangent(g, x_dot, X_dot);
+        for (std::size_t k = 0; k < 2 && g.pair.round.side != 0; ++k) {
+            const auto body = static_cast<std::size_t>(k == 0 ? list.first : list.second);
+            lag_dot.rotation[k] = dot.lag_poses_dot[body].leftCols<3>();
+            lag_dot.reach[k] = reach_tangent(at.model.bodies[body], g.pair.round, k, direction.bodies[body].vertices_dot);
+        }
+        LagParts change = lag_tangent(g, lag_dot);
         change.force += direction.dmin_dot * g.by_dmin;
         if (g.of_weight != nullptr) change.force += weight_tangent(*g.of_weight, dot.areas_dot) * g.force / g.pair.weight;
         const Eigen::Vector4d first = g.point_first.homogeneous(), second = g.point_second.homogeneous();

@@ -224,6 +224,7 @@ void search(const Search& along, const std::vector<BodyPairCandidates*>& searche
             append(out.edge_edge, tasks[k].found.edge_edge);
         }
         sort_by_distance(out);
+        pair.sides = side_pieces(*along.swept[pair.a].body, *along.swept[pair.b].body, out);
     });
 }
 
@@ -236,7 +237,7 @@ int Candidates::pairs_at_once() const {
 }
 
 void cover(const model::Model& model, const std::vector<PathSegment>& segments, double allowance, Candidates& candidates) {
-    const double activation = model.dmin + model.dhat;
+    const double activation = model.dmin + model.dhat + model.round_reach;
     static thread_local std::vector<SweptBody> swept_memory;  // stays from call to call
     static thread_local std::vector<geometry::Box> box_memory;
     std::vector<SweptBody>& swept = swept_memory;

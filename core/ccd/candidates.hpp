@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "fettle/core/ccd/side_pieces.hpp"
 #include "fettle/core/geometry/overlapping_boxes.hpp"
 #include "fettle/core/geometry/primitive_pair.hpp"
 #include "fettle/core/kinematics/path.hpp"
@@ -20,6 +21,7 @@ namespace fettle::core::ccd {
 /// What a search has found between two bodies, a < b, and where.
 struct BodyPairCandidates : geometry::PrimitivePairs {
     int a = 0, b = 0;
+    std::vector<SidePieces> sides;                 ///< of their round surfaces
     double allowance = 0;                          ///< of the search [m]
     bool fresh = false;                            ///< found by the last cover(), and not settled yet
     std::array<kinematics::PathSegment, 2> along;  ///< the segments that were searched
@@ -51,9 +53,9 @@ struct BodyDistance {
 };
 
 /// Makes the candidates complete along the segments: lists every pair of primitives whose distance somewhere on them is at most
-/// dmin + dhat. Pairs of bodies that are covered already are left alone, the others are searched along the segments.
-/// The bodies may then be anywhere on the segments, the same fraction for all; say with settle() where they went.
-/// A body whose segment is not finite is near all others, with all primitives.
+/// dmin + dhat, and what round surfaces reach beyond their meshes (model::Model::round_reach). Pairs of bodies that are covered already are
+/// left alone, the others are searched along the segments. The bodies may then be anywhere on the segments, the same fraction for all; say
+/// with settle() where they went. A body whose segment is not finite is near all others, with all primitives.
 /// @param allowance  how much more the points of two bodies may approach one another than they do along the segments before the two need
 ///                   another search, [m]. Dear where large: this one must look that much farther.
 void cover(const model::Model& model, const std::vector<kinematics::PathSegment>& segments, double allowance, Candidates& candidates);

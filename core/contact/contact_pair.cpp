@@ -13,12 +13,28 @@ using geometry::ClosestPoints;
 
 // m and its derivatives for a pair (1 unless nearly parallel edges).
 ScalarDerivatives mollifier_of(const ContactPair& pair) {
-    if (pair.type == geometry::PairType::point_triangle) return {1, 0, 0};
+    if (pair.type == geometry::PairType::point_triangle || pair.round.side != 0) return {1, 0, 0};
     return edge_mollifier(edge_cross_squared(pair.x), pair.mollifier_eps);
 }
 
-ScalarDerivatives barrier_of(const ContactPair& pair, const BarrierParameters& p) {
-    return barrier(pair.closest.distance_squared - p.dmin * p.dmin, p.gap_hat);
+// b in the gap s itself.
+ScalarDerivatives barrier_of_gap(double s, const BarrierParameters& p) {
+    const ScalarDerivatives b = barrier(s * s - p.dmin * p.dmin, p.gap_hat);
+    return {b.value, 2 * s * b.first, 4 * s * s * b.second + 2 * b.first};
+}
+
+// In D of what is f in d.
+ScalarDerivatives in_square(const ScalarDerivatives& f, double d) {
+    const double first = f.first / (2 * d);
+    return {f.value, first, (f.second - 2 * first) / (4 * d * d)};
+}
+
+ScalarDerivatives barrier_of_round(const ContactPair& pair, const BarrierParameters& p) {
+    constexpr double rounding = 1e-12, concentric = 1e-6;  // of R
+    const double d = std::sqrt(pair.closest.distance_squared), radius = pair.round.radius();
+    const ScalarDerivatives b = round_barrier(pair, p).in_distance;
+    if (pair.round.has_far && d < concentric * radius) return {b.value, 0.5 * b.second, 0};
+    return in_square(b, std::max(d, rounding * radius));
 }
 
 // Interior parameters' directions r_a, made orthonormal in one go: K = L L^T, columns of the result times L^T give r_a.
@@ -126,7 +142,7 @@ Following following_of(const ContactPair& pair, const Arms& arms, const Vector3&
 // Of factor * b(D), added to h: the true second derivative, without the curvature of the rotations.
 void add_exact_distance_hessian(const ContactPair& pair, const Arms& arms, const ScalarDerivatives& b, PairMatrix& h) {
     const double d = std::sqrt(pair.closest.distance_squared);
-    const Vector3 n = pair.closest.difference / d;
+    const Vector3 n = contact_normal(pair);
     add_outer_product(h, 4 * b.second * pair.closest.distance_squared + 2 * b.first, pull_back(n, arms.first, arms.second));
     const double tension = -2 * b.first;  // >= 0
     const Following f = following_of(pair, arms, n);
@@ -180,7 +196,7 @@ void add_positive_pair(double nn, double vw, double ww, const PairVector& v, con
 void add_distance_hessian(const ContactPair& pair, const Arms& arms, const ScalarDerivatives& b, HessianKind kind, PairMatrix& h) {
     if (kind == HessianKind::exact) return add_exact_distance_hessian(pair, arms, b, h);
     const double d = std::sqrt(pair.closest.distance_squared);
-    const Vector3 n = pair.closest.difference / d;
+    const Vector3 n = contact_normal(pair);
     if (pair.weight < 0) {  // only what the exact one takes off is left
         const Vector3 t1 = n.unitOrthogonal();
         for (const Vector3& t : {t1, Vector3(n.cross(t1))}) add_outer_product(h, 2 * b.first, pull_back(t, arms.first, arms.second));
@@ -188,6 +204,12 @@ void add_distance_hessian(const ContactPair& pair, const Arms& arms, const Scala
     }
     const double normal = 4 * b.second * pair.closest.distance_squared + 2 * b.first;
     if (normal > 0) add_outer_product(h, normal, pull_back(n, arms.first, arms.second));
+    if (b.first > 0) {  // round surfaces, one inside the other: it draws across the centre line, too
+        const Following f = following_of(pair, arms, n);
+        const Vector3 t = f.count > 0 ? Vector3(free_directions(pair.closest, pair.x).r[0].cross(n).normalized()) : n.unitOrthogonal();
+        add_outer_product(h, 2 * b.first, pull_back(t, arms.first, arms.second));
+        return;
+    }
     add_positive_sliding(pair, arms, -2 * b.first, d, n, h);
 }
 
@@ -286,6 +308,25 @@ void add_mollified(const ContactPair& pair, const Arms& arms, const BarrierParam
 
 }  // namespace
 
+RoundBarrier round_barrier(const ContactPair& pair, const BarrierParameters& p) {
+    const RoundGap& round = pair.round;
+    const double d = std::sqrt(pair.closest.distance_squared), radius = round.radius();
+    const ScalarDerivatives near = barrier_of_gap(round.side * (d - radius), p);
+    if (!round.has_far) return {{near.value, round.side * near.first, near.second}, -near.second};
+    const ScalarDerivatives far = barrier_of_gap(radius + d, p);
+    return {{near.value + far.value, far.first - near.first, near.second + far.second}, far.second - near.second};
+}
+
+Vector3 contact_normal(const ContactPair& pair) {
+    const double d = std::sqrt(pair.closest.distance_squared);
+    return d > 0 || pair.round.side == 0 ? Vector3(pair.closest.difference / d) : (pair.x[2] - pair.x[1]).unitOrthogonal();
+}
+
+ScalarDerivatives barrier_of(const ContactPair& pair, const BarrierParameters& p) {
+    if (pair.round.side != 0) return barrier_of_round(pair, p);
+    return barrier(pair.closest.distance_squared - p.dmin * p.dmin, p.gap_hat);
+}
+
 void add_outer_product(PairMatrix& hessian, double factor, const PairVector& v) {
     if (base::has_wide_instructions())
         add_columns_wide(factor, v, hessian);
@@ -313,13 +354,15 @@ Matrix12 in_both_bodies(const PairMatrix& hessian) {
 }
 
 double pair_potential(const ContactPair& pair, const BarrierParameters& p) {
-    const double gap = pair.closest.distance_squared - p.dmin * p.dmin;
+    const double d = gap_of(pair), gap = d * d - p.dmin * p.dmin;
     if (gap >= p.gap_hat) return 0;
-    return p.factor * pair.weight * mollifier_of(pair).value * barrier(gap, p.gap_hat).value;
+    return p.factor * pair.weight * mollifier_of(pair).value * barrier_of(pair, p).value;
 }
 
 double normal_force(const ContactPair& pair, const BarrierParameters& p) {
-    return -2 * p.factor * pair.weight * mollifier_of(pair).value * barrier_of(pair, p).first * std::sqrt(pair.closest.distance_squared);
+    const double force =
+        -2 * p.factor * pair.weight * mollifier_of(pair).value * barrier_of(pair, p).first * std::sqrt(pair.closest.distance_squared);
+    return pair.round.side < 0 ? -force : force;
 }
 
 void add_rigid_stiffness(PairMatrix& hessian, double stiffness, const Vector3& direction, const Vector3& arm_first,
@@ -390,7 +433,7 @@ std::array<Vector3, 4> pair_hessian_product(const ContactPair& pair, const Barri
 void add_pair_derivatives(const ContactPair& pair, const BarrierParameters& p, HessianKind kind, const Vector3& first_position,
                           const Vector3& second_position, BodyPairSum& sum) {
     const Arms arms = arms_of(pair, first_position, second_position);
-    if (pair.type == geometry::PairType::edge_edge && edge_cross_squared(pair.x) < pair.mollifier_eps) {
+    if (is_mollified(pair)) {
         add_mollified(pair, arms, p, kind, sum);
         return;
     }

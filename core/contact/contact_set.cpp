@@ -10,6 +10,7 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/contact/near_search.hpp"
+#include "fettle/core/contact/round_contacts.hpp"
 #include "fettle/core/linear/matrices.hpp"
 
 namespace fettle::core::contact {
@@ -30,8 +31,9 @@ void add_contacts(const NearAt& at, CountingPlan* plan, Found& found) {
     static thread_local NearPairs near;
     const double least = find_near(at, near);
     BodyPairContacts forward{list.a, list.b, {}}, backward{list.b, list.a, {}};
+    const double gap = find_round_contacts(at, near, forward.contacts, backward.contacts);
     count_contacts(counted_sides(at.model, list, at.poses), near, forward.contacts, backward.contacts, {nullptr, nullptr, plan});
-    found.least = least_of(found.least, least);
+    found.least = least_of(found.least, least_of(least, gap * std::max(gap, 0.0)));
     if (std::isfinite(least)) found.set.distances.push_back({list.a, list.b, std::sqrt(least)});
     for (BodyPairContacts* contacts : {&forward, &backward}) {
         found.set.count += count_of(contacts->contacts);
@@ -62,11 +64,10 @@ void take_over(const ccd::Candidates& candidates, ContactPlans& plans) {
 
 // Of the contacts of one ordered pair of bodies.
 double potential_of(const BodyPairContacts& list, const BarrierParameters& parameters) {
-    const double dmin_squared = parameters.dmin * parameters.dmin;
     double sum = 0;
     for (const ContactPair& pair : list.contacts) {
-        const bool apart = pair.closest.distance_squared > dmin_squared && std::isfinite(pair.closest.distance_squared);
-        if (!apart) return std::numeric_limits<double>::infinity();
+        const double gap = gap_of(pair);
+        if (!(gap > parameters.dmin) || !std::isfinite(gap)) return std::numeric_limits<double>::infinity();
         sum += pair_potential(pair, parameters);
     }
     return sum;

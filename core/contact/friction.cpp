@@ -35,12 +35,14 @@ FrictionContact lag_contact(const ContactPair& pair, const Pose& first, const Po
     Vector3 a = Vector3::Zero(), b = Vector3::Zero();
     for (int i = 0; i < n; ++i) a += w[i] * (pair.x[i] - first.position);
     for (int i = n; i < 4; ++i) b -= w[i] * (pair.x[i] - second.position);
+    const Vector3 normal = contact_normal(pair);
+    a -= pair.round.reach[0] * normal;
+    b += pair.round.reach[1] * normal;
     FrictionContact c;
     c.point_first = first.rotation.transpose() * a;
     c.point_second = second.rotation.transpose() * b;
     const auto placed = [](const Matrix34& p, const Vector3& X) { return Vector3(p.leftCols<3>() * X + p.col(3)); };
     c.separation_reference = placed(reference_first, c.point_first) - placed(reference_second, c.point_second);
-    const Vector3 normal = pair.closest.difference.normalized();
     c.tangent_1 = normal.unitOrthogonal();
     c.tangent_2 = normal.cross(c.tangent_1);
     return c;

@@ -25,7 +25,7 @@ void add_pair(const StepProblem& problem, const contact::ContactPair& pair, int 
     f.force += force;
     f.torque += torque;
     f.normal += normal_force(pair, problem.barrier) / problem.weight;
-    const double distance = std::sqrt(pair.closest.distance_squared);
+    const double distance = gap_of(pair);
     f.distance = f.contacts == 0 ? distance : std::min(f.distance, distance);
     ++f.contacts;
 }

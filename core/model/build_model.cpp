@@ -163,6 +163,26 @@ void warn_of_unused_rates(Model& model) {
     }
 }
 
+// Each contact is that of a side with a side, so that nothing is gained where none is round. Contact damping and area weights know facets
+// alone.
+void add_round_surfaces(Model& model) {
+    if (model.area_weighted || model.contact_damping_time > 0) {
+        model.warnings.push_back(std::string("contact.round has no effect with ") +
+                                 (model.area_weighted ? "contact.area_weighted" : "contact.damping_time") +
+                                 ": contact takes facets as they are");
+        return;
+    }
+    std::vector<std::shared_ptr<const geometry::RoundSurfaces>> round(model.bodies.size());
+    base::parallel_for(count_of(model.bodies), 1, [&](int i) {
+        round[i] = std::make_shared<const geometry::RoundSurfaces>(geometry::round_surfaces(model.bodies[i].mesh));
+    });
+    double height = 0;
+    for (const auto& of : round)
+        if (of->any()) height = std::max(height, of->largest_height);
+    model.round_reach = 2 * height;
+    for (std::size_t i = 0; i < round.size() && height > 0; ++i) model.bodies[i].round = round[i];
+}
+
 }  // namespace
 
 void complete_geometry(Body& body) {
@@ -256,6 +276,7 @@ base::Result<Model> build(const scene::Scene& scene, const BuildOptions& options
     model.integrator = scene.integrator;
     model.area_weighted = scene.area_weighted;
     model.contact_damping_time = scene.contact_damping_time;
+    if (scene.round_contact) add_round_surfaces(model);
     model.adaptive_kappa = !options.kappa && !scene.kappa;
     if (errors = check_areas(model); !errors.empty()) return errors;
     model.kappa = options.kappa ? *options.kappa : scene.kappa ? *scene.kappa : choose_kappa(model);

@@ -11,6 +11,7 @@
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/flat_features.hpp"
 #include "fettle/core/geometry/mesh.hpp"
+#include "fettle/core/geometry/round_surfaces.hpp"
 #include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/linear/free_dofs.hpp"
 #include "fettle/core/model/mechanism.hpp"
@@ -46,6 +47,7 @@ struct Body {
     std::vector<double> edge_area;            ///< the same per edge
     std::shared_ptr<const geometry::BodyHierarchy> hierarchy;
     std::shared_ptr<const geometry::FlatFeatures> flat;
+    std::shared_ptr<const geometry::RoundSurfaces> round;  ///< null: contact takes facets as they are
 };
 
 /// Does its scene say that it is a shell, wires or points? Then it has no inside, where its mesh is not closed. That a mesh is wide open
@@ -70,6 +72,7 @@ struct Model {
     double kappa = 0;                   ///< [N/m], or [N/m^3] if area_weighted
     bool adaptive_kappa = false;  ///< may a simulation start from a stiffer kappa and vary it (stepper/step.cpp)? never for a gradient
     bool area_weighted = false;
+    double round_reach = 0;  ///< twice the largest distance of a round surface from its mesh; 0: contact takes facets as they are [m]
     double contact_damping_time = 0;  ///< T of contact/contact_damping.hpp [s]; 0: none
     Friction friction;
     Mechanism mechanism;

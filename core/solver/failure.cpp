@@ -15,14 +15,14 @@ namespace {
 
 struct Closest {
     const contact::BodyPairContacts* pair = nullptr;
-    double distance_squared = 0;
+    double distance = 0;
 };
 
 Closest closest_of(const contact::ContactSet& contacts) {
     Closest closest;
     for (const contact::BodyPairContacts& pair : contacts.pairs)
         for (const contact::ContactPair& c : pair.contacts)
-            if (!closest.pair || c.closest.distance_squared < closest.distance_squared) closest = {&pair, c.closest.distance_squared};
+            if (const double gap = gap_of(c); !closest.pair || gap < closest.distance) closest = {&pair, gap};
     return closest;
 }
 
@@ -138,7 +138,7 @@ std::string describe_failure(const FailedStep& step) {
     describe_stop(step, out);
     if (const Closest closest = closest_of(step.contacts); closest.pair)
         out << "; closest pair '" << bodies[closest.pair->first].name << "' and '" << bodies[closest.pair->second].name << "' at "
-            << base::length_text(std::sqrt(closest.distance_squared), unit);
+            << base::length_text(closest.distance, unit);
     out << "; out of balance by " << 100 * step.residual << "% of the forces that act";
     describe_stiffness(step, out);
     return out.str();

@@ -137,13 +137,16 @@ private:
     ContactState state_of(const core::contact::BodyPairContacts& list, const ContactPair& pair) const {
         ContactState s;
         s.is_mollified = adjoint::contact::is_mollified(pair);
-        const bool by_edges = pair.type == PairType::edge_edge;
+        const bool by_edges = pair.type == PairType::edge_edge && pair.round.side == 0;
         const Corners on_first = by_edges ? edge_corners(pair, 0, s.is_mollified) : Corners{pair.vertex[0], -1, -1};
-        const Corners on_second = by_edges ? edge_corners(pair, 2, s.is_mollified) : closest_feature(pair);
+        const Corners on_second = by_edges               ? edge_corners(pair, 2, s.is_mollified)
+                                  : pair.round.side == 0 ? closest_feature(pair)
+                                                         : Corners{};
         s.a = list.first;
         s.b = list.second;
-        s.on_a = faces_[s.a].feature_of(on_first);
-        s.on_b = faces_[s.b].feature_of(on_second);
+        const bool is_round = pair.round.side != 0;
+        s.on_a = faces_[s.a].feature_of(is_round ? round_feature(s.a, pair, 0) : on_first);
+        s.on_b = faces_[s.b].feature_of(is_round ? round_feature(s.b, pair, 1) : on_second);
         Vector3 x_first = Vector3::Zero(), x_second = Vector3::Zero();
         for (int i = 0; i < 4; ++i) {
             const double weight = pair.closest.weight[i];
@@ -155,6 +158,14 @@ private:
         std::swap(s.a, s.b);
         std::swap(s.on_a, s.on_b);
         return s;
+    }
+
+    // A side, by its first corner, as contact goes smoothly round it; of a plane or sharp corner its own first vertex.
+    Corners round_feature(int body, const ContactPair& pair, std::size_t k) const {
+        const int vertex = pair.vertex[k == 0 ? 0 : first_count(pair.type)];
+        if (vertex >= 0) return {vertex, -1, -1};
+        const core::geometry::RoundSurfaces& round = *model_.bodies[body].round;
+        return {round.mesh_sides.sides[round.places[-1 - vertex].side].corners[0].rim[0], -1, -1};
     }
 
     // s = (1 - n n^T) (x_a - x_b - where the step's slip reference has the same material points).

@@ -126,7 +126,8 @@ FETTLE_RECORD(fettle::core::scene::Body, "Body", field("name", &Type::name), fie
 FETTLE_RECORD(fettle::core::scene::Scene, "Scene", path_field("path", &Type::path), field("length_unit", &Type::length_unit),
               field("bodies", &Type::bodies), field("gravity", &Type::gravity), field("timestep", &Type::timestep),
               field("end_time", &Type::end_time), field("dhat", &Type::dhat), field("dmin", &Type::dmin), field("kappa", &Type::kappa),
-              field("area_weighted", &Type::area_weighted), field("contact_damping_time", &Type::contact_damping_time),
-              field("friction", &Type::friction), field("mechanism", &Type::mechanism), field("integrator", &Type::integrator),
+              field("area_weighted", &Type::area_weighted), field("round_contact", &Type::round_contact),
+              field("contact_damping_time", &Type::contact_damping_time), field("friction", &Type::friction),
+              field("mechanism", &Type::mechanism), field("integrator", &Type::integrator),
               field("velocity_tolerance", &Type::velocity_tolerance), field("max_newton_iterations", &Type::max_newton_iterations),
               field("variables", &Type::variables), field("numbers", &Type::numbers), field("warnings", &Type::warnings))

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/ccd/side_pieces.hpp"
+
+#include <map>
+#include <utility>
+
+namespace fettle::core::ccd {
+namespace {
+
+using geometry::RoundedSide;
+using geometry::RoundedSides;
+
+// Corners that candidates have, of one side.
+class Corners {
+public:
+    void add(const RoundedSide& side, const RoundedSides::Place& place, bool is_rectangle) {
+        named_.resize(side.corners.size(), 0);
+        named_[place.at] = 1;
+        if (is_rectangle) named_[(place.at + 1) % named_.size()] = 1;
+    }
+
+    // With their neighbours, and the rectangles beside them.
+    void list(const RoundedSide& side, std::vector<int>& corners, std::vector<int>& rectangles) const {
+        const int count = count_of(side.corners);
+        const auto is_named = [&](int corner) {
+            return (side.closed || (corner >= 0 && corner < count)) && named_[(corner + count) % count] != 0;
+        };
+        for (int k = 0; k < count; ++k)
+            if (is_named(k - 1) || is_named(k) || is_named(k + 1)) corners.push_back(k);
+        for (int k = 0; k < side.rectangles(); ++k)
+            if (is_named(k) || is_named(k + 1)) rectangles.push_back(k);
+    }
+
+private:
+    std::vector<char> named_;
+};
+
+}  // namespace
+
+std::vector<SidePieces> side_pieces(const model::Body& a, const model::Body& b, const geometry::PrimitivePairs& candidates) {
+    if (!a.round || !b.round || !(a.round->any() || b.round->any())) return {};
+    const RoundedSides &sides_a = a.round->mesh_sides, &sides_b = b.round->mesh_sides;
+    std::map<std::pair<int, int>, std::pair<Corners, Corners>> near;
+    const auto add = [&](const RoundedSides::Place& at_a, bool rectangle_a, const RoundedSides::Place& at_b, bool rectangle_b) {
+        if (at_a.side < 0 || at_b.side < 0) return;
+        const RoundedSide &side_a = sides_a.sides[at_a.side], &side_b = sides_b.sides[at_b.side];
+        if (!side_a.is_round() && !side_b.is_round()) return;
+        auto& [corners_a, corners_b] = near[{at_a.side, at_b.side}];
+        corners_a.add(side_a, at_a, rectangle_a);
+        corners_b.add(side_b, at_b, rectangle_b);
+    };
+    const auto of_triangle = [](const RoundedSides& sides, int face) {  // faces of wires and points come after the triangles
+        return face < count_of(sides.of_triangle) ? sides.of_triangle[face] : RoundedSides::Place{};
+    };
+    for (const geometry::PrimitivePair& pair : candidates.vertex_triangle)
+        for (const auto& at_a : sides_a.of_vertex[pair.a]) add(at_a, false, of_triangle(sides_b, pair.b), true);
+    for (const geometry::PrimitivePair& pair : candidates.triangle_vertex)
+        for (const auto& at_b : sides_b.of_vertex[pair.b]) add(of_triangle(sides_a, pair.a), true, at_b, false);
+    for (const geometry::PrimitivePair& pair : candidates.edge_edge)
+        for (const int v : a.mesh.edges[pair.a])
+            for (const int w : b.mesh.edges[pair.b])
+                for (const auto& at_a : sides_a.of_vertex[v])
+                    for (const auto& at_b : sides_b.of_vertex[w]) add(at_a, false, at_b, false);
+    std::vector<SidePieces> out;
+    for (const auto& [sides, corners] : near) {
+        SidePieces& pieces = out.emplace_back();
+        pieces.side_a = sides.first;
+        pieces.side_b = sides.second;
+        corners.first.list(sides_a.sides[pieces.side_a], pieces.corners_a, pieces.rectangles_a);
+        corners.second.list(sides_b.sides[pieces.side_b], pieces.corners_b, pieces.rectangles_b);
+    }
+    return out;
+}
+
+}  // namespace fettle::core::ccd

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/contact/round_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "fettle/core/contact/closest_feature.hpp"
+#include "fettle/core/geometry/round_surfaces.hpp"
+
+namespace fettle::core::contact {
+namespace {
+
+using geometry::CornerKind;
+using geometry::RoundedSide;
+using geometry::RoundSurfaces;
+
+constexpr double same_place = 1e-9;  // of directions, and of lengths over the surfaces' size
+
+// One side of a body in space.
+struct Placed {
+    const model::Body& body;
+    const kinematics::Pose& pose;
+    const RoundedSide& side;
+    const RoundSurfaces::Side& surface;
+    Vector3 axis, across_1, across_2;
+    int low;  // the rim that is lower along the other's axis
+    std::vector<Vector3> centres;
+
+    Placed(const model::Body& b, const kinematics::Pose& p, int s)
+        : body(b),
+          pose(p),
+          side(b.round->mesh_sides.sides[s]),
+          surface(b.round->sides[s]),
+          axis(p.rotation * side.axis),
+          across_1(p.rotation * surface.across_1),
+          across_2(p.rotation * surface.across_2),
+          low(0) {}
+
+    // Corners that are asked for.
+    void place(const std::vector<int>& corners) {
+        centres.resize(2 * side.corners.size());
+        for (const int k : corners)
+            for (const int e : {0, 1})
+                centres[2 * static_cast<std::size_t>(k) + e] = world_position(pose, body.round->centres.col(centre_index(k, e)));
+    }
+
+    int corners() const { return count_of(side.corners); }
+    int next(int corner) const { return (corner + 1) % corners(); }
+    int before(int corner) const { return (corner + corners() - 1) % corners(); }
+    CornerKind kind(int corner) const { return side.corners[corner].kind; }
+    int end(int e) const { return low == 0 ? e : 1 - e; }  // e = 0: the lower
+    int centre_index(int corner, int e) const { return surface.first_centre + 2 * corner + end(e); }
+    double radius(int corner, int e) const { return body.round->radii[centre_index(corner, e)]; }
+    const Vector3& centre(int corner, int e) const { return centres[2 * static_cast<std::size_t>(corner) + e]; }
+    int rim(int corner, int e) const { return side.corners[corner].rim[end(e)]; }
+    Vector3 rim_point(int corner, int e) const { return world_position(pose, body.mesh.vertices.col(rim(corner, e))); }
+    Vector2 across(const Vector3& v) const { return {v.dot(across_1), v.dot(across_2)}; }
+    Vector3 outward(int rectangle) const {
+        const Vector2& n = surface.normals[rectangle];
+        return n[0] * across_1 + n[1] * across_2;
+    }
+    bool has_before(int corner) const { return side.closed || corner > 0; }
+    bool has_after(int corner) const { return side.closed || corner + 1 < corners(); }
+    // As ContactPair::vertex has it.
+    int vertex(int corner, int e) const { return is_round(corner) ? round_vertex(centre_index(corner, e)) : rim(corner, e); }
+    bool is_round(int corner) const { return kind(corner) == CornerKind::convex_round || kind(corner) == CornerKind::concave_round; }
+    bool is_convex(int corner) const { return kind(corner) == CornerKind::convex_round || kind(corner) == CornerKind::convex_edge; }
+    bool is_hollow(int corner) const { return kind(corner) == CornerKind::concave_round; }
+};
+
+double cross(const Vector2& a, const Vector2& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+// Where something lies among what a piece of the surface answers for.
+enum class Within { no, at_border, yes };
+
+Within within(double margin, double size) {
+    return margin > same_place * size ? Within::yes : margin < -same_place * size ? Within::no : Within::at_border;
+}
+
+// Is this direction one of those that a corner's arc, or edge, faces? Those between the normals of the rectangles beside it, which turn to
+// the left round a convex corner; at a side's end up to a right angle from the only one.
+// @param direction  unit, outward from the material
+Within faces(const Placed& p, int corner, const Vector3& direction) {
+    const Vector2 w = p.across(direction);
+    const double turn = p.is_convex(corner) ? 1 : -1;
+    double margin = 1;
+    if (p.has_before(corner)) margin = std::min(margin, turn * cross(p.surface.normals[p.before(corner)], w));
+    if (p.has_after(corner)) margin = std::min(margin, turn * cross(w, p.surface.normals[corner]));
+    if (!p.has_before(corner)) margin = std::min(margin, p.surface.normals[corner].dot(w));
+    if (!p.has_after(corner)) margin = std::min(margin, p.surface.normals[corner - 1].dot(w));
+    return within(margin, 1);
+}
+
+// Is a place on a rectangle, t from its first corner along it, on what its corners' arcs leave plane?
+Within on_plane(const Placed& p, int rectangle, double t) {
+    const double length = p.surface.lengths[rectangle];
+    return within(std::min(t - p.surface.tangents[rectangle], length - p.surface.tangents[p.next(rectangle)] - t), length);
+}
+
+class RoundSearch {
+public:
+    RoundSearch(const NearAt& at, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward)
+        : a_(at.model.bodies[at.list.a]),
+          b_(at.model.bodies[at.list.b]),
+          pose_a_(at.poses[at.list.a]),
+          pose_b_(at.poses[at.list.b]),
+          activation_(at.model.dmin + at.model.dhat),
+          deepest_(at.model.round_reach),
+          forward_(forward),
+          backward_(backward) {
+        for (const ccd::SidePieces& pieces : at.list.sides)
+            if (are_met(pieces)) met_.push_back(&pieces);
+    }
+
+    double find() {
+        for (const ccd::SidePieces* pieces : met_) meet(*pieces);
+        return least_;
+    }
+
+    void take_over(NearPairs& near) const {
+        if (met_.empty()) return;
+        std::erase_if(near.on_second, [&](const ContactPair& p) { return is_of_sides({p.vertex[0], -1, -1}, closest_feature(p), p); });
+        std::erase_if(near.on_first, [&](const ContactPair& p) { return is_of_sides(closest_feature(p), {p.vertex[0], -1, -1}, p); });
+        std::erase_if(near.edges, [&](const ContactPair& p) {
+            return is_of_sides({p.vertex[0], p.vertex[1], -1}, {p.vertex[2], p.vertex[3], -1}, p);
+        });
+    }
+
+private:
+    // Along one direction, and both there somewhere along it.
+    bool are_met(const ccd::SidePieces& pieces) const {
+        const RoundedSide &side_a = a_.round->mesh_sides.sides[pieces.side_a], &side_b = b_.round->mesh_sides.sides[pieces.side_b];
+        const Vector3 axis = pose_a_.rotation * side_a.axis;
+        if (!(axis.cross(pose_b_.rotation * side_b.axis).norm() < largest_slant)) return false;
+        const auto ends = [&](const model::Body& body, const kinematics::Pose& pose, const RoundedSide& side) {
+            const double x = axis.dot(world_position(pose, body.mesh.vertices.col(side.corners[0].rim[0])));
+            const double y = axis.dot(world_position(pose, body.mesh.vertices.col(side.corners[0].rim[1])));
+            return std::pair(std::min(x, y), std::max(x, y));
+        };
+        const auto [low_a, high_a] = ends(a_, pose_a_, side_a);
+        const auto [low_b, high_b] = ends(b_, pose_b_, side_b);
+        return low_a < high_b && low_b < high_a;
+    }
+
+    static bool is_on(const model::Body& body, int side, const Feature& feature) {
+        const auto& of_vertex = body.round->mesh_sides.of_vertex;
+        return std::all_of(feature.begin(), feature.end(), [&](int v) {
+            return v < 0 || std::any_of(of_vertex[v].begin(), of_vertex[v].end(), [&](const auto& place) { return place.side == side; });
+        });
+    }
+
+    // Do these vertices belong to sides that meet, and is the pair's distance one across them?
+    bool is_of_sides(const Feature& of_a, const Feature& of_b, const ContactPair& p) const {
+        constexpr double along = 0.5;  // at most, of the distance
+        return std::any_of(met_.begin(), met_.end(), [&](const ccd::SidePieces* pieces) {
+            if (!is_on(a_, pieces->side_a, of_a) || !is_on(b_, pieces->side_b, of_b)) return false;
+            const Vector3 axis = pose_a_.rotation * a_.round->mesh_sides.sides[pieces->side_a].axis;
+            return std::abs(axis.dot(p.closest.difference)) < along * std::sqrt(p.closest.distance_squared);
+        });
+    }
+
+    void meet(const ccd::SidePieces& pieces) {
+        Placed a(a_, pose_a_, pieces.side_a), b(b_, pose_b_, pieces.side_b);
+        b.low = a.axis.dot(b.axis) >= 0 ? 0 : 1;
+        a.place(pieces.corners_a);
+        b.place(pieces.corners_b);
+        cover_ = a.surface.cover + b.surface.cover;
+        for (int e = 0; e < 2; ++e) {
+            if (a.surface.is_circle && b.surface.is_circle) {
+                circles(a, pieces.corners_a, b, pieces.corners_b, e);
+                keep();
+                continue;
+            }
+            for (const int i : pieces.corners_a) {
+                for (const int j : pieces.corners_b) arcs(a, i, b, j, e);
+                for (const int k : pieces.rectangles_b) arc_and_plane(a, i, b, k, e);
+            }
+            for (const int j : pieces.corners_b)
+                for (const int k : pieces.rectangles_a) arc_and_plane(b, j, a, k, e);
+            keep();
+        }
+    }
+
+    // Which of the two ends of lines is within the other: the point that the contact is at?
+    static bool ends_within(const Vector3& axis, const Vector3& end, const Vector3& other_end, int e) {
+        const double beyond = axis.dot(end) - axis.dot(other_end);
+        return e == 0 ? beyond >= 0 : beyond <= 0;
+    }
+
+    // Two corners' centre lines where a contact at this end would be: the end of one that lies within the other, and that one's line.
+    struct Lines {
+        bool at_b;       // the end is b's
+        Vector3 r;       // from the line to the end
+        double d, t;     // |r|; where on the line
+        Vector3 from_b;  // unit, from b's line to a's
+    };
+    static Lines lines(const Placed& a, int i, const Placed& b, int j, int e) {
+        Lines out;
+        out.at_b = ends_within(a.axis, b.centre(j, e), a.centre(i, e), e);
+        const Placed &point = out.at_b ? b : a, &line = out.at_b ? a : b;
+        const int point_corner = out.at_b ? j : i, line_corner = out.at_b ? i : j;
+        const Vector3& from = line.centre(line_corner, 0);
+        const Vector3 along = line.centre(line_corner, 1) - from, to_point = point.centre(point_corner, e) - from;
+        out.t = along.dot(to_point) / along.squaredNorm();
+        out.r = to_point - out.t * along;
+        out.d = out.r.norm();
+        const bool is_one = out.d <= same_place * (a.radius(i, e) + b.radius(j, e));  // its direction is rounding
+        out.from_b = is_one ? a.across_1 : Vector3((out.at_b ? -1 : 1) / out.d * out.r);
+        return out;
+    }
+
+    // Outward from the two materials: apart outside, both the same way inside.
+    static std::array<Vector3, 2> outward(bool hollow_a, bool hollow_b, const Vector3& from_b) {
+        const double inside = hollow_a || hollow_b ? 1 : -1;
+        return {hollow_a ? from_b : Vector3(inside * from_b), hollow_b ? Vector3(-from_b) : Vector3(-inside * from_b)};
+    }
+
+    // Of circles all arcs are in one place, so that the direction says which two meet. Those beside them too: they know it better.
+    void circles(const Placed& a, const std::vector<int>& corners_a, const Placed& b, const std::vector<int>& corners_b, int e) {
+        const Lines at = lines(a, corners_a[0], b, corners_b[0], e);
+        const auto [out_a, out_b] = outward(a.is_hollow(0), b.is_hollow(0), at.from_b);
+        constexpr double clear = 1e-2;  // above what centres differ by
+        const bool is_clear = at.d > clear * std::abs(a.radius(0, e) - b.radius(0, e));
+        const auto near = [&](const Placed& p, const Vector3& out, int k) {
+            return !is_clear || faces(p, k, out) != Within::no || faces(p, p.next(k), out) != Within::no ||
+                   faces(p, p.before(k), out) != Within::no;
+        };
+        for (const int i : corners_a) {
+            if (!near(a, out_a, i)) continue;
+            for (const int j : corners_b)
+                if (near(b, out_b, j)) arcs(a, i, b, j, e);
+        }
+    }
+
+    void arcs(const Placed& a, int i, const Placed& b, int j, int e) {
+        const bool hollow_a = a.is_hollow(i), hollow_b = b.is_hollow(j), inside = hollow_a || hollow_b;
+        if ((hollow_a && hollow_b) || (!a.is_convex(i) && !hollow_a) || (!b.is_convex(j) && !hollow_b)) return;
+        const int sign_a = hollow_a || !inside ? 1 : -1, sign_b = hollow_b || !inside ? 1 : -1;
+        const int side = inside ? -1 : 1;
+        const double radius = sign_a * a.radius(i, e) + sign_b * b.radius(j, e) + side * cover_;
+        if (inside && !(radius > 0)) return;
+        const Lines at = lines(a, i, b, j, e);
+        const double distance = side * (at.d - radius);
+        if (!is_near(distance)) return;
+        const auto [out_a, out_b] = outward(hollow_a, hollow_b, at.from_b);
+        const Within facing = std::min(faces(a, i, out_a), faces(b, j, out_b));
+        if (facing == Within::no) return;
+        ContactPair pair;
+        pair.round.side = static_cast<signed char>(side);
+        pair.round.has_far = inside && a.surface.is_circle && b.surface.is_circle;
+        pair.type = geometry::PairType::point_triangle;
+        const Placed &point = at.at_b ? b : a, &line = at.at_b ? a : b;
+        const int point_corner = at.at_b ? j : i, line_corner = at.at_b ? i : j;
+        const int upper = line.vertex(line_corner, 1);
+        pair.x = {point.centre(point_corner, e), line.centre(line_corner, 0), line.centre(line_corner, 1), line.centre(line_corner, 1)};
+        pair.vertex = {point.vertex(point_corner, e), line.vertex(line_corner, 0), upper, upper};
+        pair.closest.weight = {1, at.t - 1, -at.t, 0};
+        pair.closest.free_count = 1;
+        pair.closest.free_weight[0] = {0, 1, -1, 0};
+        pair.closest.difference = at.r;
+        pair.closest.distance_squared = at.d * at.d;
+        set_part(pair.round, 0, point, point_corner, e, at.at_b ? sign_b : sign_a);
+        set_part(pair.round, 1, line, line_corner, e, at.at_b ? sign_a : sign_b);
+        add(point, std::move(pair), distance, facing);
+    }
+
+    void arc_and_plane(const Placed& arc, int corner, const Placed& plane, int rectangle, int e) {
+        if (!arc.is_convex(corner)) return;
+        const int next = plane.next(rectangle);
+        const double length = plane.surface.lengths[rectangle];
+        if (length - plane.surface.tangents[rectangle] - plane.surface.tangents[next] < same_place * length) return;  // the arcs meet
+        const Vector3 outward = plane.outward(rectangle);
+        const Vector3 end = arc.centre(corner, e), p0 = plane.rim_point(rectangle, e);
+        const double radius = arc.radius(corner, e) + cover_;
+        const double height = outward.dot(end - p0);
+        if (height <= 0 || !is_near(height - radius)) return;
+        const Vector3 p1 = plane.rim_point(next, e);
+        const Within facing_arc = faces(arc, corner, -outward);
+        if (facing_arc == Within::no) return;
+        ContactPair pair;
+        RoundGap& gap = pair.round;
+        gap.side = 1;
+        Within facing;
+        if (ends_within(plane.axis, end, p0, plane.end(e))) {
+            // The arc's end against the plane.
+            const Vector3 p2 = plane.rim_point(next, 1 - e), e1 = p1 - p0, e2 = p2 - p1;
+            // p0 + s e1 + u e2.
+            Matrix2 k;
+            k << e1.dot(e1), e1.dot(e2), e1.dot(e2), e2.dot(e2);
+            const Vector2 su = k.inverse() * Vector2(e1.dot(end - p0), e2.dot(end - p0));
+            facing = on_plane(plane, rectangle, su[0] * length);
+            pair.type = geometry::PairType::point_triangle;
+            pair.x = {end, p0, p1, p2};
+            pair.vertex = {arc.vertex(corner, e), plane.rim(rectangle, e), plane.rim(next, e), plane.rim(next, 1 - e)};
+            pair.closest.weight = {1, su[0] - 1, su[1] - su[0], -su[1]};
+            pair.closest.free_count = 2;
+            pair.closest.free_weight[0] = {0, 1, -1, 0};
+            pair.closest.free_weight[1] = {0, 0, 1, -1};
+            pair.closest.difference = end - p0 - su[0] * e1 - su[1] * e2;
+            facing = std::min(facing, facing_arc);
+            if (facing == Within::no) return;
+            pair.closest.distance_squared = pair.closest.difference.squaredNorm();
+            set_part(gap, 0, arc, corner, e, 1);
+            set_part(gap, 1, plane, -1, e, 0);
+            add(arc, std::move(pair), std::sqrt(pair.closest.distance_squared) - radius, facing);
+            return;
+        }
+        // The plane's border against the arc's centre line.
+        const Vector3 c0 = arc.centre(corner, 0), c1 = arc.centre(corner, 1), e1 = p1 - p0, e2 = c1 - c0;
+        Matrix2 k;
+        k << e1.dot(e1), -e1.dot(e2), -e1.dot(e2), e2.dot(e2);
+        const Vector2 st = k.inverse() * Vector2(-e1.dot(p0 - c0), e2.dot(p0 - c0));
+        facing = std::min(on_plane(plane, rectangle, st[0] * length), facing_arc);
+        if (facing == Within::no) return;
+        const Vector3 r = p0 + st[0] * e1 - c0 - st[1] * e2;  // from the line to the border
+        const double d = r.norm();
+        if (!is_near(d - radius)) return;
+        pair.type = geometry::PairType::edge_edge;
+        pair.closest.free_count = 2;
+        pair.closest.distance_squared = d * d;
+        if (&plane.body == &a_) {  // the first edge is on body a
+            pair.x = {p0, p1, c0, c1};
+            pair.vertex = {plane.rim(rectangle, e), plane.rim(next, e), arc.vertex(corner, 0), arc.vertex(corner, 1)};
+            pair.closest.weight = {1 - st[0], st[0], st[1] - 1, -st[1]};
+            pair.closest.free_weight[0] = {-1, 1, 0, 0};
+            pair.closest.free_weight[1] = {0, 0, 1, -1};
+            pair.closest.difference = r;
+            set_part(gap, 0, plane, -1, e, 0);
+            set_part(gap, 1, arc, corner, e, 1);
+        } else {
+            pair.x = {c0, c1, p0, p1};
+            pair.vertex = {arc.vertex(corner, 0), arc.vertex(corner, 1), plane.rim(rectangle, e), plane.rim(next, e)};
+            pair.closest.weight = {1 - st[1], st[1], st[0] - 1, -st[0]};
+            pair.closest.free_weight[0] = {-1, 1, 0, 0};
+            pair.closest.free_weight[1] = {0, 0, 1, -1};
+            pair.closest.difference = -r;
+            set_part(gap, 0, arc, corner, e, 1);
+            set_part(gap, 1, plane, -1, e, 0);
+        }
+        add(&plane.body == &a_ ? plane : arc, std::move(pair), d - radius, facing);
+    }
+
+    // @param k  0 for the pair's first body, 1 for its second  @param corner  -1: a plane  @param sign  of its radius in R
+    static void set_part(RoundGap& gap, std::size_t k, const Placed& of, int corner, int e, int sign) {
+        gap.cover[k] = of.surface.cover_corner < 0 ? -1 : of.surface.first_centre + 2 * of.surface.cover_corner;
+        const bool is_round = corner >= 0 && of.is_round(corner);
+        gap.centre[k] = is_round ? of.centre_index(corner, e) : -1;
+        gap.sign[k] = static_cast<signed char>(is_round ? sign : 0);
+        gap.reach[k] = gap.sign[k] * (is_round ? of.radius(corner, e) : 0) + gap.side * of.surface.cover;
+    }
+
+    bool is_near(double distance) const { return distance < activation_ && distance > -deepest_; }
+
+    struct Found {
+        ContactPair pair;
+        bool on_a;  // the first primitive
+        bool at_border;
+        Vector3 place;  // between the surfaces
+    };
+
+    void add(const Placed& first, ContactPair&& pair, double distance, Within facing) {
+        least_ = least_of(least_, distance);
+        const double d = std::sqrt(pair.closest.distance_squared);
+        const Vector3 n = d > 0 ? Vector3(pair.closest.difference / d) : Vector3::Zero();
+        Vector3 place = Vector3::Zero();
+        for (int i = 0; i < geometry::first_count(pair.type); ++i) place += pair.closest.weight[i] * pair.x[i];
+        place -= (pair.round.reach[0] + 0.5 * distance) * n;
+        found_.push_back({std::move(pair), &first.body == &a_, facing == Within::at_border, place});
+    }
+
+    // Where pieces of a surface meet, the contact is with either.
+    void keep() {
+        for (std::size_t k = 0; k < found_.size(); ++k) {
+            bool is_known = false;
+            for (std::size_t other = 0; found_[k].at_border && other < k && !is_known; ++other)
+                is_known = found_[other].at_border && (found_[other].place - found_[k].place).norm() < 10 * same_place * a_.radius;
+            if (!is_known) (found_[k].on_a ? forward_ : backward_).push_back(found_[k].pair);
+        }
+        found_.clear();
+    }
+
+    const model::Body &a_, &b_;
+    const kinematics::Pose &pose_a_, &pose_b_;
+    double activation_, deepest_, cover_ = 0;
+    std::vector<ContactPair>&forward_, &backward_;
+    std::vector<const ccd::SidePieces*> met_;
+    std::vector<Found> found_;
+    double least_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+double find_round_contacts(const NearAt& at, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward) {
+    if (at.list.sides.empty()) return std::numeric_limits<double>::infinity();
+    RoundSearch search(at, forward, backward);
+    const double least = search.find();
+    search.take_over(near);
+    return least;
+}
+
+}  // namespace fettle::core::contact
