@@ -16,6 +16,7 @@
 #include "fettle/design/quantities/in_scenario.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/joint_position.hpp"
+#include "fettle/design/quantities/law.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
 #include "fettle/design/quantities/marker_position.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
@@ -285,6 +286,22 @@ std::shared_ptr<const Quantity> expression_from(py::handle q) {
     return value_or_raise(quantities::Expression::create(formula_from(formula), parts));
 }
 
+// Values may be formulas; these are 0 in the table.
+std::shared_ptr<const Quantity> law_from(py::handle q, const MembersOf& of_q, const quantities::Reduction& reduction) {
+    quantities::Law::Of of;
+    of.dimension = of_q.get<Dimension>("of");
+    of.curve.kind = of_q.get<core::scene::CurveKind>("profile");
+    of.curve.times = of_q.get<std::vector<double>>("times");
+    py::list numbers;
+    for (const py::handle value : q.attr("values")) {
+        const bool follows = is_followed(value);
+        if (follows) of.moved.push_back({count_of(numbers), formula_from(value)});
+        numbers.append(follows ? py::object(py::float_(0.0)) : py::reinterpret_borrow<py::object>(value));
+    }
+    of.curve.values = of.moved.empty() ? of_q.get<std::vector<double>>("values") : numbers.cast<std::vector<double>>();
+    return std::make_shared<quantities::Law>(std::move(of), reduction);
+}
+
 std::shared_ptr<const Quantity> step_expression_from(py::handle q, const quantities::Reduction& reduction) {
     const std::vector<quantities::NamedQuantity> parts = named_parts_from(q);
     const py::object formula = q.attr("formula");
@@ -335,6 +352,7 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
     }
     if (!is("Series")) return nullptr;
     const Reduction reduction = reduction_from(of_q);
+    if (is("Law")) return law_from(q, of_q, reduction);
     if (is("StepExpression")) return step_expression_from(q, reduction);
     if (is("MarkerPosition")) {
         const MarkerPosition::Of of{body(), of_q.get<Vector3>("point"), of_q.get<Vector3>("axis"), of_q.get<Vector3>("origin")};
@@ -393,6 +411,13 @@ py::object moved_targets(const quantities::MarkerPath& path) {
     return std::move(targets);
 }
 
+py::list law_values(const quantities::Law& law) {
+    py::list values;
+    for (const double value : law.of().curve.values) values.append(value);
+    for (const quantities::MovedValue& each : law.of().moved) values[each.index] = py::cast(each.formula);
+    return values;
+}
+
 py::dict python_parts(const std::vector<quantities::NamedQuantity>& named) {
     py::dict parts;
     for (const quantities::NamedQuantity& part : named) parts[py::str(part.name)] = quantity_to_python(part.quantity);
@@ -416,6 +441,8 @@ py::object series_to_python(const std::shared_ptr<const Quantity>& quantity, con
         out = record_class("ContactLoad")(q->of().body, q->of().other, q->over(), q->of().axis, q->of().about);
     else if (const auto* q = dynamic_cast<const Energy*>(quantity.get()))
         out = record_class("Energy")(q->kind(), q->over());
+    else if (const auto* q = dynamic_cast<const Law*>(quantity.get()))
+        out = record_class("Law")(q->of().dimension, q->of().curve.times, law_values(*q), q->of().curve.kind, q->over());
     else if (const auto* q = dynamic_cast<const StepExpression*>(quantity.get()))
         out = record_class("StepExpression")(q->formula(), python_parts(q->parts()), q->over());
     else

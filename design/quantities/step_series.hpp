@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Quantities that every step of a motion has one number of, y_1 .. y_T: what is made of them (reduction.hpp), and its derivative in each.
-/// Kinds: joint_load.hpp, joint_position.hpp, body_turn.hpp, energy.hpp, those of vector_series.hpp, and formulas of these,
+/// Kinds: joint_load.hpp, joint_position.hpp, body_turn.hpp, energy.hpp, law.hpp, those of vector_series.hpp, and formulas of these,
 /// step_expression.hpp.
 #pragma once
 

@@ -12,6 +12,7 @@
 #include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/joint_position.hpp"
+#include "fettle/design/quantities/law.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
 #include "fettle/design/quantities/marker_position.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
@@ -273,6 +274,36 @@ std::shared_ptr<const Quantity> read_energy(const JsonNode& node, const ReadCont
         static_cast<quantities::EnergyKind>(std::find(names.begin(), names.end(), *name) - names.begin()), reduction);
 }
 
+std::shared_ptr<const Quantity> read_law(const JsonNode& node, const ReadContext& context) {
+    static const std::vector<std::string_view> profiles{"linear", "cubic", "trapezoid", "control_points"};
+    static const std::vector<std::pair<std::string_view, Dimension>> dimensions{{"length", Dimension::length},
+                                                                                {"angle", Dimension::angle},
+                                                                                {"speed", Dimension::speed},
+                                                                                {"angular_speed", Dimension::angular_speed},
+                                                                                {"force", Dimension::force},
+                                                                                {"torque", Dimension::torque},
+                                                                                {"acceleration", Dimension::acceleration},
+                                                                                {"number", Dimension::number}};
+    std::vector<std::string_view> names;
+    for (const auto& [name, dimension] : dimensions) names.push_back(name);
+    const auto name = node.require("of").choice(names);
+    if (!name) return nullptr;
+    quantities::Law::Of of;
+    of.dimension = std::find_if(dimensions.begin(), dimensions.end(), [&](const auto& each) { return each.first == *name; })->second;
+    const std::string profile = node["profile"].choice(profiles).value_or("linear");
+    of.curve.kind = static_cast<core::scene::CurveKind>(std::find(profiles.begin(), profiles.end(), profile) - profiles.begin());
+    of.curve.times = node.require("times").numbers().value_or(std::vector<double>{});
+    const double unit = context.unit(of.dimension);
+    for (const JsonNode& value : node.require("values").elements()) {
+        auto formula = context.formulas.followed(value, of.dimension, unit);
+        const auto number = formula ? std::optional(context.formulas.value_of(*formula)) : value.quantity(of.dimension, unit);
+        if (formula) of.moved.push_back({count_of(of.curve.values), std::move(*formula)});
+        of.curve.values.push_back(number.value_or(0));
+    }
+    const quantities::Reduction reduction = read_reduction(node, of.dimension);
+    return std::make_shared<quantities::Law>(std::move(of), reduction);
+}
+
 // With a word of a reduction it is over the steps.
 std::shared_ptr<const Quantity> read_expression(const JsonNode& node, const ReadContext& context) {
     const bool is_over_steps = has_reduction(node);
@@ -331,6 +362,7 @@ std::string contact_of(const JsonNode& node) { return text(node["body"]) + (node
 std::string contact_force_name(const JsonNode& node) { return "contact_force " + contact_of(node); }
 std::string contact_torque_name(const JsonNode& node) { return "contact_torque " + contact_of(node); }
 std::string energy_name(const JsonNode& node) { return "energy " + text(node["of"]); }
+std::string law_name(const JsonNode&) { return "law"; }
 std::string expression_name(const JsonNode& node) { return text(node["expression"]); }
 
 }  // namespace
@@ -376,6 +408,8 @@ const std::vector<QuantityType>& quantity_table() {
         {"contact_torque", with_reduction({"body", "of", "point", "axis"}), read_contact_torque, contact_torque_name, "N m",
          "its torque about a point of the body (what a motor that holds a massless one there has to give, with the other sign)"},
         {"energy", with_reduction({"of"}), read_energy, energy_name, "J", "kinetic, potential, spring or total energy at the steps' ends"},
+        {"law", with_reduction({"of", "times", "values", "profile"}), read_law, law_name, "by its dimension",
+         "a table over the time, for expressions over the steps: what a motion is to follow"},
         {"expression", with_reduction({"expression"}), read_expression, expression_name, "by its dimension",
          "a formula of the design's named `quantities` and parameters, such as `max_force / mass`; with `over`, of what they are at each "
          "step"}};

@@ -105,6 +105,7 @@ from .design import (
     InScenario as InScenario,
     JointLoad as JointLoad,
     JointPosition as JointPosition,
+    Law as Law,
     MarkerPath as MarkerPath,
     MarkerPosition as MarkerPosition,
     MarkerSpeed as MarkerSpeed,

@@ -314,6 +314,18 @@ class Energy(Series):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
+class Law(Series):
+    """A table over the time that a motion is to follow, for a StepExpression: `lift - Law("length", [0, 1], [0, "3 mm"], "cubic")`. Its values
+    (SI, or with units of what it is of) may be formulas of parameters; outside its times it is constant."""
+
+    of: str  #: "length", "angle", ...
+    times: Sequence[Number] = number("time")
+    values: Sequence[Number] = number("any")
+    profile: str = "linear"  #: or "cubic", "trapezoid", "control_points", as Curve.kind
+    over: str = "end"
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Expression(Record, Measured):
     """A formula of other quantities, by name, and of parameters: what arithmetic with quantities gives, and
 
@@ -369,6 +381,7 @@ AnyQuantity = Union[
     BodyTurn,
     ContactLoad,
     Energy,
+    Law,
     Expression,
     StepExpression,
     InScenario,
@@ -626,6 +639,9 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault], parameters
         of = record.formula.parts if isinstance(record.formula, Expression) else record.parts
         parts = {name: _numbered(part, names, faults, parameters) for name, part in of.items()}
         return dataclasses.replace(record, formula=_formula_of(record, parameters), parts=parts)
+    if kind is Law:
+        faults.extend(faults_of(record.values, record.of, "Law/values"))
+        return record
     if kind is Worst:
         return Worst([_numbered(part, names, faults, parameters) for part in record.parts], record.greatest)
     if kind is InScenario:

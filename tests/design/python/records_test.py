@@ -89,6 +89,7 @@ LOADS = [
     ({"type": "motor_effort", "motor": "drive", "at": 0.02}, fettle.JointLoad("effort", "drive", at=0.02)),
     ({"type": "marker_position", "body": "rocker", "point": [1, 2, 3], "origin": [0, 0, 1], "derivative": 2, "over": "peak"},
      fettle.MarkerPosition(3, np.array([0.001, 0.002, 0.003]), "peak", origin=np.array([0, 0, 0.001]), derivative=2)),
+    ({"type": "law", "of": "angle", "times": [0, 1], "values": [0, "3 rad"], "profile": "cubic"}, fettle.Law("angle", [0, 1], [0, 3], "cubic")),
     ({"type": "marker_speed", "body": "rocker", "point": [1, 2, 3], "axis": [0, 1, 0]},
      fettle.MarkerSpeed(3, np.array([0.001, 0.002, 0.003]), axis=np.array([0, 1, 0]))),
 ]

@@ -72,6 +72,16 @@ def test_expressions_over_the_steps():
     assert pickle.loads(pickle.dumps(passed["law"])) == passed["law"]
 
 
+def test_laws():
+    z, height = fettle.MarkerPosition("part", POINT, axis=Z), tilted_plate().parameters[0]
+    law = fettle.Law("length", [0.01, 0.05], ["1 mm", height / 2])
+    passed, found, watch = measured(off=fettle.StepExpression(z - law, over="rms"), law=law)
+    wanted = np.interp(watch.times, [0.01, 0.05], [1e-3, 4e-3])
+    assert found["off"] == pytest.approx(np.sqrt(((watch.places[:, 2] - wanted) ** 2).mean()), rel=1e-12)
+    assert found["law"] == pytest.approx(4e-3) and passed["law"].values[0] == pytest.approx(1e-3)
+    assert fettle.quantity_dimension(passed["law"]) == "length"
+
+
 def test_faults():
     design = tilted_plate()
 
@@ -83,6 +93,8 @@ def test_faults():
     refused(made(fettle.MarkerPosition("part", POINT, from_time=1e3)), "out_of_range", "objective `odd`", "is not within the motion")
     refused(made(fettle.MarkerPosition("part", POINT, "peak", at=0)), "inconsistent", "objective `odd`", "at a time")
     refused(made(fettle.MarkerPosition("part", POINT, derivative=3)), "out_of_range", "objective `odd`", "the first or the second")
+    refused(made(fettle.Law("length", [0, 0], [0, 1])), "out_of_range", "objective `odd`", "increase")
+    refused(made(fettle.Law("length", [0, 1], ["3 N", 1])), "wrong_type", "Law/values", "a unit of force")
     gap = fettle.Clearance(0, 1)
     refused(made(fettle.StepExpression("gap + z", {"z": z, "gap": gap})), "unsupported", "objective term `odd`/quantity", "cannot stand")
     with pytest.raises(AttributeError, match="from_time"):

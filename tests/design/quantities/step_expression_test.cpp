@@ -132,6 +132,32 @@ TEST_CASE("step_expression: transmission error, deviation from a law and dwell h
     CHECK(problem.design().constraints[0].bounds.upper == Approx(5 * degree));
 }
 
+TEST_CASE("step_expression: a law's table, whose values may follow from parameters") {
+    const auto problem = problem_of(gears, R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+        "parameters": [{"name": "height", "value": 24, "lower": 10, "upper": 50}, {"name": "out", "value": 30, "lower": 5, "upper": 50}],
+        "set": {"/motors/push/travel/values/1": "= out"},
+        "quantities": {"lift": {"type": "joint_position", "joint": "rail"},
+                       "line": {"type": "law", "of": "length", "times": [0, 1], "values": ["0 mm", "= height"]},
+                       "curved": {"type": "law", "of": "length", "times": [0, 0.4, 1], "values": [0, "= height / 2", "= out"], "profile": "cubic"},
+                       "slope": {"type": "law", "of": "angle", "times": [0, 1], "values": [0, 90], "derivative": 1}},
+        "constraints": [{"type": "expression", "expression": "lift - line", "over": "peak", "upper": 100},
+                        {"type": "expression", "expression": "lift - line", "over": "rms", "upper": 100},
+                        {"type": "expression", "expression": "lift - curved", "over": "rms", "from": 0.1, "upper": 100},
+                        {"type": "expression", "expression": "slope", "at": 0.3, "upper": 100},
+                        {"type": "law", "of": "length", "times": [0, 1], "values": [0, "= height"], "over": "mean", "upper": 100}]})");
+    const auto at = problem.evaluate(description::values_of(problem.design().parameters));
+    INFO(at.reason);
+    REQUIRE(at.usable);
+    CHECK(at.constraints[0].value == Approx(6e-3).epsilon(1e-6));
+    CHECK(at.constraints[1].value == Approx(6e-3 * std::sqrt(101 * 201 / 6.0) / 100).epsilon(1e-6));
+    CHECK(at.constraints[3].value == Approx(90 * degree));
+    CHECK(at.constraints[4].value == Approx(24e-3 * 0.505));
+    CHECK(at.jacobian(0, 0) == Approx(-1));
+    CHECK(at.jacobian(0, 1) == Approx(1).epsilon(1e-6));
+    CHECK(at.jacobian(4, 0) == Approx(0.505));
+    check_gradient(problem, 1e-6);
+}
+
 // A motor that winds a spring up by theta does the work k theta^2 / 2: in quasi-statics nothing else takes any.
 TEST_CASE("step_expression: the work of a motor against a spring") {
     const auto problem = problem_of(
