@@ -312,8 +312,10 @@ std::shared_ptr<const Quantity> read_expression(const JsonNode& node, const Read
     core::expression::Scope scope = context.formulas.scope();
     scope.what = "quantity, parameter or variable";
     const auto names = is_over_steps ? quantities::step_names_of(context.quantities) : quantities::names_of(context.quantities);
+    const std::vector<std::string> used = core::expression::names_in(*text);
     for (const core::expression::Scope::Name& name : names) {
-        if (is_over_steps && scope.find(name.name) != nullptr) {
+        if (is_over_steps && scope.find(name.name) != nullptr) {  // the step's `time`; a quantity has no name of a parameter's
+            if (std::find(used.begin(), used.end(), name.name) == used.end()) continue;
             node["expression"].fail(ErrorCode::inconsistent, "a parameter or variable is called `" + name.name +
                                                                  "`, which in an expression over the steps is the step's; rename it");
             return nullptr;

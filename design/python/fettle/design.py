@@ -634,11 +634,12 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault], parameters
         parts = {name: _numbered(part, names, faults, parameters) for name, part in record.parts.items()}
         return Expression(_formula_of(record, parameters), parts)
     if kind is StepExpression:
-        if any(parameter.name == "time" for parameter in parameters) and "time" not in record.parts:
-            faults.append(Fault("inconsistent", "StepExpression/formula", "a parameter is called `time`, which here is the step's; rename it"))
         of = record.formula.parts if isinstance(record.formula, Expression) else record.parts
         parts = {name: _numbered(part, names, faults, parameters) for name, part in of.items()}
-        return dataclasses.replace(record, formula=_formula_of(record, parameters), parts=parts)
+        formula = _formula_of(record, parameters)
+        if "time" in formula.inputs and "time" not in parts and any(parameter.name == "time" for parameter in parameters):
+            faults.append(Fault("inconsistent", "StepExpression/formula", "a parameter is called `time`, which here is the step's; rename it"))
+        return dataclasses.replace(record, formula=formula, parts=parts)
     if kind is Law:
         faults.extend(faults_of(record.values, record.of, "Law/values"))
         return record

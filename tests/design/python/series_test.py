@@ -97,5 +97,8 @@ def test_faults():
     refused(made(fettle.Law("length", [0, 1], ["3 N", 1])), "wrong_type", "Law/values", "a unit of force")
     gap = fettle.Clearance(0, 1)
     refused(made(fettle.StepExpression("gap + z", {"z": z, "gap": gap})), "unsupported", "objective term `odd`/quantity", "cannot stand")
+    design.parameters.append(fettle.Parameter("time", 1, 0, 2, "mm"))
+    made(fettle.StepExpression("z * 2", {"z": z}))()
+    refused(made(fettle.StepExpression("z / time", {"z": z})), "inconsistent", "StepExpression/formula", "rename")
     with pytest.raises(AttributeError, match="from_time"):
         z.form_time = 1

@@ -158,6 +158,23 @@ TEST_CASE("step_expression: a law's table, whose values may follow from paramete
     check_gradient(problem, 1e-6);
 }
 
+TEST_CASE("step_expression: a parameter that is called `time` is no fault where it is not named") {
+    const tests::support::TemporaryFolder folder;
+    folder.write("small.scene.json", gears);
+    const auto read = [&](const std::string& expression) {
+        return reading::parse_design(R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+            "parameters": [{"name": "time", "value": 30, "lower": 5, "upper": 50}], "set": {"/motors/push/travel/values/1": "= time"},
+            "quantities": {"lift": {"type": "joint_position", "joint": "rail"}},
+            "constraints": [{"type": "expression", "expression": ")" +
+                                         expression + R"(", "over": "peak", "upper": 100}]})",
+                                     folder.file("small.design.json"));
+    };
+    CHECK(read("2 * lift"));
+    const auto found = read("lift - time * 1 mm/s");
+    REQUIRE(found.errors().size() == 1);
+    CHECK(found.errors()[0].message.find("`time`") != std::string::npos);
+}
+
 // A motor that winds a spring up by theta does the work k theta^2 / 2: in quasi-statics nothing else takes any.
 TEST_CASE("step_expression: the work of a motor against a spring") {
     const auto problem = problem_of(
