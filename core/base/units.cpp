@@ -62,7 +62,15 @@ constexpr std::array table{Unit{"1", Dimension::number, 1, 1},
                            Unit{"N/mm", Dimension::stiffness, 1000, 1},
                            Unit{"N m/rad", Dimension::angular_stiffness, 1, 1},
                            Unit{"N mm/rad", Dimension::angular_stiffness, 1, 1000},
-                           Unit{"N mm/deg", Dimension::angular_stiffness, 1, 1000 * degree}};
+                           Unit{"N mm/deg", Dimension::angular_stiffness, 1, 1000 * degree},
+                           Unit{"deg/s^2", Dimension::angular_acceleration, degree, 1},
+                           Unit{"rad/s^2", Dimension::angular_acceleration, 1, 1},
+                           Unit{"mW", Dimension::power, 1, 1000},
+                           Unit{"W", Dimension::power, 1, 1},
+                           Unit{"kW", Dimension::power, 1000, 1},
+                           Unit{"N s", Dimension::impulse, 1, 1},
+                           Unit{"N mm s", Dimension::angular_impulse, 1, 1000},
+                           Unit{"N m s", Dimension::angular_impulse, 1, 1}};
 
 std::string allowed_text(Dimension dimension) { return "allowed units: " + unit_names(dimension); }
 
@@ -111,9 +119,26 @@ const Unit* find_unit(std::string_view name) {
 }
 
 std::string_view dimension_name(Dimension dimension) {
-    constexpr std::array<std::string_view, 16> names{"number",       "length",  "area",      "volume",           "angle", "time",
-                                                     "mass",         "force",   "torque",    "energy",           "speed", "angular speed",
-                                                     "acceleration", "density", "stiffness", "angular stiffness"};
+    constexpr std::array<std::string_view, 20> names{"number",
+                                                     "length",
+                                                     "area",
+                                                     "volume",
+                                                     "angle",
+                                                     "time",
+                                                     "mass",
+                                                     "force",
+                                                     "torque",
+                                                     "energy",
+                                                     "speed",
+                                                     "angular speed",
+                                                     "acceleration",
+                                                     "density",
+                                                     "stiffness",
+                                                     "angular stiffness",
+                                                     "angular acceleration",
+                                                     "power",
+                                                     "impulse",
+                                                     "angular impulse"};
     return names.at(static_cast<std::size_t>(dimension));
 }
 

@@ -27,7 +27,11 @@ enum class Dimension {
     acceleration,
     density,
     stiffness,
-    angular_stiffness  ///< of a spring about an axis
+    angular_stiffness,  ///< of a spring about an axis
+    angular_acceleration,
+    power,
+    impulse,         ///< of a force; momentum
+    angular_impulse  ///< of a torque; angular momentum
 };
 
 /// One unit is numerator/denominator in SI, both whole where that is possible: such a quantity is rounded once only.

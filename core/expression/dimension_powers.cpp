@@ -11,10 +11,26 @@ namespace {
 
 constexpr double close_enough = 1e-9;  // exponents such as 1/3 are rounded
 
-constexpr std::array all_dimensions{Dimension::number,       Dimension::length,  Dimension::area,      Dimension::volume,
-                                    Dimension::angle,        Dimension::time,    Dimension::mass,      Dimension::force,
-                                    Dimension::torque,       Dimension::energy,  Dimension::speed,     Dimension::angular_speed,
-                                    Dimension::acceleration, Dimension::density, Dimension::stiffness, Dimension::angular_stiffness};
+constexpr std::array all_dimensions{Dimension::number,
+                                    Dimension::length,
+                                    Dimension::area,
+                                    Dimension::volume,
+                                    Dimension::angle,
+                                    Dimension::time,
+                                    Dimension::mass,
+                                    Dimension::force,
+                                    Dimension::torque,
+                                    Dimension::energy,
+                                    Dimension::speed,
+                                    Dimension::angular_speed,
+                                    Dimension::acceleration,
+                                    Dimension::density,
+                                    Dimension::stiffness,
+                                    Dimension::angular_stiffness,
+                                    Dimension::angular_acceleration,
+                                    Dimension::power,
+                                    Dimension::impulse,
+                                    Dimension::angular_impulse};
 
 }  // namespace
 
@@ -53,6 +69,14 @@ DimensionPowers powers_of(Dimension dimension) {
             return {{0, 1, -2, 0}};
         case Dimension::angular_stiffness:
             return {{2, 1, -2, -1}};
+        case Dimension::angular_acceleration:
+            return {{0, 0, -2, 1}};
+        case Dimension::power:
+            return {{2, 1, -3, 0}};
+        case Dimension::impulse:
+            return {{1, 1, -1, 0}};
+        case Dimension::angular_impulse:
+            return {{2, 1, -1, 0}};
     }
     return {};
 }

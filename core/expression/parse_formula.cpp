@@ -458,6 +458,7 @@ std::function<double(Dimension)> plain_units(double length_unit, double mass_uni
                 return mass_unit;
             case Dimension::angle:
             case Dimension::angular_speed:
+            case Dimension::angular_acceleration:
                 return std::numbers::pi / 180;
             default:
                 return 1.0;

@@ -72,14 +72,15 @@ private:
             for (const quantities::NamedQuantity& part : expression->parts()) collect(*part.quantity, in, true, own);
             for (Asked& a : own)
                 a.both_extremes = std::any_of(own.begin(), own.end(), [&](const Asked& b) {
-                    return a.series->over() != b.series->over() && a.series->steps(*a.simulated) == b.series->steps(*b.simulated);
+                    return a.series->over() != b.series->over() &&
+                           a.series->window(*a.simulated).steps == b.series->window(*b.simulated).steps;
                 });
             out.insert(out.end(), own.begin(), own.end());
         }
     }
 
     static std::string sentence_of(const Asked& asked, double unit) {
-        const std::vector<double> steps = asked.series->steps(*asked.simulated);
+        const auto [steps, first_step] = asked.series->window(*asked.simulated);
         const auto [least, largest] = std::minmax_element(steps.begin(), steps.end());
         const bool is_largest = asked.series->over() == Over::largest;
         const double extreme = is_largest ? *largest : *least, other = is_largest ? *least : *largest;
@@ -90,7 +91,7 @@ private:
         const std::string what = "\"over\": \"peak\" takes the largest absolute value";
         if (is_largest && extreme < 0)
             return "all steps are negative, and the largest, " + amount(extreme) + ", is the one with the least absolute value: " + what;
-        const auto step = static_cast<long>((is_largest ? least : largest) - steps.begin()) + 1;
+        const auto step = static_cast<long>((is_largest ? least : largest) - steps.begin()) + first_step + 1;
         return std::string(is_largest ? "the largest" : "the least") + " of the steps is " + amount(extreme) + ", but step " +
                std::to_string(step) + " has " + amount(other) + ", a larger absolute value: " + what;
     }

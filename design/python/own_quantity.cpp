@@ -16,13 +16,16 @@
 #include "fettle/design/quantities/in_scenario.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/joint_position.hpp"
+#include "fettle/design/quantities/law.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
+#include "fettle/design/quantities/marker_position.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
 #include "fettle/design/quantities/mass.hpp"
+#include "fettle/design/quantities/step_expression.hpp"
 #include "fettle/design/quantities/stroke.hpp"
 #include "fettle/design/quantities/worst.hpp"
 
-FETTLE_WORDS(fettle::design::quantities::Over, "end", "sum", "mean", "largest", "least", "peak")
+FETTLE_WORDS(fettle::design::quantities::Over, "end", "sum", "mean", "largest", "least", "peak", "rms", "integral")
 FETTLE_WORDS(fettle::design::quantities::EnergyKind, "kinetic", "potential", "spring", "total")
 FETTLE_WORDS(fettle::design::quantities::JointLoadKind, "force", "torque", "effort")
 
@@ -257,17 +260,54 @@ std::shared_ptr<const Quantity> marker_path_from(py::handle q, const MembersOf& 
                                                     of_q.get<std::vector<double>>("times"), std::move(moved));
 }
 
-// Texts are read by Design._prepared, which knows the parameters.
-std::shared_ptr<const Quantity> expression_from(py::handle q) {
+quantities::Reduction reduction_from(const MembersOf& of_q) {
+    quantities::Reduction out(of_q.get<quantities::Over>("over"), of_q.get<int>("derivative"));
+    out.from = of_q.get<std::optional<double>>("from_time");
+    out.to = of_q.get<std::optional<double>>("to_time");
+    out.at = of_q.get<std::optional<double>>("at");
+    return out;
+}
+
+std::vector<quantities::NamedQuantity> named_parts_from(py::handle q) {
     std::vector<quantities::NamedQuantity> parts;
     for (const auto& [name, part] : q.attr("parts").cast<py::dict>()) {
         auto quantity = quantity_from_python(part);
         if (!quantity) throw py::type_error("an expression's parts are quantities by name");
         parts.push_back({py::str(name), std::move(quantity)});
     }
+    return parts;
+}
+
+// Texts are read by Design._prepared, which knows the parameters.
+std::shared_ptr<const Quantity> expression_from(py::handle q) {
+    const std::vector<quantities::NamedQuantity> parts = named_parts_from(q);
     const py::object formula = q.attr("formula");
     if (py::isinstance<py::str>(formula)) return value_or_raise(quantities::Expression::parse(formula.cast<std::string>(), parts));
     return value_or_raise(quantities::Expression::create(formula_from(formula), parts));
+}
+
+// Values may be formulas; these are 0 in the table.
+std::shared_ptr<const Quantity> law_from(py::handle q, const MembersOf& of_q, const quantities::Reduction& reduction) {
+    quantities::Law::Of of;
+    of.dimension = of_q.get<Dimension>("of");
+    of.curve.kind = of_q.get<core::scene::CurveKind>("profile");
+    of.curve.times = of_q.get<std::vector<double>>("times");
+    py::list numbers;
+    for (const py::handle value : q.attr("values")) {
+        const bool follows = is_followed(value);
+        if (follows) of.moved.push_back({count_of(numbers), formula_from(value)});
+        numbers.append(follows ? py::object(py::float_(0.0)) : py::reinterpret_borrow<py::object>(value));
+    }
+    of.curve.values = of.moved.empty() ? of_q.get<std::vector<double>>("values") : numbers.cast<std::vector<double>>();
+    return std::make_shared<quantities::Law>(std::move(of), reduction);
+}
+
+std::shared_ptr<const Quantity> step_expression_from(py::handle q, const quantities::Reduction& reduction) {
+    const std::vector<quantities::NamedQuantity> parts = named_parts_from(q);
+    const py::object formula = q.attr("formula");
+    if (py::isinstance<py::str>(formula))
+        return value_or_raise(quantities::StepExpression::parse(formula.cast<std::string>(), parts, reduction));
+    return value_or_raise(quantities::StepExpression::create(formula_from(formula), parts, reduction));
 }
 
 std::shared_ptr<const Quantity> library_quantity(py::handle q) {
@@ -310,26 +350,33 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
         check_at_least("InScenario/scenario", scenario, 0);
         return in_scenario(quantity, scenario);
     }
-    const auto over = [&] { return of_q.get<Over>("over"); };
+    if (!is("Series")) return nullptr;
+    const Reduction reduction = reduction_from(of_q);
+    if (is("Law")) return law_from(q, of_q, reduction);
+    if (is("StepExpression")) return step_expression_from(q, reduction);
+    if (is("MarkerPosition")) {
+        const MarkerPosition::Of of{body(), of_q.get<Vector3>("point"), of_q.get<Vector3>("axis"), of_q.get<Vector3>("origin")};
+        return std::make_shared<MarkerPosition>(of, reduction);
+    }
     if (is("MarkerSpeed")) {
         const MarkerSpeed::Of of{body(), of_q.get<Vector3>("point"), of_q.get<Vector3>("axis")};
-        return std::make_shared<MarkerSpeed>(of, over());
+        return std::make_shared<MarkerSpeed>(of, reduction);
     }
     if (is("JointPosition"))
         return std::make_shared<JointPosition>(
-            JointPosition::Of{of_q.get<std::string>("joint"), of_q.get<Dimension>("coordinate_dimension")}, over());
-    if (is("BodyTurn")) return std::make_shared<BodyTurn>(body(), of_q.get<Vector3>("axis"), over());
+            JointPosition::Of{of_q.get<std::string>("joint"), of_q.get<Dimension>("coordinate_dimension")}, reduction);
+    if (is("BodyTurn")) return std::make_shared<BodyTurn>(body(), of_q.get<Vector3>("axis"), reduction);
     if (is("JointLoad")) {
         JointLoad::Of of{of_q.get<JointLoadKind>("kind"), of_q.get<std::string>("name"), of_q.get<Vector3>("axis"),
                          of_q.get<Dimension>("effort_dimension")};
-        return std::make_shared<JointLoad>(std::move(of), over());
+        return std::make_shared<JointLoad>(std::move(of), reduction);
     }
     if (is("ContactLoad")) {
         ContactForce::Of of{body(), of_q.get<std::optional<int>>("other"), of_q.get<Vector3>("axis"),
                             of_q.get<std::optional<Vector3>>("about")};
-        return std::make_shared<ContactForce>(of, over());
+        return std::make_shared<ContactForce>(of, reduction);
     }
-    if (is("Energy")) return std::make_shared<Energy>(of_q.get<EnergyKind>("kind"), over());
+    if (is("Energy")) return std::make_shared<Energy>(of_q.get<EnergyKind>("kind"), reduction);
     return nullptr;
 }
 
@@ -364,6 +411,50 @@ py::object moved_targets(const quantities::MarkerPath& path) {
     return std::move(targets);
 }
 
+py::list law_values(const quantities::Law& law) {
+    py::list values;
+    for (const double value : law.of().curve.values) values.append(value);
+    for (const quantities::MovedValue& each : law.of().moved) values[each.index] = py::cast(each.formula);
+    return values;
+}
+
+py::dict python_parts(const std::vector<quantities::NamedQuantity>& named) {
+    py::dict parts;
+    for (const quantities::NamedQuantity& part : named) parts[py::str(part.name)] = quantity_to_python(part.quantity);
+    return parts;
+}
+
+py::object series_to_python(const std::shared_ptr<const Quantity>& quantity, const quantities::StepSeries& series) {
+    using namespace quantities;
+    py::object out;
+    if (const auto* q = dynamic_cast<const MarkerPosition*>(quantity.get()))
+        out = record_class("MarkerPosition")(q->of().body, q->of().point, q->over(), q->of().axis, q->of().origin);
+    else if (const auto* q = dynamic_cast<const MarkerSpeed*>(quantity.get()))
+        out = record_class("MarkerSpeed")(q->of().body, q->of().point, q->over(), q->of().axis);
+    else if (const auto* q = dynamic_cast<const JointPosition*>(quantity.get()))
+        out = record_class("JointPosition")(q->of().joint, q->over(), q->of().dimension);
+    else if (const auto* q = dynamic_cast<const BodyTurn*>(quantity.get()))
+        out = record_class("BodyTurn")(q->body(), q->axis(), q->over());
+    else if (const auto* q = dynamic_cast<const JointLoad*>(quantity.get()))
+        out = record_class("JointLoad")(q->of().kind, q->of().name, q->over(), q->of().axis, q->of().effort_dimension);
+    else if (const auto* q = dynamic_cast<const ContactForce*>(quantity.get()))
+        out = record_class("ContactLoad")(q->of().body, q->of().other, q->over(), q->of().axis, q->of().about);
+    else if (const auto* q = dynamic_cast<const Energy*>(quantity.get()))
+        out = record_class("Energy")(q->kind(), q->over());
+    else if (const auto* q = dynamic_cast<const Law*>(quantity.get()))
+        out = record_class("Law")(q->of().dimension, q->of().curve.times, law_values(*q), q->of().curve.kind, q->over());
+    else if (const auto* q = dynamic_cast<const StepExpression*>(quantity.get()))
+        out = record_class("StepExpression")(q->formula(), python_parts(q->parts()), q->over());
+    else
+        return py::cast(OpaqueQuantity{quantity});
+    const Reduction& reduction = series.reduction();
+    out.attr("derivative") = reduction.derivative;
+    out.attr("from_time") = reduction.from;
+    out.attr("to_time") = reduction.to;
+    out.attr("at") = reduction.at;
+    return out;
+}
+
 }  // namespace
 
 py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
@@ -387,11 +478,8 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
         const py::object targets = q->moved().empty() ? py::object(py::cast(q->targets())) : moved_targets(*q);
         return record_class("MarkerPath")(q->body(), q->point(), targets, q->times());
     }
-    if (const auto* q = dynamic_cast<const Expression*>(quantity.get())) {
-        py::dict parts;
-        for (const NamedQuantity& part : q->parts()) parts[py::str(part.name)] = quantity_to_python(part.quantity);
-        return record_class("Expression")(q->formula(), parts);
-    }
+    if (const auto* q = dynamic_cast<const Expression*>(quantity.get()))
+        return record_class("Expression")(q->formula(), python_parts(q->parts()));
     if (const auto* q = dynamic_cast<const Worst*>(quantity.get())) {
         py::list parts;
         for (const auto& part : q->parts()) parts.append(quantity_to_python(part));
@@ -399,16 +487,7 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
     }
     if (const auto* q = dynamic_cast<const InScenario*>(quantity.get()))
         return record_class("InScenario")(quantity_to_python(q->quantity()), q->scenario());
-    if (const auto* q = dynamic_cast<const MarkerSpeed*>(quantity.get()))
-        return record_class("MarkerSpeed")(q->of().body, q->of().point, q->over(), q->of().axis);
-    if (const auto* q = dynamic_cast<const JointPosition*>(quantity.get()))
-        return record_class("JointPosition")(q->of().joint, q->over(), q->of().dimension);
-    if (const auto* q = dynamic_cast<const BodyTurn*>(quantity.get())) return record_class("BodyTurn")(q->body(), q->axis(), q->over());
-    if (const auto* q = dynamic_cast<const JointLoad*>(quantity.get()))
-        return record_class("JointLoad")(q->of().kind, q->of().name, q->over(), q->of().axis, q->of().effort_dimension);
-    if (const auto* q = dynamic_cast<const ContactForce*>(quantity.get()))
-        return record_class("ContactLoad")(q->of().body, q->of().other, q->over(), q->of().axis, q->of().about);
-    if (const auto* q = dynamic_cast<const Energy*>(quantity.get())) return record_class("Energy")(q->kind(), q->over());
+    if (const auto* series = dynamic_cast<const StepSeries*>(quantity.get())) return series_to_python(quantity, *series);
     return py::cast(OpaqueQuantity{quantity});
 }
 

@@ -41,7 +41,8 @@ std::vector<std::array<int, width>> rows_from(pybind11::handle rows, const std::
 }  // namespace fettle::design::python
 
 FETTLE_WORDS(fettle::core::base::Dimension, "number", "length", "area", "volume", "angle", "time", "mass", "force", "torque", "energy",
-             "speed", "angular_speed", "acceleration", "density", "stiffness", "angular_stiffness")
+             "speed", "angular_speed", "acceleration", "density", "stiffness", "angular_stiffness", "angular_acceleration", "power",
+             "impulse", "angular_impulse")
 FETTLE_WORDS(fettle::core::scene::BodyType, "dynamic", "static", "kinematic")
 FETTLE_WORDS(fettle::core::scene::MassKind, "volume", "area", "length", "vertex")
 FETTLE_WORDS(fettle::core::scene::MeshPolicy, "strict", "tolerant", "lenient")

@@ -13,11 +13,12 @@ namespace fettle::design::quantities {
 class BodyTurn : public StepSeries {
 public:
     /// @param axis  A unit vector, world.
-    BodyTurn(int body, const Vector3& axis, Over over) : StepSeries(over), body_(body), axis_(axis) {}
+    BodyTurn(int body, const Vector3& axis, const Reduction& reduction) : StepSeries(reduction), body_(body), axis_(axis) {}
 
     int body() const { return body_; }
     const Vector3& axis() const { return axis_; }
-    Dimension dimension() const override { return Dimension::angle; }
+    Dimension step_dimension() const override { return Dimension::angle; }
+    bool has_direction() const override { return reduction().derivative > 0; }
     Errors check(const core::model::Model& model, int steps) const override;
 
 protected:

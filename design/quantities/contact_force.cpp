@@ -18,24 +18,12 @@ adjoint::stepper::ContactForceOf asked_of(const core::model::Model& model, const
 
 }  // namespace
 
-std::vector<Vector3> ContactForce::loads(const Simulated& s) const {
+std::vector<Vector3> ContactForce::vectors(const Simulated& s) const {
     return adjoint::stepper::contact_forces(s.model, s.trajectory, asked_of(s.model, of_));
 }
 
-std::vector<double> ContactForce::series(const Simulated& s) const {
-    std::vector<double> out;
-    for (const Vector3& load : loads(s)) out.push_back(of_.axis.isZero(0) ? load.norm() : of_.axis.dot(load));
-    return out;
-}
-
-void ContactForce::add_series_seeds(const Simulated& s, const std::vector<double>& weights, Seeds& seeds) const {
-    std::vector<Vector3> along(weights.size(), of_.axis);
-    if (of_.axis.isZero(0)) {
-        const std::vector<Vector3> at = loads(s);
-        for (size_t t = 0; t < along.size(); ++t) along[t] = at[t].isZero(0) ? Vector3(Vector3::Zero()) : at[t].normalized();
-    }
-    for (size_t t = 0; t < along.size(); ++t) along[t] *= weights[t];
-    adjoint::stepper::add_contact_force_seeds(s.model, s.trajectory, asked_of(s.model, of_), along, seeds);
+void ContactForce::add_vector_seeds(const Simulated& s, const std::vector<Vector3>& weights, Seeds& seeds) const {
+    adjoint::stepper::add_contact_force_seeds(s.model, s.trajectory, asked_of(s.model, of_), weights, seeds);
 }
 
 Errors ContactForce::check(const core::model::Model& model, int steps) const {

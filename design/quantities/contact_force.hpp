@@ -6,11 +6,11 @@
 
 #include <optional>
 
-#include "fettle/design/quantities/step_series.hpp"
+#include "fettle/design/quantities/vector_series.hpp"
 
 namespace fettle::design::quantities {
 
-class ContactForce : public StepSeries {
+class ContactForce : public VectorSeries {
 public:
     struct Of {
         int body = 0;                    ///< what the force acts on
@@ -18,22 +18,19 @@ public:
         Vector3 axis = Vector3::Zero();  ///< the component along this unit vector, world; 0: the magnitude
         std::optional<Vector3> about{};  ///< the torque about this point of the body's file frame [m], in place of the force
     };
-    ContactForce(const Of& of, Over over) : StepSeries(over), of_(of) {}
+    ContactForce(const Of& of, const Reduction& reduction) : VectorSeries(of.axis, reduction), of_(of) {}
 
     const Of& of() const { return of_; }
-    bool has_direction() const override { return !of_.axis.isZero(0); }
-    Dimension dimension() const override { return of_.about ? Dimension::torque : Dimension::force; }
+    Dimension step_dimension() const override { return of_.about ? Dimension::torque : Dimension::force; }
     /// A body that is not there, the same twice, two that never touch.
     Errors check(const core::model::Model& model, int steps) const override;
 
 protected:
-    std::vector<double> series(const description::Simulated& simulated) const override;
-    void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
+    std::vector<Vector3> vectors(const description::Simulated& simulated) const override;
+    void add_vector_seeds(const description::Simulated& simulated, const std::vector<Vector3>& weights,
                           description::Seeds& seeds) const override;
 
 private:
-    std::vector<Vector3> loads(const description::Simulated& simulated) const;
-
     Of of_;
 };
 

@@ -14,10 +14,10 @@ enum class EnergyKind { kinetic, potential, spring, total };
 
 class Energy : public StepSeries {
 public:
-    Energy(EnergyKind kind, Over over) : StepSeries(over), kind_(kind) {}
+    Energy(EnergyKind kind, const Reduction& reduction) : StepSeries(reduction), kind_(kind) {}
 
     EnergyKind kind() const { return kind_; }
-    Dimension dimension() const override { return Dimension::energy; }
+    Dimension step_dimension() const override { return Dimension::energy; }
     /// Kinetic energy in quasi-statics; masses that are not those of solids of their density.
     Errors check(const core::model::Model& model, int steps) const override;
 

@@ -25,14 +25,15 @@ public:
         Vector3 axis = Vector3::Zero();                  ///< the component along this unit vector, world; 0: the magnitude
         Dimension effort_dimension = Dimension::torque;  ///< of the motor's coordinate: torque or force
     };
-    JointLoad(Of of, Over over) : StepSeries(over), of_(std::move(of)) {}
+    JointLoad(Of of, const Reduction& reduction) : StepSeries(reduction), of_(std::move(of)) {}
 
     const Of& of() const { return of_; }
     bool has_direction() const override { return of_.kind == JointLoadKind::effort || !of_.axis.isZero(0); }
-    Dimension dimension() const override;
+    Dimension step_dimension() const override;
     Errors check(const core::model::Model& model, int steps) const override;
 
 protected:
+    bool is_magnitude() const override { return !has_direction(); }
     std::vector<double> series(const description::Simulated& simulated) const override;
     void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
                           description::Seeds& seeds) const override;

@@ -15,10 +15,11 @@ public:
         std::string joint;
         Dimension dimension = Dimension::angle;  ///< of its coordinate: angle or length
     };
-    JointPosition(Of of, Over over) : StepSeries(over), of_(std::move(of)) {}
+    JointPosition(Of of, const Reduction& reduction) : StepSeries(reduction), of_(std::move(of)) {}
 
     const Of& of() const { return of_; }
-    Dimension dimension() const override { return of_.dimension; }
+    Dimension step_dimension() const override { return of_.dimension; }
+    bool has_direction() const override { return reduction().derivative > 0; }
     /// A joint that is not there, or has no coordinate of that dimension.
     Errors check(const core::model::Model& model, int steps) const override;
 

@@ -13,25 +13,17 @@ Eigen::Vector4d MarkerSpeed::place(const core::model::Model& model) const {
     return X.homogeneous();
 }
 
-std::vector<Vector3> MarkerSpeed::velocities(const Simulated& s) const {
+std::vector<Vector3> MarkerSpeed::vectors(const Simulated& s) const {
     std::vector<Vector3> out;
     for (const std::vector<Matrix34>& at : adjoint::stepper::end_velocities(s.model, s.trajectory))
         out.emplace_back(at[of_.body] * place(s.model));
     return out;
 }
 
-std::vector<double> MarkerSpeed::series(const Simulated& s) const {
-    std::vector<double> out;
-    for (const Vector3& velocity : velocities(s)) out.push_back(of_.axis.isZero(0) ? velocity.norm() : of_.axis.dot(velocity));
-    return out;
-}
-
-void MarkerSpeed::add_series_seeds(const Simulated& s, const std::vector<double>& weights, Seeds& seeds) const {
-    const std::vector<Vector3> at = velocities(s);
+void MarkerSpeed::add_vector_seeds(const Simulated& s, const std::vector<Vector3>& weights, Seeds& seeds) const {
     for (size_t t = 0; t < weights.size(); ++t) {
-        if (weights[t] == 0 || (of_.axis.isZero(0) && at[t].isZero(0))) continue;
-        const Vector3 along = of_.axis.isZero(0) ? Vector3(at[t].normalized()) : of_.axis;
-        const Matrix34 bar = weights[t] * along * place(s.model).transpose();
+        if (weights[t].isZero(0)) continue;
+        const Matrix34 bar = weights[t] * place(s.model).transpose();
         adjoint::stepper::add_velocity_seed(s.model, static_cast<int>(t), of_.body, bar, seeds.trajectory_bar);
     }
 }

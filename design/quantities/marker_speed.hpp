@@ -3,32 +3,30 @@
 ///   v = V [X; 1],   V the integrator's end velocity (adjoint/stepper/velocities.hpp)   [m/s], world
 #pragma once
 
-#include "fettle/design/quantities/step_series.hpp"
+#include "fettle/design/quantities/vector_series.hpp"
 
 namespace fettle::design::quantities {
 
-class MarkerSpeed : public StepSeries {
+class MarkerSpeed : public VectorSeries {
 public:
     struct Of {
         int body = 0;
         Vector3 point = Vector3::Zero();  ///< in the body's file frame [m]
         Vector3 axis = Vector3::Zero();   ///< the component along this unit vector, world; 0: the magnitude
     };
-    MarkerSpeed(const Of& of, Over over) : StepSeries(over), of_(of) {}
+    MarkerSpeed(const Of& of, const Reduction& reduction) : VectorSeries(of.axis, reduction), of_(of) {}
 
     const Of& of() const { return of_; }
-    bool has_direction() const override { return !of_.axis.isZero(0); }
-    Dimension dimension() const override { return Dimension::speed; }
+    Dimension step_dimension() const override { return Dimension::speed; }
     /// A body that is not there; a quasi-static simulation.
     Errors check(const core::model::Model& model, int steps) const override;
 
 protected:
-    std::vector<double> series(const description::Simulated& simulated) const override;
-    void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
+    std::vector<Vector3> vectors(const description::Simulated& simulated) const override;
+    void add_vector_seeds(const description::Simulated& simulated, const std::vector<Vector3>& weights,
                           description::Seeds& seeds) const override;
 
 private:
-    std::vector<Vector3> velocities(const description::Simulated& simulated) const;
     Eigen::Vector4d place(const core::model::Model& model) const;
 
     Of of_;

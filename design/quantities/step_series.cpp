@@ -1,83 +1,54 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/quantities/step_series.hpp"
 
-#include <numeric>
-
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/quantities/stroke.hpp"
-
 namespace fettle::design::quantities {
 
 using description::Measurement;
 using description::Seeds;
 using description::Simulated;
 
-namespace {
+std::vector<double> StepSeries::steps(const Simulated& simulated) const { return series_derivative(simulated, reduction_.derivative); }
 
-std::vector<double> negated(std::vector<double> y) {
-    for (double& v : y) v = -v;
-    return y;
+void StepSeries::add_step_seeds(const Simulated& simulated, const std::vector<double>& weights, Seeds& seeds) const {
+    add_series_derivative_seeds(simulated, reduction_.derivative, weights, seeds);
 }
 
-// The greatest of y, of -y, or of both.
-struct SignedExtreme {
-    Extreme extreme;
-    double sign = 1;
-
-    double value() const { return sign * extreme.value; }
-};
-
-SignedExtreme extreme_of(Over over, const std::vector<double>& y) {
-    const Extreme up = over == Over::least ? Extreme{} : smooth_maximum(y),
-                  down = over == Over::largest ? Extreme{} : smooth_maximum(negated(y));
-    return over == Over::largest || (over == Over::peak && up.value >= down.value) ? SignedExtreme{up, 1} : SignedExtreme{down, -1};
+StepSeries::Window StepSeries::window(const Simulated& simulated) const {
+    const std::vector<double> all = steps(simulated);
+    const auto [first, last] = window_of(reduction_, simulated.trajectory.timestep, count_of(all));
+    return {{all.begin() + first, all.begin() + last}, first};
 }
 
-bool is_extreme(Over over) { return over == Over::largest || over == Over::least || over == Over::peak; }
-
-double number(Over over, const std::vector<double>& y) {
-    FETTLE_ASSERT(!y.empty(), "a number of each step needs a step");
-    const double sum = std::accumulate(y.begin(), y.end(), 0.0);
-    switch (over) {
-        case Over::end:
-            return y.back();
-        case Over::sum:
-            return sum;
-        case Over::mean:
-            return sum / static_cast<double>(y.size());
-        case Over::largest:
-        case Over::least:
-            return extreme_of(over, y).value();
-        case Over::peak:
-            return extreme_of(over, y).extreme.value;
-    }
-    return 0;
+std::vector<double> StepSeries::series_derivative(const Simulated& simulated, int order) const {
+    return time_derivative(series(simulated), simulated.trajectory.timestep, order);
 }
 
-std::vector<double> weights_of(Over over, const std::vector<double>& y) {
-    std::vector<double> out(y.size(), over == Over::sum ? 1.0 : over == Over::mean ? 1 / static_cast<double>(y.size()) : 0.0);
-    if (over == Over::end) out.back() = 1;
-    if (!is_extreme(over)) return out;
-    const auto [extreme, sign] = extreme_of(over, y);
-    for (size_t k = 0; k < 3; ++k)
-        if (extreme.weights[k] != 0)
-            out[static_cast<size_t>(extreme.first) + k] = over == Over::peak ? sign * extreme.weights[k] : extreme.weights[k];
-    return out;
+void StepSeries::add_series_derivative_seeds(const Simulated& simulated, int order, const std::vector<double>& weights,
+                                             Seeds& seeds) const {
+    add_series_seeds(simulated, time_derivative_adjoint(weights, simulated.trajectory.timestep, order), seeds);
 }
 
-}  // namespace
+Dimension StepSeries::steps_dimension() const {
+    return dimension_of({Over::end, reduction_.derivative}, step_dimension()).value_or(Dimension::number);
+}
 
-Measurement StepSeries::value(const Simulated& simulated) const { return description::exact(number(over_, series(simulated))); }
+Dimension StepSeries::dimension() const { return dimension_of(reduction_, step_dimension()).value_or(Dimension::number); }
+
+Measurement StepSeries::value(const Simulated& simulated) const {
+    return description::exact(number_of(reduction_, steps(simulated), simulated.trajectory.timestep));
+}
 
 void StepSeries::add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const {
-    std::vector<double> weights = weights_of(over_, series(simulated));
+    std::vector<double> weights = weights_of(reduction_, steps(simulated), simulated.trajectory.timestep);
     for (double& weight : weights) weight *= scale;
-    add_series_seeds(simulated, weights, seeds);
+    add_step_seeds(simulated, weights, seeds);
 }
 
-Errors StepSeries::check(const core::model::Model&, int steps) const {
-    if (steps >= 1) return {};
-    return {{ErrorCode::out_of_range, "", "what a step reports needs a step"}};
+Errors StepSeries::check(const core::model::Model& model, int steps) const {
+    Errors errors = quantities::check(reduction_, step_dimension(), model.timestep, steps);
+    if (reduction_.derivative > 0 && is_magnitude())
+        errors.push_back({ErrorCode::inconsistent, "", "the derivative in time of a magnitude says little; name an `axis`"});
+    return errors;
 }
 
 }  // namespace fettle::design::quantities

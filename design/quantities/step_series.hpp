@@ -1,42 +1,60 @@
 // SPDX-License-Identifier: MIT
-/// Quantities that every step of a motion has one number of, y_1 .. y_T: what is made of them, and its derivative in each. Kinds:
-/// joint_load.hpp, joint_position.hpp, body_turn.hpp, energy.hpp, contact_force.hpp, marker_speed.hpp.
+/// Quantities that every step of a motion has one number of, y_1 .. y_T: what is made of them (reduction.hpp), and its derivative in each.
+/// Kinds: joint_load.hpp, joint_position.hpp, body_turn.hpp, energy.hpp, law.hpp, those of vector_series.hpp, and formulas of these,
+/// step_expression.hpp.
 #pragma once
 
 #include <vector>
 
 #include "fettle/design/description/quantity.hpp"
+#include "fettle/design/quantities/reduction.hpp"
 
 namespace fettle::design::quantities {
 
-/// What a series comes to. The extremes are those of stroke.hpp: of the parabola through three steps, smooth in the parameters. `peak` is
-/// the largest absolute value: the greater of `largest` and -`least`, never negative.
-enum class Over { end, sum, mean, largest, least, peak };
-
 class StepSeries : public description::Quantity {
 public:
-    explicit StepSeries(Over over) : over_(over) {}
+    explicit StepSeries(const Reduction& reduction) : reduction_(reduction) {}
 
-    Over over() const { return over_; }
-    /// y_1 .. y_T. Contract: at least one step.
-    std::vector<double> steps(const description::Simulated& simulated) const { return series(simulated); }
+    const Reduction& reduction() const { return reduction_; }
+    Over over() const { return reduction_.over; }
+    /// The numbers of all steps, after the derivative in time: what the reduction is taken of. Contract: check() finds nothing.
+    std::vector<double> steps(const description::Simulated& simulated) const;
+    /// Adds the seeds of sum_t weights[t] steps()[t].
+    void add_step_seeds(const description::Simulated& simulated, const std::vector<double>& weights, description::Seeds& seeds) const;
+    /// The window's part of steps(), and where it begins.
+    struct Window {
+        std::vector<double> steps;
+        int first = 0;
+    };
+    Window window(const description::Simulated& simulated) const;
+
+    /// Of y_t.
+    virtual Dimension step_dimension() const = 0;
+    /// Of steps(). Contract of both: there is a unit of it, which check() sees to (until then: number).
+    Dimension steps_dimension() const;
+    Dimension dimension() const final;
     /// Does the sign tell a direction, as of a torque about an axis? Not of magnitudes, nor of energies, whose zero is a convention.
     virtual bool has_direction() const { return false; }
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
-    /// No step.
+    /// What the reduction cannot be taken of; the derivative of a magnitude, which is not that of its vector.
     Errors check(const core::model::Model& model, int steps) const override;
 
 protected:
-    /// Of steps().
     virtual std::vector<double> series(const description::Simulated& simulated) const = 0;
     /// Adds the seeds of sum_t weights[t] y_t+1.
     virtual void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
                                   description::Seeds& seeds) const = 0;
+    /// The derivative in time of the series, and its seeds; those of a magnitude are that of the vector's derivative.
+    virtual std::vector<double> series_derivative(const description::Simulated& simulated, int order) const;
+    virtual void add_series_derivative_seeds(const description::Simulated& simulated, int order, const std::vector<double>& weights,
+                                             description::Seeds& seeds) const;
+    /// Are its numbers magnitudes whose vectors series_derivative() does not know?
+    virtual bool is_magnitude() const { return false; }
 
 private:
-    Over over_;
+    Reduction reduction_;
 };
 
 /// The matrix whose product, entry by entry, with the change [[phi] R, dq] of a pose is that of a gradient in (q, phi).

@@ -12,9 +12,12 @@
 #include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/quantities/joint_load.hpp"
 #include "fettle/design/quantities/joint_position.hpp"
+#include "fettle/design/quantities/law.hpp"
 #include "fettle/design/quantities/marker_path.hpp"
+#include "fettle/design/quantities/marker_position.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
 #include "fettle/design/quantities/mass.hpp"
+#include "fettle/design/quantities/step_expression.hpp"
 #include "fettle/design/quantities/stroke.hpp"
 
 namespace fettle::design::reading {
@@ -124,19 +127,55 @@ std::shared_ptr<const Quantity> read_mass(const JsonNode& node, const ReadContex
     return std::make_shared<quantities::Mass>(context.scene, bodies);
 }
 
-quantities::Over read_over(const JsonNode& node) {
-    static const std::vector<std::string_view> names{"end", "sum", "mean", "largest", "least", "peak"};
-    const std::string name = node.choice(names).value_or("end");
-    return static_cast<quantities::Over>(std::find(names.begin(), names.end(), name) - names.begin());
+constexpr std::string_view reduction_keys[] = {"over", "from", "to", "at", "derivative"};
+
+// What every quantity that each step has a number of may say of it, beside keys of its own.
+std::vector<std::string_view> with_reduction(std::vector<std::string_view> keys) {
+    keys.insert(keys.end(), std::begin(reduction_keys), std::end(reduction_keys));
+    return keys;
+}
+
+bool has_reduction(const JsonNode& node) {
+    return std::any_of(std::begin(reduction_keys), std::end(reduction_keys), [&](std::string_view key) { return node[key].exists(); });
+}
+
+// @param of_steps  What a step's number is. Of what depends on the motion, Quantity::check tells.
+quantities::Reduction read_reduction(const JsonNode& node, Dimension of_steps) {
+    static const std::vector<std::string_view> names{"end", "sum", "mean", "largest", "least", "peak", "rms", "integral"};
+    const std::string name = node["over"].choice(names).value_or("end");
+    quantities::Reduction out(static_cast<quantities::Over>(std::find(names.begin(), names.end(), name) - names.begin()));
+    out.derivative = node["derivative"].integer(0, 2).value_or(0);
+    const auto time = [&](std::string_view key) { return node[key].quantity(Dimension::time, 1, core::files::not_negative); };
+    out.from = time("from");
+    out.to = time("to");
+    out.at = time("at");
+    for (const std::string_view key : {"over", "from", "to"})
+        if (node["at"].exists() && node[key].exists())
+            node[key].fail(ErrorCode::inconsistent, "either `at` a time, or `" + std::string(key) + "`, which is about several steps");
+    if (!dimension_of(out, of_steps))
+        node.fail(
+            ErrorCode::wrong_type,
+            "there is no unit for this derivative or integral; divide by an amount in an expression over the steps, such as `force / 1 N`");
+    return out;
 }
 
 std::shared_ptr<const Quantity> read_marker_speed(const JsonNode& node, const ReadContext& context) {
     const auto body = context.body(node.require("body"));
     const auto point = node.require("point").length3(context.length_unit);
     const std::optional<Vector3> axis = node["axis"].exists() ? context.axis(node["axis"]) : Vector3(Vector3::Zero());
-    const quantities::Over over = read_over(node["over"]);
+    const quantities::Reduction reduction = read_reduction(node, Dimension::speed);
     if (!body || !point || !axis) return nullptr;
-    return std::make_shared<quantities::MarkerSpeed>(quantities::MarkerSpeed::Of{*body, *point, *axis}, over);
+    return std::make_shared<quantities::MarkerSpeed>(quantities::MarkerSpeed::Of{*body, *point, *axis}, reduction);
+}
+
+std::shared_ptr<const Quantity> read_marker_position(const JsonNode& node, const ReadContext& context) {
+    const auto body = context.body(node.require("body"));
+    const auto point = node.require("point").length3(context.length_unit);
+    const std::optional<Vector3> axis = node["axis"].exists() ? context.axis(node["axis"]) : Vector3(Vector3::Zero());
+    const std::optional<Vector3> origin = node["origin"].exists() ? node["origin"].length3(context.length_unit) : Vector3(Vector3::Zero());
+    const quantities::Reduction reduction = read_reduction(node, Dimension::length);
+    if (!body || !point || !axis || !origin) return nullptr;
+    return std::make_shared<quantities::MarkerPosition>(quantities::MarkerPosition::Of{*body, *point, *axis, *origin}, reduction);
 }
 
 // The name of a joint or motor of the scene.
@@ -157,9 +196,10 @@ const typename Parts::value_type* read_part(const JsonNode& node, const Parts& p
 std::shared_ptr<const Quantity> read_joint_load(const JsonNode& node, const ReadContext& context, quantities::JointLoadKind kind) {
     const core::scene::Joint* joint = read_part(node.require("joint"), context.scene.mechanism.joints, "joint");
     const std::optional<Vector3> axis = node["axis"].exists() ? context.axis(node["axis"]) : Vector3(Vector3::Zero());
-    const quantities::Over over = read_over(node["over"]);
+    const bool is_force = kind == quantities::JointLoadKind::force;
+    const quantities::Reduction reduction = read_reduction(node, is_force ? Dimension::force : Dimension::torque);
     if (joint == nullptr || !axis) return nullptr;
-    return std::make_shared<quantities::JointLoad>(quantities::JointLoad::Of{kind, joint->name, *axis}, over);
+    return std::make_shared<quantities::JointLoad>(quantities::JointLoad::Of{kind, joint->name, *axis}, reduction);
 }
 
 std::shared_ptr<const Quantity> read_joint_force(const JsonNode& node, const ReadContext& context) {
@@ -176,70 +216,112 @@ bool turns(const core::scene::Joint& joint) {
 
 std::shared_ptr<const Quantity> read_joint_position(const JsonNode& node, const ReadContext& context) {
     const core::scene::Joint* joint = read_part(node.require("joint"), context.scene.mechanism.joints, "joint");
-    const quantities::Over over = read_over(node["over"]);
     if (joint == nullptr) return nullptr;
     const Dimension dimension = turns(*joint) ? Dimension::angle : Dimension::length;
-    return std::make_shared<quantities::JointPosition>(quantities::JointPosition::Of{joint->name, dimension}, over);
+    return std::make_shared<quantities::JointPosition>(quantities::JointPosition::Of{joint->name, dimension},
+                                                       read_reduction(node, dimension));
 }
 
 std::shared_ptr<const Quantity> read_turn(const JsonNode& node, const ReadContext& context) {
     const auto body = context.body(node.require("body"));
     const auto axis = context.axis(node.require("axis"));
-    const quantities::Over over = read_over(node["over"]);
+    const quantities::Reduction reduction = read_reduction(node, Dimension::angle);
     if (!body || !axis) return nullptr;
-    return std::make_shared<quantities::BodyTurn>(*body, *axis, over);
+    return std::make_shared<quantities::BodyTurn>(*body, *axis, reduction);
 }
 
 std::shared_ptr<const Quantity> read_motor_effort(const JsonNode& node, const ReadContext& context) {
     const core::scene::Mechanism& mechanism = context.scene.mechanism;
     const core::scene::Motor* motor = read_part(node.require("motor"), mechanism.motors, "motor");
-    const quantities::Over over = read_over(node["over"]);
     if (motor == nullptr) return nullptr;
     quantities::JointLoad::Of of{quantities::JointLoadKind::effort, motor->name};
     of.effort_dimension = Dimension::force;
     for (const core::scene::Joint& joint : mechanism.joints)
         if (joint.name == motor->joint && turns(joint)) of.effort_dimension = Dimension::torque;
-    return std::make_shared<quantities::JointLoad>(of, over);
+    return std::make_shared<quantities::JointLoad>(of, read_reduction(node, of.effort_dimension));
 }
 
-std::shared_ptr<const Quantity> read_contact_force(const JsonNode& node, const ReadContext& context) {
+// Of the force, or its torque about a point.
+std::shared_ptr<const Quantity> read_contact_load(const JsonNode& node, const ReadContext& context, const std::optional<Vector3>& about) {
     const auto body = context.body(node.require("body"));
     const auto other = node["of"].exists() ? context.body(node["of"]) : std::nullopt;
     const std::optional<Vector3> axis = node["axis"].exists() ? context.axis(node["axis"]) : Vector3(Vector3::Zero());
-    const quantities::Over over = read_over(node["over"]);
+    const quantities::Reduction reduction = read_reduction(node, about ? Dimension::torque : Dimension::force);
     if (!body || !axis || (node["of"].exists() && !other)) return nullptr;
     if (other == body) {
         node.fail(ErrorCode::inconsistent, "a force of contact is between two bodies; `body` and `of` are the same");
         return nullptr;
     }
-    return std::make_shared<quantities::ContactForce>(quantities::ContactForce::Of{*body, other, *axis}, over);
+    return std::make_shared<quantities::ContactForce>(quantities::ContactForce::Of{*body, other, *axis, about}, reduction);
+}
+
+std::shared_ptr<const Quantity> read_contact_force(const JsonNode& node, const ReadContext& context) {
+    return read_contact_load(node, context, std::nullopt);
 }
 
 std::shared_ptr<const Quantity> read_contact_torque(const JsonNode& node, const ReadContext& context) {
-    const std::shared_ptr<const Quantity> force = read_contact_force(node, context);
     const auto point = node.require("point").length3(context.length_unit);
-    if (!force || !point) return nullptr;
-    const auto& load = static_cast<const quantities::ContactForce&>(*force);
-    quantities::ContactForce::Of of = load.of();
-    of.about = *point;
-    return std::make_shared<quantities::ContactForce>(of, load.over());
+    const std::shared_ptr<const Quantity> load = read_contact_load(node, context, point.value_or(Vector3::Zero()));
+    return point ? load : nullptr;
 }
 
 std::shared_ptr<const Quantity> read_energy(const JsonNode& node, const ReadContext&) {
     static const std::vector<std::string_view> names{"kinetic", "potential", "spring", "total"};
     const auto name = node.require("of").choice(names);
-    const quantities::Over over = read_over(node["over"]);
+    const quantities::Reduction reduction = read_reduction(node, Dimension::energy);
     if (!name) return nullptr;
     return std::make_shared<quantities::Energy>(
-        static_cast<quantities::EnergyKind>(std::find(names.begin(), names.end(), *name) - names.begin()), over);
+        static_cast<quantities::EnergyKind>(std::find(names.begin(), names.end(), *name) - names.begin()), reduction);
 }
 
+std::shared_ptr<const Quantity> read_law(const JsonNode& node, const ReadContext& context) {
+    static const std::vector<std::string_view> profiles{"linear", "cubic", "trapezoid", "control_points"};
+    static const std::vector<std::pair<std::string_view, Dimension>> dimensions{{"length", Dimension::length},
+                                                                                {"angle", Dimension::angle},
+                                                                                {"speed", Dimension::speed},
+                                                                                {"angular_speed", Dimension::angular_speed},
+                                                                                {"force", Dimension::force},
+                                                                                {"torque", Dimension::torque},
+                                                                                {"acceleration", Dimension::acceleration},
+                                                                                {"number", Dimension::number}};
+    std::vector<std::string_view> names;
+    for (const auto& [name, dimension] : dimensions) names.push_back(name);
+    const auto name = node.require("of").choice(names);
+    if (!name) return nullptr;
+    quantities::Law::Of of;
+    of.dimension = std::find_if(dimensions.begin(), dimensions.end(), [&](const auto& each) { return each.first == *name; })->second;
+    const std::string profile = node["profile"].choice(profiles).value_or("linear");
+    of.curve.kind = static_cast<core::scene::CurveKind>(std::find(profiles.begin(), profiles.end(), profile) - profiles.begin());
+    of.curve.times = node.require("times").numbers().value_or(std::vector<double>{});
+    const double unit = context.unit(of.dimension);
+    for (const JsonNode& value : node.require("values").elements()) {
+        auto formula = context.formulas.followed(value, of.dimension, unit);
+        const auto number = formula ? std::optional(context.formulas.value_of(*formula)) : value.quantity(of.dimension, unit);
+        if (formula) of.moved.push_back({count_of(of.curve.values), std::move(*formula)});
+        of.curve.values.push_back(number.value_or(0));
+    }
+    const quantities::Reduction reduction = read_reduction(node, of.dimension);
+    return std::make_shared<quantities::Law>(std::move(of), reduction);
+}
+
+// With a word of a reduction it is over the steps.
 std::shared_ptr<const Quantity> read_expression(const JsonNode& node, const ReadContext& context) {
+    const bool is_over_steps = has_reduction(node);
     const auto text = node.require("expression").string();
     if (!text) return nullptr;
     core::expression::Scope scope = context.formulas.scope();
     scope.what = "quantity, parameter or variable";
-    for (core::expression::Scope::Name& name : quantities::names_of(context.quantities)) scope.names.push_back(std::move(name));
+    const auto names = is_over_steps ? quantities::step_names_of(context.quantities) : quantities::names_of(context.quantities);
+    const std::vector<std::string> used = core::expression::names_in(*text);
+    for (const core::expression::Scope::Name& name : names) {
+        if (is_over_steps && scope.find(name.name) != nullptr) {  // the step's `time`; a quantity has no name of a parameter's
+            if (std::find(used.begin(), used.end(), name.name) == used.end()) continue;
+            node["expression"].fail(ErrorCode::inconsistent, "a parameter or variable is called `" + name.name +
+                                                                 "`, which in an expression over the steps is the step's; rename it");
+            return nullptr;
+        }
+        scope.names.push_back(name);
+    }
     Result<core::expression::Formula> formula = core::expression::parse_formula(*text, scope);
     for (const Error& error : formula.errors()) node["expression"].fail(error.code, error.message);
     if (!formula) return nullptr;
@@ -247,14 +329,19 @@ std::shared_ptr<const Quantity> read_expression(const JsonNode& node, const Read
         node["expression"].fail(ErrorCode::inconsistent, "this names no quantity and no parameter, so no design could change it");
         return nullptr;
     }
-    const Result<std::shared_ptr<const quantities::Expression>> made =
-        quantities::Expression::create(std::move(formula).value(), context.quantities);
-    for (const Error& error : made.errors()) node["expression"].fail(error.code, error.message);
-    return made ? *made : nullptr;
+    const auto told = [&](const auto& made) -> std::shared_ptr<const Quantity> {
+        for (const Error& error : made.errors()) node["expression"].fail(error.code, error.message);
+        return made ? *made : nullptr;
+    };
+    if (!is_over_steps) return told(quantities::Expression::create(std::move(formula).value(), context.quantities));
+    const auto dimension = named_dimension(formula->dimension);  // without one it is refused
+    const quantities::Reduction reduction = read_reduction(node, dimension.value_or(Dimension::number));
+    return told(quantities::StepExpression::create(std::move(formula).value(), context.quantities, reduction));
 }
 
 std::string stroke_name(const JsonNode& node) { return "stroke " + text(node["body"]); }
 std::string marker_name(const JsonNode& node) { return "marker_path " + text(node["body"]); }
+std::string marker_position_name(const JsonNode& node) { return "marker_position " + text(node["body"]); }
 std::string marker_speed_name(const JsonNode& node) { return "marker_speed " + text(node["body"]); }
 std::string play_name(const JsonNode& node) { return "play " + text(node["a"]) + ":" + text(node["b"]); }
 std::string clearance_name(const JsonNode& node) {
@@ -277,6 +364,7 @@ std::string contact_of(const JsonNode& node) { return text(node["body"]) + (node
 std::string contact_force_name(const JsonNode& node) { return "contact_force " + contact_of(node); }
 std::string contact_torque_name(const JsonNode& node) { return "contact_torque " + contact_of(node); }
 std::string energy_name(const JsonNode& node) { return "energy " + text(node["of"]); }
+std::string law_name(const JsonNode&) { return "law"; }
 std::string expression_name(const JsonNode& node) { return text(node["expression"]); }
 
 }  // namespace
@@ -295,11 +383,9 @@ const std::vector<QuantityType>& quantity_table() {
          marker_name,
          "m^2",
          "how far a point of a body stays from points that it should go through, at given `times` or in free timing"},
-        {"marker_speed",
-         {"body", "point", "axis", "over"},
-         read_marker_speed,
-         marker_speed_name,
-         "m/s",
+        {"marker_position", with_reduction({"body", "point", "axis", "origin"}), read_marker_position, marker_position_name, "m",
+         "where a point of a body is at the steps' ends: along an `axis`, else its distance, from an `origin`"},
+        {"marker_speed", with_reduction({"body", "point", "axis"}), read_marker_speed, marker_speed_name, "m/s",
          "velocity of a point of a body at the steps' ends: along an `axis`, else its magnitude"},
         {"play", {"a", "b"}, read_clearance, play_name, "m", "certified least distance of two bodies as assembled, wanted small"},
         {"clearance",
@@ -309,55 +395,26 @@ const std::vector<QuantityType>& quantity_table() {
          "m",
          "certified least distance of two bodies, as assembled or over the motion"},
         {"mass", {"bodies"}, read_mass, mass_name, "kg", "mass of bodies"},
-        {"joint_force",
-         {"joint", "axis", "over"},
-         read_joint_force,
-         joint_force_name,
-         "N",
+        {"joint_force", with_reduction({"joint", "axis"}), read_joint_force, joint_force_name, "N",
          "force that a joint carries at the steps' ends: along an `axis`, else its magnitude"},
-        {"joint_torque",
-         {"joint", "axis", "over"},
-         read_joint_torque,
-         joint_torque_name,
-         "N m",
+        {"joint_torque", with_reduction({"joint", "axis"}), read_joint_torque, joint_torque_name, "N m",
          "torque that a joint carries about its point: along an `axis`, else its magnitude"},
-        {"joint_position",
-         {"joint", "over"},
-         read_joint_position,
-         joint_position_name,
-         "rad or m",
+        {"joint_position", with_reduction({"joint"}), read_joint_position, joint_position_name, "rad or m",
          "angle of a joint that turns, travel of one that slides, at the steps' ends; angles count turns"},
-        {"turn",
-         {"body", "axis", "over"},
-         read_turn,
-         turn_name,
-         "rad",
+        {"turn", with_reduction({"body", "axis"}), read_turn, turn_name, "rad",
          "how far a body has turned about an axis since the start, at the steps' ends: of a part that a real pin holds"},
-        {"motor_effort",
-         {"motor", "over"},
-         read_motor_effort,
-         motor_effort_name,
-         "N m or N",
+        {"motor_effort", with_reduction({"motor"}), read_motor_effort, motor_effort_name, "N m or N",
          "torque, or force, of a motor of angle, travel or speed"},
-        {"contact_force",
-         {"body", "of", "axis", "over"},
-         read_contact_force,
-         contact_force_name,
-         "N",
+        {"contact_force", with_reduction({"body", "of", "axis"}), read_contact_force, contact_force_name, "N",
          "resultant force of contact on a body, `of` another or of all, at the steps' ends: along an `axis`, else its magnitude"},
-        {"contact_torque",
-         {"body", "of", "point", "axis", "over"},
-         read_contact_torque,
-         contact_torque_name,
-         "N m",
+        {"contact_torque", with_reduction({"body", "of", "point", "axis"}), read_contact_torque, contact_torque_name, "N m",
          "its torque about a point of the body (what a motor that holds a massless one there has to give, with the other sign)"},
-        {"energy", {"of", "over"}, read_energy, energy_name, "J", "kinetic, potential, spring or total energy at the steps' ends"},
-        {"expression",
-         {"expression"},
-         read_expression,
-         expression_name,
-         "by its dimension",
-         "a formula of the design's named `quantities` and parameters, such as `max_force / mass`"}};
+        {"energy", with_reduction({"of"}), read_energy, energy_name, "J", "kinetic, potential, spring or total energy at the steps' ends"},
+        {"law", with_reduction({"of", "times", "values", "profile"}), read_law, law_name, "by its dimension",
+         "a table over the time, for expressions over the steps: what a motion is to follow"},
+        {"expression", with_reduction({"expression"}), read_expression, expression_name, "by its dimension",
+         "a formula of the design's named `quantities` and parameters, such as `max_force / mass`; with `over`, of what they are at each "
+         "step"}};
     return table;
 }
 

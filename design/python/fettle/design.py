@@ -230,9 +230,34 @@ class MarkerPath(Record, Measured):
     times: Sequence[Number] = number("time", ())
 
 
+@dataclasses.dataclass(eq=False, repr=False, slots=True, kw_only=True)
+class Series(Record, Measured):
+    """What each step of a motion has a number of. A quantity is what comes of them, in this order: the derivative in time, the window
+    (the steps that end within `from_time` and `to_time`; None: the start, the end), and what is taken `over` it: "end", "sum", "mean",
+    "largest", "least", "peak" (the largest absolute value), "rms", or "integral" in time. Or the number `at` a time, linear between the
+    steps' ends. Of a library's kind: derive from Quantity instead."""
+
+    derivative: int = 0  #: 0, 1, 2: the first is a velocity, the second an acceleration
+    from_time: Optional[Number] = number("time", None)  #: [s]
+    to_time: Optional[Number] = number("time", None)  #: [s]
+    at: Optional[Number] = number("time", None)  #: [s]; in place of `over` and a window
+
+
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class MarkerSpeed(Record, Measured):
-    """Velocity of a body's point (in its file frame) at the steps' ends [m/s]; `over` as in JointLoad."""
+class MarkerPosition(Series):
+    """Where a body's point (in its file frame) is at the steps' ends, from an origin [m]: along an axis, else the distance. With
+    derivative=2 its acceleration, by differences of the steps."""
+
+    body: Which
+    point: Vector = number("length")
+    over: str = "end"
+    axis: Vector = dataclasses.field(default_factory=lambda: np.zeros(3))  #: the component along this unit vector; zeros: the magnitude
+    origin: Vector = number("length", factory=lambda: np.zeros(3))  #: [m], world
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class MarkerSpeed(Series):
+    """Velocity of a body's point (in its file frame) at the steps' ends, as the integrator has it [m/s]."""
 
     body: Which
     point: Vector = number("length")
@@ -241,9 +266,8 @@ class MarkerSpeed(Record, Measured):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class JointLoad(Record, Measured):
-    """Force [N] or torque [N m] that a joint carries, or the effort of a motor [N m or N], at the steps' ends; `over` them: "end", "sum",
-    "mean", "largest", "least" or "peak", the largest absolute value."""
+class JointLoad(Series):
+    """Force [N] or torque [N m] that a joint carries, or the effort of a motor [N m or N], at the steps' ends."""
 
     kind: str  #: "force", "torque"; "effort" of a motor
     name: str  #: of the joint, of the motor
@@ -253,8 +277,8 @@ class JointLoad(Record, Measured):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class JointPosition(Record, Measured):
-    """Angle of a joint that turns [rad], travel of one that slides [m], at the steps' ends; angles count turns; `over` as in JointLoad."""
+class JointPosition(Series):
+    """Angle of a joint that turns [rad], travel of one that slides [m], at the steps' ends; angles count turns."""
 
     joint: str
     over: str = "end"
@@ -262,8 +286,8 @@ class JointPosition(Record, Measured):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class BodyTurn(Record, Measured):
-    """How far a body has turned about an axis since the start, at the steps' ends [rad]; `over` as in JointLoad."""
+class BodyTurn(Series):
+    """How far a body has turned about an axis since the start, at the steps' ends [rad]."""
 
     body: Which
     axis: Vector  #: a unit vector, world
@@ -271,8 +295,8 @@ class BodyTurn(Record, Measured):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class ContactLoad(Record, Measured):
-    """Resultant force of contact on a body, friction included, at the steps' ends [N], of `other` or of all; `over` as in JointLoad."""
+class ContactLoad(Series):
+    """Resultant force of contact on a body, friction included, at the steps' ends [N], of `other` or of all."""
 
     body: Which
     other: Optional[Which] = None
@@ -282,10 +306,22 @@ class ContactLoad(Record, Measured):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
-class Energy(Record, Measured):
-    """Energy of all bodies, joints and springs at the steps' ends [J]; `over` as in JointLoad."""
+class Energy(Series):
+    """Energy of all bodies, joints and springs at the steps' ends [J]."""
 
     kind: str  #: "kinetic", "potential", "spring", "total"
+    over: str = "end"
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class Law(Series):
+    """A table over the time that a motion is to follow, for a StepExpression: `lift - Law("length", [0, 1], [0, "3 mm"], "cubic")`. Its values
+    (SI, or with units of what it is of) may be formulas of parameters; outside its times it is constant."""
+
+    of: str  #: "length", "angle", ...
+    times: Sequence[Number] = number("time")
+    values: Sequence[Number] = number("any")
+    profile: str = "linear"  #: or "cubic", "trapezoid", "control_points", as Curve.kind
     over: str = "end"
 
 
@@ -299,6 +335,21 @@ class Expression(Record, Measured):
 
     formula: "Union[_fettle.Formula, str]" = ""
     parts: Dict[str, Any] = dataclasses.field(default_factory=dict)  #: quantities
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class StepExpression(Series):
+    """A formula of what other quantities are at the same step, of the step's `time`, and of parameters: a deviation from a law, a
+    transmission error, power. A formula's text, or arithmetic with quantities:
+
+        fettle.StepExpression(output - 2 * input, over="peak")
+        fettle.StepExpression("lift - 3 mm * sin(2 rad/s * time)", {"lift": lift}, over="rms", from_time=0.2)
+
+    Parts of which nothing is said but a derivative stand for their steps; those with another `over`, a window or `at` for their number."""
+
+    formula: "Union[Expression, _fettle.Formula, str]" = ""
+    parts: Dict[str, Any] = dataclasses.field(default_factory=dict)  #: quantities; of an Expression its own
+    over: str = "end"
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -323,13 +374,16 @@ AnyQuantity = Union[
     Mass,
     Stroke,
     MarkerPath,
+    MarkerPosition,
     MarkerSpeed,
     JointLoad,
     JointPosition,
     BodyTurn,
     ContactLoad,
     Energy,
+    Law,
     Expression,
+    StepExpression,
     InScenario,
     Worst,
     "_fettle.OpaqueQuantity",
@@ -379,11 +433,15 @@ def _combined(sign: str, a: Any, b: Any) -> "Expression":
     return Expression(_SIGNS[sign](left, right), {**left_parts, **right_parts})
 
 
-def _formula_of(expression: "Expression", parameters: Sequence["Parameter"]) -> "_fettle.Formula":
+def _formula_of(expression: "Union[Expression, StepExpression]", parameters: Sequence["Parameter"]) -> "_fettle.Formula":
+    if isinstance(expression.formula, Expression):
+        return _formula_of(expression.formula, parameters)
     if not isinstance(expression.formula, str):
         return expression.formula
     unit_of = {dimension: unit for unit, dimension in _fettle.units().items()}
     units = {parameter.name: parameter.unit or "1" for parameter in parameters}
+    if isinstance(expression, StepExpression):
+        units["time"] = "s"
     units.update({name: unit_of[_dimension(part)] for name, part in expression.parts.items()})
     return _fettle.Formula(expression.formula, units)
 
@@ -575,6 +633,16 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault], parameters
     if kind is Expression:
         parts = {name: _numbered(part, names, faults, parameters) for name, part in record.parts.items()}
         return Expression(_formula_of(record, parameters), parts)
+    if kind is StepExpression:
+        of = record.formula.parts if isinstance(record.formula, Expression) else record.parts
+        parts = {name: _numbered(part, names, faults, parameters) for name, part in of.items()}
+        formula = _formula_of(record, parameters)
+        if "time" in formula.inputs and "time" not in parts and any(parameter.name == "time" for parameter in parameters):
+            faults.append(Fault("inconsistent", "StepExpression/formula", "a parameter is called `time`, which here is the step's; rename it"))
+        return dataclasses.replace(record, formula=formula, parts=parts)
+    if kind is Law:
+        faults.extend(faults_of(record.values, record.of, "Law/values"))
+        return record
     if kind is Worst:
         return Worst([_numbered(part, names, faults, parameters) for part in record.parts], record.greatest)
     if kind is InScenario:
@@ -583,7 +651,7 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault], parameters
         if all(not isinstance(body, str) for body, _ in record.bodies):
             return record
         return Mass([(_body_number(body, names, "Mass/bodies", faults), of) for body, of in record.bodies])
-    if kind not in (Clearance, Stroke, MarkerPath, MarkerSpeed, BodyTurn, ContactLoad):
+    if kind not in (Clearance, Stroke, MarkerPath, MarkerPosition, MarkerSpeed, BodyTurn, ContactLoad):
         return record
     members = {name: getattr(record, name) for name in ("a", "b", "body", "other") if name in kind.__dataclass_fields__}
     numbers = {

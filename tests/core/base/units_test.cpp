@@ -57,6 +57,10 @@ TEST_CASE("a quantity has a dimension, and another one's unit is refused", "[bas
     CHECK(parse_quantity("30", Dimension::mass).errors().at(0).code == ErrorCode::out_of_range);
     CHECK_FALSE(si_per_unit("kg", Dimension::length));
     CHECK(si_per_unit("rpm", Dimension::angular_speed).value() == Approx(0.104719755119659));
+    CHECK(si_per_unit("deg/s^2", Dimension::angular_acceleration).value() == Approx(0.0174532925199433));
+    CHECK(parse_quantity("20 mW", Dimension::power).value() == 0.02);
+    CHECK(parse_quantity("3 N s", Dimension::impulse).value() == 3);
+    CHECK(parse_quantity("3 N mm s", Dimension::angular_impulse).value() == 0.003);
 }
 
 TEST_CASE("every unit has one name, and every dimension an SI unit", "[base]") {

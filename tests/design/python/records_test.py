@@ -85,6 +85,11 @@ LOADS = [
     ({"type": "joint_torque", "joint": "rocker pin", "axis": [1, 0, 0]}, fettle.JointLoad("torque", "rocker pin", axis=np.array([1, 0, 0]))),
     ({"type": "motor_effort", "motor": "drive", "over": "sum"}, fettle.JointLoad("effort", "drive", "sum")),
     ({"type": "energy", "of": "kinetic", "over": "mean"}, fettle.Energy("kinetic", "mean")),
+    ({"type": "energy", "of": "kinetic", "over": "rms", "from": "10 ms", "to": 0.03}, fettle.Energy("kinetic", "rms", from_time=0.01, to_time=0.03)),
+    ({"type": "motor_effort", "motor": "drive", "at": 0.02}, fettle.JointLoad("effort", "drive", at=0.02)),
+    ({"type": "marker_position", "body": "rocker", "point": [1, 2, 3], "origin": [0, 0, 1], "derivative": 2, "over": "peak"},
+     fettle.MarkerPosition(3, np.array([0.001, 0.002, 0.003]), "peak", origin=np.array([0, 0, 0.001]), derivative=2)),
+    ({"type": "law", "of": "angle", "times": [0, 1], "values": [0, "3 rad"], "profile": "cubic"}, fettle.Law("angle", [0, 1], [0, 3], "cubic")),
     ({"type": "marker_speed", "body": "rocker", "point": [1, 2, 3], "axis": [0, 1, 0]},
      fettle.MarkerSpeed(3, np.array([0.001, 0.002, 0.003]), axis=np.array([0, 1, 0]))),
 ]

@@ -1,57 +1,19 @@
 // SPDX-License-Identifier: MIT
 // joint_position.hpp and body_turn.hpp: what motors say, closed forms, and differences of whole simulations.
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <numbers>
 
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/tests/design/quantities/file_problem.hpp"
 #include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
 
 namespace fettle::design::quantities::turns_test {
 
-namespace {
-
 using problem::DesignEvaluation;
 using problem::DesignProblem;
+using tests::design_support::check_gradient;
+using tests::design_support::problem_of;
 
 constexpr double degree = std::numbers::pi / 180;
-
-DesignProblem problem_of(const std::string& scene, const std::string& design) {
-    const tests::support::TemporaryFolder folder;
-    folder.write("small.scene.json", scene);
-    auto file = reading::parse_design(design, folder.file("small.design.json"));
-    for (const Error& error : file.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
-    REQUIRE(file);
-    auto problem = DesignProblem::create(std::move(file->design));
-    for (const Error& error : problem.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
-    REQUIRE(problem);
-    return std::move(problem).value();
-}
-
-void check_gradient(const DesignProblem& problem, double limit) {
-    const VectorX p = description::values_of(problem.design().parameters);
-    const DesignEvaluation at = problem.evaluate(p);
-    INFO(at.reason);
-    REQUIRE(at.usable);
-    for (Eigen::Index k = 0; k < p.size(); ++k) {
-        const auto& parameter = problem.design().parameters[k];
-        const double h = 1e-5 * (parameter.upper - parameter.lower);
-        VectorX above = p, below = p;
-        above[k] += h;
-        below[k] -= h;
-        const DesignEvaluation one = problem.evaluate(above, {false, {}, {}}), other = problem.evaluate(below, {false, {}, {}});
-        for (std::size_t i = 0; i < at.constraints.size(); ++i) {
-            INFO(problem.design().constraints[i].name << " by " << parameter.name);
-            const double difference = (one.constraints[i].value - other.constraints[i].value) / (2 * h);
-            const double size = std::abs(at.constraints[i].value) / (parameter.upper - parameter.lower);
-            CHECK(at.jacobian(static_cast<Eigen::Index>(i), k) == Approx(difference).epsilon(limit).margin(limit * size));
-        }
-    }
-}
-
-}  // namespace
 
 TEST_CASE("turns: a motor's joint and its body turn as the motor says, over more than one turn") {
     const DesignProblem problem = problem_of(

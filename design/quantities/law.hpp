@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+/// A law that a motion is to follow: a table over the time (core/scene/curve.hpp, as a motor's) at each step's end, whose values may follow
+/// from parameters,
+///   y_t = sum_k w_k(time_t) v_k(p)
+/// In an expression over the steps (step_expression.hpp) it is what a lift or a turn deviates from.
+#pragma once
+
+#include <vector>
+
+#include "fettle/core/expression/formula.hpp"
+#include "fettle/core/scene/curve.hpp"
+#include "fettle/design/quantities/step_series.hpp"
+
+namespace fettle::design::quantities {
+
+/// A value of the table that follows from the design's parameters [SI].
+struct MovedValue {
+    int index = 0;  ///< counted from 0
+    core::expression::Formula formula;
+};
+
+class Law : public StepSeries {
+public:
+    struct Of {
+        core::scene::Curve curve;                 ///< SI
+        Dimension dimension = Dimension::length;  ///< of its values
+        std::vector<MovedValue> moved{};          ///< in place of those of `curve`
+    };
+    Law(Of of, const Reduction& reduction) : StepSeries(reduction), of_(std::move(of)) {}
+
+    const Of& of() const { return of_; }
+    Dimension step_dimension() const override { return of_.dimension; }
+    std::vector<std::string> parameters() const override;
+    /// A table that is none: no value for each time, times that do not increase.
+    Errors check(const core::model::Model& model, int steps) const override;
+
+protected:
+    std::vector<double> series(const description::Simulated& simulated) const override;
+    void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
+                          description::Seeds& seeds) const override;
+
+private:
+    Of of_;
+};
+
+}  // namespace fettle::design::quantities

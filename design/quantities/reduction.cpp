@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/quantities/reduction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/expression/dimension_powers.hpp"
+#include "fettle/design/quantities/stroke.hpp"
+
+namespace fettle::design::quantities {
+
+namespace {
+
+constexpr double of_a_step = 1e-6;  // by which times may miss a step's end, rounded as they are
+
+std::vector<double> negated(std::vector<double> y) {
+    for (double& v : y) v = -v;
+    return y;
+}
+
+// The greatest of y, of -y, or of both.
+struct SignedExtreme {
+    Extreme extreme;
+    double sign = 1;
+};
+
+SignedExtreme extreme_of(Over over, const std::vector<double>& y) {
+    const Extreme up = over == Over::least ? Extreme{} : smooth_maximum(y),
+                  down = over == Over::largest ? Extreme{} : smooth_maximum(negated(y));
+    return over == Over::largest || (over == Over::peak && up.value >= down.value) ? SignedExtreme{up, 1} : SignedExtreme{down, -1};
+}
+
+double mean_square(const std::vector<double>& y) {
+    return std::inner_product(y.begin(), y.end(), y.begin(), 0.0) / static_cast<double>(y.size());
+}
+
+// Of the window's steps; none for `integral` and `at`, which are about times.
+double number_of_steps(Over over, const std::vector<double>& y) {
+    switch (over) {
+        case Over::sum:
+            return std::accumulate(y.begin(), y.end(), 0.0);
+        case Over::mean:
+            return std::accumulate(y.begin(), y.end(), 0.0) / static_cast<double>(y.size());
+        case Over::largest:
+        case Over::peak:
+            return extreme_of(over, y).extreme.value;
+        case Over::least:
+            return -extreme_of(over, y).extreme.value;
+        case Over::rms:
+            return std::sqrt(mean_square(y));
+        case Over::end:
+        case Over::integral:
+            break;
+    }
+    return y.back();
+}
+
+std::vector<double> weights_of_steps(Over over, const std::vector<double>& y) {
+    const auto count = static_cast<double>(y.size());
+    if (over == Over::sum) return std::vector<double>(y.size(), 1.0);
+    if (over == Over::mean) return std::vector<double>(y.size(), 1 / count);
+    std::vector<double> out(y.size(), 0.0);
+    if (over == Over::rms) {
+        const double rms = std::sqrt(mean_square(y));
+        for (std::size_t t = 0; rms > 0 && t < y.size(); ++t) out[t] = y[t] / (count * rms);  // of the constant 0: 0
+        return out;
+    }
+    if (over == Over::end) {
+        out.back() = 1;
+        return out;
+    }
+    const auto [extreme, sign] = extreme_of(over, y);
+    for (std::size_t k = 0; k < 3; ++k)
+        if (extreme.weights[k] != 0)
+            out[static_cast<std::size_t>(extreme.first) + k] = over == Over::peak ? sign * extreme.weights[k] : extreme.weights[k];
+    return out;
+}
+
+// y at a time, counted in steps from the start: step k ends at k + 1.
+std::vector<double> weights_at(double time, std::size_t steps) {
+    std::vector<double> out(steps, 0.0);
+    const double place = std::clamp(time - 1, 0.0, static_cast<double>(steps) - 1);
+    const auto before = std::min(static_cast<std::size_t>(place), steps - 1);
+    const double fraction = place - static_cast<double>(before);
+    out[before] = 1 - fraction;
+    if (fraction > 0) out[before + 1] = fraction;
+    return out;
+}
+
+// Of the integral in that time.
+std::vector<double> weights_between(double from, double to, std::size_t steps) {
+    std::vector<double> out(steps, 0.0);
+    out[0] += std::max(0.0, std::min(to, 1.0) - std::min(from, 1.0));  // before the first step's end
+    for (std::size_t k = 0; k + 1 < steps; ++k) {
+        const auto start = static_cast<double>(k + 1);
+        const double a = std::clamp(from - start, 0.0, 1.0), b = std::clamp(to - start, 0.0, 1.0);
+        const double later = (b * b - a * a) / 2;
+        out[k] += b - a - later;
+        out[k + 1] += later;
+    }
+    return out;
+}
+
+// Of a number that is linear in y: at a time, an integral. Times in steps.
+std::vector<double> linear_weights(const Reduction& reduction, double timestep, std::size_t steps) {
+    if (reduction.at) return weights_at(*reduction.at / timestep, steps);
+    const double end = static_cast<double>(steps), from = reduction.from.value_or(0) / timestep;
+    const double to = reduction.to ? std::min(*reduction.to / timestep, end) : end;
+    std::vector<double> out = weights_between(from, to, steps);
+    for (double& weight : out) weight *= timestep;
+    return out;
+}
+
+bool is_of_times(const Reduction& reduction) { return reduction.at || reduction.over == Over::integral; }
+
+std::vector<double> in_window(const std::pair<int, int>& window, const std::vector<double>& y) {
+    FETTLE_ASSERT(0 <= window.first && window.first < window.second && window.second <= count_of(y), "a window has a step");
+    return {y.begin() + window.first, y.begin() + window.second};
+}
+
+std::string seconds(double time) { return core::base::formatted("%.6g s", time); }
+
+}  // namespace
+
+std::optional<Dimension> dimension_of(const Reduction& reduction, Dimension of_steps) {
+    const int power = (reduction.over == Over::integral && !reduction.at ? 1 : 0) - reduction.derivative;
+    if (power == 0) return of_steps;
+    if (of_steps == Dimension::power && power == 1) return Dimension::energy;  // and not a torque, which has the same powers
+    return core::expression::named_dimension(
+        product(core::expression::powers_of(of_steps), core::expression::powers_of(Dimension::time), power));
+}
+
+Errors check(const Reduction& reduction, Dimension of_steps, double timestep, int steps) {
+    Errors errors;
+    const auto add = [&](ErrorCode code, const std::string& message) { errors.push_back({code, "", message}); };
+    if (steps < 1) add(ErrorCode::out_of_range, "what a step reports needs a step");
+    if (reduction.derivative < 0 || reduction.derivative > 2)
+        add(ErrorCode::out_of_range, "a derivative in time is the first or the second");
+    if (reduction.derivative > 0 && steps < 3) add(ErrorCode::out_of_range, "a derivative in time needs three steps");
+    if (reduction.at && (reduction.from || reduction.to || reduction.over != Over::end))
+        add(ErrorCode::inconsistent, "what is taken at a time has no window and nothing that it is taken over");
+    if (!dimension_of(reduction, of_steps))
+        add(ErrorCode::wrong_type,
+            "there is no unit for this derivative or integral; divide by an amount in an expression over the steps, such as `force / 1 N`");
+    if (!errors.empty()) return errors;
+    const double end = steps * timestep, room = of_a_step * timestep;
+    for (const std::optional<double>& time : {reduction.from, reduction.to, reduction.at})
+        if (time && !(*time >= 0 && *time <= end + room))
+            add(ErrorCode::out_of_range, seconds(*time) + " is not within the motion, which ends at " + seconds(end));
+    if (reduction.from && reduction.to && !(*reduction.from < *reduction.to))
+        add(ErrorCode::inconsistent,
+            "a window begins before it ends; this one is from " + seconds(*reduction.from) + " to " + seconds(*reduction.to));
+    if (!errors.empty() || is_of_times(reduction)) return errors;
+    const auto [first, last] = window_of(reduction, timestep, steps);
+    if (first >= last) add(ErrorCode::out_of_range, "no step ends within the window; steps are " + seconds(timestep) + " long");
+    return errors;
+}
+
+std::pair<int, int> window_of(const Reduction& reduction, double timestep, int steps) {
+    const double from = reduction.from ? *reduction.from / timestep : 0, to = reduction.to ? *reduction.to / timestep : steps;
+    return {std::max(0, static_cast<int>(std::ceil(from - of_a_step)) - 1), std::min(steps, static_cast<int>(std::floor(to + of_a_step)))};
+}
+
+double number_of(const Reduction& reduction, const std::vector<double>& y, double timestep) {
+    FETTLE_ASSERT(!y.empty(), "a number of each step needs a step");
+    if (is_of_times(reduction)) {
+        const std::vector<double> weights = linear_weights(reduction, timestep, y.size());
+        double sum = 0;
+        for (std::size_t t = 0; t < y.size(); ++t)
+            if (weights[t] != 0) sum += weights[t] * y[t];
+        return sum;
+    }
+    const std::vector<double> steps = in_window(window_of(reduction, timestep, count_of(y)), y);
+    const auto finite = [](double v) { return std::isfinite(v); };
+    if (reduction.over != Over::end && !std::all_of(steps.begin(), steps.end(), finite)) return std::numeric_limits<double>::quiet_NaN();
+    return number_of_steps(reduction.over, steps);
+}
+
+std::vector<double> weights_of(const Reduction& reduction, const std::vector<double>& y, double timestep) {
+    if (is_of_times(reduction)) return linear_weights(reduction, timestep, y.size());
+    const std::pair<int, int> window = window_of(reduction, timestep, count_of(y));
+    const std::vector<double> of_window = weights_of_steps(reduction.over, in_window(window, y));
+    std::vector<double> out(y.size(), 0.0);
+    std::copy(of_window.begin(), of_window.end(), out.begin() + window.first);
+    return out;
+}
+
+}  // namespace fettle::design::quantities

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+/// A formula of what other quantities are at the same step, of the time, and of the design's parameters:
+///   y_t = f(u_t, .., time_t, p),   dy_t = sum df/du du_t + df/dp dp
+/// A deviation from a law (lift - 3 mm * sin(turn)), a transmission error (turn_b - 2 * turn_a), power (torque * speed / 1 rad), an angle
+/// between links are each one formula. Parts that say nothing but a derivative (Reduction::is_plain) stand for their steps, others, such as
+/// a peak or a mass, for their number, the same at each step. `time` is the time of the step's end.
+///
+///     const auto error = StepExpression::parse("output - 2 * input", {{"output", output}, {"input", input}}, Over::peak);
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fettle/design/quantities/expression.hpp"
+#include "fettle/design/quantities/step_series.hpp"
+
+namespace fettle::design::quantities {
+
+class StepExpression : public StepSeries {
+public:
+    static constexpr std::string_view time = "time";
+
+    /// @param formula  Its inputs are names of `parts`, `time`, and parameters. Parts that it does not name are left out.
+    /// Errors: a dimension that has no unit (wrong_type); a part that is no StepSeries, Stroke or Mass: one that is known within bounds
+    /// alone, or of a scenario of its own (unsupported).
+    static Result<std::shared_ptr<const StepExpression>> create(core::expression::Formula formula, const std::vector<NamedQuantity>& parts,
+                                                                const Reduction& reduction);
+
+    /// Of a text, as Expression::parse.
+    static Result<std::shared_ptr<const StepExpression>> parse(std::string_view text, const std::vector<NamedQuantity>& parts,
+                                                               const Reduction& reduction,
+                                                               const std::vector<description::Parameter>& parameters = {});
+
+    const core::expression::Formula& formula() const { return formula_; }
+    const std::vector<NamedQuantity>& parts() const { return parts_; }
+    Dimension step_dimension() const override { return step_dimension_; }
+    std::vector<std::string> parameters() const override;
+    Errors check(const core::model::Model& model, int steps) const override;
+
+protected:
+    std::vector<double> series(const description::Simulated& simulated) const override;
+    void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
+                          description::Seeds& seeds) const override;
+
+private:
+    StepExpression(core::expression::Formula formula, std::vector<NamedQuantity> parts, Dimension dimension, const Reduction& reduction);
+    int part_of(const std::string& input) const;  // -1: a parameter, or the time
+    std::vector<std::vector<double>> inputs(const description::Simulated& simulated) const;
+
+    core::expression::Formula formula_;
+    std::vector<NamedQuantity> parts_;
+    Dimension step_dimension_;
+};
+
+/// The names that an expression over the steps may use besides parameters, as parse_formula wants them.
+std::vector<core::expression::Scope::Name> step_names_of(const std::vector<NamedQuantity>& parts);
+
+}  // namespace fettle::design::quantities
