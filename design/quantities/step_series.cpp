@@ -67,7 +67,7 @@ std::vector<double> weights_of(Over over, const std::vector<double>& y) {
 
 }  // namespace
 
-Measurement StepSeries::value(const Simulated& simulated) const { return description::exact(number(over_, series(simulated))); }
+Measurement StepSeries::value(const Simulated& simulated) const { return description::computed(number(over_, series(simulated))); }
 
 void StepSeries::add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const {
     std::vector<double> weights = weights_of(over_, series(simulated));
