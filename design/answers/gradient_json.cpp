@@ -8,6 +8,7 @@
 #include "fettle/design/answers/check_faults.hpp"
 #include "fettle/design/answers/motion_warnings.hpp"
 #include "fettle/design/description/constraint.hpp"
+#include "fettle/design/gradient_audit/design_line.hpp"
 
 namespace fettle::design::answers {
 
@@ -31,6 +32,14 @@ double parameter_unit(const Design& design, const std::string& parameter) {
         if (p.name == parameter) return to_si(1, p.unit);
     }
     return 1;
+}
+
+gradient_audit::GradientWarnings gradient_warnings(const Design& design, const DesignEvaluation& evaluation) {
+    gradient_audit::GradientWarnings found = gradient_audit::gradient_warnings(design, gradient_audit::quantities_of(evaluation),
+                                                                               gradient_audit::quantity_gradients(evaluation));
+    const std::vector<std::string> motion = motion_warnings(design, evaluation);
+    found.warnings.insert(found.warnings.begin(), motion.begin(), motion.end());
+    return found;
 }
 
 Json not_evaluated_json(const DesignEvaluation& evaluation) {
@@ -70,7 +79,8 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
         Json entry;
         entry["name"] = constraint.name;
         entry["value"] = measured.value;
-        entry["certified_lower"] = measured.lower;
+        entry["proven"] = measured.is_proven;
+        entry["certified_lower"] = measured.is_proven ? Json(measured.lower) : Json();
         entry["met"] = description::violation(constraint.bounds, measured) <= 0;
         if (!measured.fault.empty()) entry["fault"] = measured.fault;
         entry["gradient"] = gradient_json(design, evaluation.jacobian.row(i).transpose());
@@ -79,7 +89,9 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
     }
     json["constraints"] = list;
     json["relations"] = relations_json(design, evaluation.relations);
-    if (const auto warnings = motion_warnings(design, evaluation); !warnings.empty()) json["warnings"] = warnings;
+    const gradient_audit::GradientWarnings found = gradient_warnings(design, evaluation);
+    if (!found.warnings.empty()) json["warnings"] = found.warnings;
+    if (!found.notes.empty()) json["notes"] = found.notes;
     json["forward_seconds"] = evaluation.forward_seconds;
     json["backward_seconds"] = evaluation.backward_seconds;
     return json;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "fettle/design/gradient_audit/difference_check.hpp"
+#include "fettle/design/gradient_audit/gradient_warnings.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 
 namespace fettle::design::answers {
@@ -16,6 +17,9 @@ const problem::Tie* tie_of(const problem::DesignEvaluation& evaluation, bool of_
 
 /// One unit of a parameter, as the design has it, in SI. Contract: the design has a parameter of this name.
 double parameter_unit(const description::Design& design, const std::string& parameter);
+
+/// What is to be said of the design besides its numbers: of its motions (motion_warnings.hpp) and of its gradients.
+gradient_audit::GradientWarnings gradient_warnings(const description::Design& design, const problem::DesignEvaluation& evaluation);
 
 /// {status, message} of a design that cannot be evaluated.
 nlohmann::ordered_json not_evaluated_json(const problem::DesignEvaluation& evaluation);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/answers/motion_warnings.hpp"
 
+#include "fettle/core/stepper/balance.hpp"
 #include "fettle/core/stepper/branch_warnings.hpp"
 #include "fettle/design/problem/overlooked_peaks.hpp"
 
@@ -12,6 +13,9 @@ std::vector<std::string> motion_warnings(const description::Design& design, cons
         const problem::Run& run = evaluation.runs[scenario];
         if (!run.model) continue;
         for (const std::string& warning : core::stepper::branch_warnings(*run.model, run.simulation.trajectory))
+            out.push_back(description::scenario_prefix(design, scenario) + warning);
+        if (!run.simulation.balance) continue;
+        if (const std::string warning = balance_warning(*run.model, *run.simulation.balance); !warning.empty())
             out.push_back(description::scenario_prefix(design, scenario) + warning);
     }
     const std::vector<std::string> peaks = problem::overlooked_peaks(design, evaluation);

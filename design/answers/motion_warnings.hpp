@@ -10,7 +10,8 @@
 namespace fettle::design::answers {
 
 /// Linkages that leave the branch that they were assembled on (core/stepper/branch_warnings.hpp), of each scenario that was simulated;
-/// extremes that are hardly meant (problem/overlooked_peaks.hpp).
+/// energy that comes from nowhere and angular momentum that goes astray, where they were looked at (EvaluateOptions::balance,
+/// core/stepper/balance.hpp); extremes that are hardly meant (problem/overlooked_peaks.hpp).
 std::vector<std::string> motion_warnings(const description::Design& design, const problem::DesignEvaluation& evaluation);
 
 }  // namespace fettle::design::answers

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/answers/motion_warnings.hpp"
 
@@ -27,6 +28,7 @@ Json constraints_json(const Design& design, const DesignEvaluation& final) {
                         {"value", measured.value},
                         {"lower", measured.lower},
                         {"upper", measured.upper},
+                        {"proven", measured.is_proven},
                         {"met", description::violation(constraint.bounds, measured) <= 0}});
         if (!measured.fault.empty()) list.back()["fault"] = measured.fault;
     }
@@ -66,6 +68,12 @@ Json stages_json(const optimisers::OptimiserReport& report) {
                         {"message", stage.message}});
     }
     return list;
+}
+
+// Most of whose noise is in what is minimised.
+std::string roughest_name(const Design& design, const optimisers::Optimality& o) {
+    const auto rough = static_cast<size_t>(std::max(0, o.roughest - 1));
+    return o.roughest == 0 || rough >= design.constraints.size() ? "the objective" : design.constraints[rough].name;
 }
 
 Json optimality_json(const Design& design, const optimisers::Optimality& o) {
@@ -130,9 +138,33 @@ std::vector<Cost> costs_of(const Design& design, const optimisers::Optimality& o
     return costs;
 }
 
-std::string roughest_name(const Design& design, const optimisers::Optimality& o) {
-    const auto rough = static_cast<size_t>(std::max(0, o.roughest - 1));
-    return o.roughest == 0 || rough >= design.constraints.size() ? "the objective" : design.constraints[rough].name;
+std::string why_not_optimal(const Design& design, const OptimiseOutcome& outcome, const RunFacts& run) {
+    const optimisers::OptimiserReport& report = outcome.report;
+    if (report.status != optimisers::OptimiserStatus::feasible) return {};
+    using core::base::formatted;
+    const optimisers::Optimality& o = report.optimality;
+    const std::string minimised = run.repair ? "the squared change" : "the objective";
+    const double size = std::abs(report.best.objective);
+    std::vector<std::string> reasons;
+    if (report.budget_spent)
+        reasons.emplace_back("the budget of evaluations (`max_evaluations`) ended the search");
+    else if (!o.judged && o.improvable.empty())
+        reasons.emplace_back("whether a better design is near could not be judged");
+    if (!o.improvable.empty()) {
+        const std::string share = size > 0 ? formatted(", %.2g%% of it", 100 * o.predicted_gain / size) : "";
+        reasons.push_back(formatted("a change is still in sight that promises to lower %s by %.3g%s (the tolerance is %.3g)",
+                                    minimised.c_str(), o.predicted_gain, share.c_str(), o.worth));
+        if (!o.refused.empty()) reasons.back() += ", but designs there cannot be evaluated: " + o.refused;
+    }
+    if (o.roughest >= 0)
+        reasons.push_back(
+            formatted("simulated values scatter by up to %.3g in %s (the tolerance is %.3g), most of it by %s, which hides "
+                      "whether a better design is near: a wider contact distance (`contact.dhat`) or damping makes the motion "
+                      "smoother",
+                      o.noise_in_objective, minimised.c_str(), o.worth, roughest_name(design, o).c_str()));
+    std::string text;
+    for (const std::string& reason : reasons) text += (text.empty() ? "" : "; ") + reason;
+    return text;
 }
 
 Json objective_json(const OptimiseOutcome& outcome, const RunFacts& run) {
@@ -146,6 +178,8 @@ Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, 
     Json json;
     json["status"] = optimisers::to_string(report.status);
     json["message"] = report.message;
+    const std::string why = why_not_optimal(design, outcome, run);
+    json["why_not_optimal"] = why.empty() ? Json() : Json(why);
     json["objective_start"] = outcome.objective_start ? Json(*outcome.objective_start) : Json();
     json["objective"] = objective_json(outcome, run);
     if (run.repair && report.best.usable) json["repair"] = repair_json(design, report);
@@ -170,7 +204,10 @@ Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, 
     for (const core::scene::Body& body : design.scene.bodies) names.push_back(body.name);
     json["clearance"] = clearance_json(outcome.clearance, names);
     json["unbuildable"] = outcome.unbuildable;
-    if (const auto warnings = motion_warnings(design, outcome.final); !warnings.empty()) json["warnings"] = warnings;
+    std::vector<std::string> warnings = outcome.at_start.warnings;
+    for (const std::string& warning : motion_warnings(design, outcome.final)) warnings.push_back(warning);
+    if (!warnings.empty()) json["warnings"] = warnings;
+    if (!outcome.at_start.notes.empty()) json["notes"] = outcome.at_start.notes;
     if (!outcome.limits.empty()) json["limits"] = outcome.limits;
     json["limited_by"] = report.best.usable ? Json(limited_by(design, outcome)) : Json::array();
     json["out"] = run.out;

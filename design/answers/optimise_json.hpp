@@ -34,7 +34,8 @@ struct Cost {
 /// The costs of the requirements whose hundredth of a unit is worth a tenth of what counts; the dearest first.
 std::vector<Cost> costs_of(const description::Design& design, const optimisers::Optimality& o);
 
-/// "the objective", or the constraint most of whose noise is in it.
-std::string roughest_name(const description::Design& design, const optimisers::Optimality& o);
+/// Why a design that meets every requirement ("feasible") is not shown to be the best near by: for the text, result.json and the report
+/// alike. Clauses without a full stop at the end; empty where the status is another one.
+std::string why_not_optimal(const description::Design& design, const studies::OptimiseOutcome& outcome, const RunFacts& run);
 
 }  // namespace fettle::design::answers

@@ -20,7 +20,7 @@
 namespace fettle::design::cli {
 
 enum ExitCode {
-    exit_done = 0,       ///< done, and every requirement certified
+    exit_done = 0,       ///< done, and every requirement met: clearances are certified
     exit_violated = 1,   ///< a requirement is violated
     exit_undecided = 2,  ///< undecided or not converged
     exit_bad_input = 3,  ///< bad input or usage; output that cannot be written

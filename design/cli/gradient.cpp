@@ -8,7 +8,6 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/design/answers/check_faults.hpp"
 #include "fettle/design/answers/gradient_json.hpp"
-#include "fettle/design/answers/motion_warnings.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/description/requirement_text.hpp"
@@ -211,9 +210,9 @@ std::string values_text(const Design& design, const DesignEvaluation& e, const C
         const auto& [name, bounds, quantity] = design.constraints[i];
         const description::Measurement& measured = e.constraints[i];
         const std::string unit = description::unit_name(design.constraints[i]);
-        text += formatted("%-40s %s, proven at least %s, required %s\n", name.c_str(),
-                          description::amount_text(measured.value, bounds.unit, unit).c_str(),
-                          description::proven_bound_text(measured.lower, description::Towards::down, bounds.unit, unit).c_str(),
+        const std::string least = description::bound_text(measured.lower, description::Towards::down, bounds.unit, unit);
+        text += formatted("%-40s %s, %s, required %s\n", name.c_str(), description::amount_text(measured.value, bounds.unit, unit).c_str(),
+                          measured.is_proven ? ("proven at least " + least).c_str() : "computed",
                           description::required_text(bounds, unit).c_str());
         if (!measured.fault.empty()) text += "  " + measured.fault + "\n";
         text += tie_text(design, answers::tie_of(e, false, i), bounds.unit);
@@ -249,13 +248,16 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
     problem::EvaluateOptions evaluate;
     evaluate.on_step = [&](const core::stepper::Progress& p) { console.progress("simulating", p.step, p.steps); };
     evaluate.should_stop = interrupted;
+    evaluate.balance = true;
     evaluate.branches = problem::BranchReach::tied;
     const DesignEvaluation evaluation = problem->evaluate(values, evaluate);
     if (!evaluation.usable) {
         console.result(answers::not_evaluated_json(evaluation), "the design cannot be evaluated: " + evaluation.reason + "\n");
         return exit_undecided;
     }
-    tell_warnings(console, answers::motion_warnings(design, evaluation), options.path);
+    const gradient_audit::GradientWarnings found = answers::gradient_warnings(design, evaluation);
+    tell_warnings(console, found.warnings, options.path);
+    for (const std::string& note : found.notes) console.narrate("note: " + note);
     Json json = answers::values_json(design, evaluation);
     std::string text = values_text(design, evaluation, console);
     int code = exit_done;

@@ -235,7 +235,7 @@ int run(int argc, char** argv) {
     const std::vector<Command> commands = add_commands(program, common);
     program.closing_words(
         "Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out\n"
-        "Exit codes: 0 done, requirements certified; 1 a requirement is violated; 2 undecided or not converged;\n"
+        "Exit codes: 0 done, requirements met (clearances: certified); 1 a requirement is violated; 2 undecided or not converged;\n"
         "            3 bad input or usage, or output that cannot be written; 4 a fault of this program");
     const ParseOutcome parsed = line.parse(argc, argv);
     if (!parsed.run) {

@@ -104,6 +104,8 @@ int run_one(const Run& run, const std::vector<StartResult>& rows, Starts starts)
     if (!done->history_kept_as.empty()) console.narrate("the history of an earlier run is kept as " + done->history_kept_as);
     console.unwritten(done->unwritten);
     if (json.is_null()) json = answer(outcome);
+    for (const std::string& warning : outcome.at_start.warnings)  // which the search has narrated
+        console.found({run.options.path, CheckOutcome::remarked, "warning", warning, run.options.path});
     tell_warnings(console, answers::motion_warnings(run.problem.design(), outcome.final), run.options.path);
     std::string told = outcome_text(run.problem.design(), outcome, console, run.facts);
     if (outcome.report.best.usable && done->unwritten.empty()) told += written_text(run.facts);

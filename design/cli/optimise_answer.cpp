@@ -59,7 +59,7 @@ std::string round_surfaces_text(const Design& design, const problem::DesignEvalu
         if (!round || (round->lower >= bounds.lower && round->lower_is_proven)) continue;
         const std::string unit = description::unit_name(design.constraints[i]);
         const auto at_least = [&, per = bounds.unit](double lower) {
-            return description::proven_bound_text(lower, description::Towards::down, per, unit);
+            return description::bound_text(lower, description::Towards::down, per, unit);
         };
         text += "note: " + name + ": proven at least " + at_least(measured.lower) + " for the meshes, but at least " +
                 at_least(round->lower) + (round->lower_is_proven ? "" : ", which is not proven,") +
@@ -83,7 +83,7 @@ std::string eased_text(const description::Constraint& constraint, bool lower_bou
     return (lower_bound ? "with a lower limit that is " : "with an upper limit that is ") + amount + (lower_bound ? " lower" : " higher");
 }
 
-// What each requirement that holds costs, the dearest first; what could still move; what is too rough to tell.
+// What each requirement that holds costs, the dearest first; what could still move.
 std::string verdict_text(const Design& design, const optimisers::Optimality& o, const std::string& minimised, double objective) {
     std::string text;
     const std::vector<answers::Cost> costs = answers::costs_of(design, o);
@@ -98,17 +98,6 @@ std::string verdict_text(const Design& design, const optimisers::Optimality& o, 
         const description::Parameter& p = design.parameters[k];
         text += formatted("could still move: %s by %.4g %s\n", p.name.c_str(), description::from_si(o.step[k], p.unit),
                           std::string(p.unit.name).c_str());
-    }
-    if (!o.improvable.empty())
-        text += formatted("that promises to lower %s by %.3g%s; the tolerance is %.3g\n", minimised.c_str(), o.predicted_gain,
-                          share_text(o.predicted_gain, objective).c_str(), o.worth);
-    if (!o.refused.empty()) text += "but designs there cannot be evaluated: " + o.refused + "\n";
-    if (o.roughest >= 0) {
-        text += formatted(
-            "it cannot be determined whether this is the best: simulated values scatter by up to %.3g in %s (the tolerance is %.3g), "
-            "most of it by %s; ",
-            o.noise_in_objective, minimised.c_str(), o.worth, answers::roughest_name(design, o).c_str());
-        text += "a wider contact distance (`contact.dhat`) or damping makes the motion smoother\n";
     }
     return text;
 }
@@ -184,7 +173,7 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
         const description::Measurement& measured = outcome.final.constraints[i];
         const std::string unit = description::unit_name(design.constraints[i]);
         const bool met = description::violation(bounds, measured) <= 0;
-        text += formatted("  %-40s proven %s, required %s: ", name.c_str(), description::proven_text(measured, bounds, unit).c_str(),
+        text += formatted("  %-40s %s, required %s: ", name.c_str(), description::known_text(measured, bounds, unit).c_str(),
                           description::required_text(bounds, unit).c_str()) +
                 console.coloured(met ? "met" : "VIOLATED", met) + (measured.fault.empty() ? "" : ": " + measured.fault) + "\n";
     }
@@ -193,6 +182,8 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
     text += by_models_text(design, outcome, console) + play_advice(outcome);
     text += run.repair ? verdict_text(design, report.optimality, "the squared change", report.best.objective)
                        : verdict_text(design, report.optimality, "the objective", objective);
+    if (const std::string why = answers::why_not_optimal(design, outcome, run); !why.empty())
+        text += "not shown to be optimal: " + why + "\n";
     for (const std::string& limit : outcome.limits) text += "limited by: " + limit + "\n";
     return text;
 }
@@ -210,8 +201,7 @@ std::vector<Check> outcome_checks(const Design& design, const OptimiseOutcome& o
         const bool met = description::violation(bounds, measured) <= 0;
         const bool doubtful = met && std::count(outcome.in_doubt.begin(), outcome.in_doubt.end(), i) > 0;
         Check check{name, met ? CheckOutcome::passed : CheckOutcome::failed, met ? "met" : "violated", "", file};
-        check.message =
-            "proven " + description::proven_text(measured, bounds, unit) + ", required " + description::required_text(bounds, unit);
+        check.message = description::known_text(measured, bounds, unit) + ", required " + description::required_text(bounds, unit);
         if (!measured.fault.empty()) check.message += "; " + measured.fault;
         if (doubtful) {
             check.outcome = CheckOutcome::remarked;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// A requirement on a simulated design: lower <= quantity <= upper. The optimiser aims at bounds narrowed by a margin and sees the
-/// quantity's `value`; whether a design meets the requirement is judged by the proven side of the quantity alone: measured.lower >= lower
-/// and measured.upper <= upper. (Of a clearance `value` is the certificate's upper bound, which its witness attains up to rounding.)
+/// quantity's `value`; whether a design meets the requirement is judged by the quantity's bounds alone: measured.lower >= lower and
+/// measured.upper <= upper. Where these are proven (Measurement::is_proven), that it is met is proven. (Of a clearance `value` is the
+/// certificate's upper bound, which its witness attains up to rounding.)
 #pragma once
 
 #include <limits>
@@ -28,7 +29,7 @@ struct Constraint {
 };
 
 /// max(0, lower - measured.lower, measured.upper - upper) in `unit`s; at least 1 if the measurement has a fault, infinity if it is no
-/// number. 0: the requirement is met, proven.
+/// number. 0: the requirement is met.
 double violation(const Bounds& bounds, const Measurement& measured);
 
 }  // namespace fettle::design::description

@@ -33,14 +33,18 @@ struct Simulated {
     const Simulated& in(int other) const { return scenarios == nullptr ? *this : scenarios[other]; }
 };
 
-/// lower <= true value <= upper; `value`, in [lower, upper], is what the optimiser sees and what is differentiated.
+/// `value`, in [lower, upper], is what the optimiser sees and what is differentiated.
+///   is_proven:  lower <= true value <= upper, rounding included: certified distances, and formulas of these alone.
+///   otherwise:  as computed. Nothing bounds the error of the time step, of facets, of the solver's tolerance, of rounding.
+/// Requirements are judged by lower and upper either way.
 struct Measurement {
     double value = 0, lower = 0, upper = 0;                   ///< SI
+    bool is_proven = false;                                   ///< what lower and upper are, above
     std::optional<core::clearance::PairClearance> clearance;  ///< where the value comes from, if it is a certified distance
     std::string fault;  ///< why no bound on it can be met, whatever the numbers (a body lies inside the other); empty: nothing of the kind
     std::vector<Measurement> parts{};  ///< what it was made from, if it is an expression of other quantities
 };
-inline Measurement exact(double value) { return {value, value, value, std::nullopt, {}, {}}; }
+inline Measurement computed(double value) { return {value, value, value, false, std::nullopt, {}, {}}; }
 
 /// One of the smooth functions that a value is the least of: a distance between two features at one instant.
 struct Branch {

@@ -10,7 +10,7 @@ namespace fettle::design::description {
 
 namespace {
 
-constexpr int proven_digits = 7;
+constexpr int bound_digits = 7;
 
 std::string number_text(double number, int digits) {
     char text[40];
@@ -41,20 +41,21 @@ std::string required_text(const Bounds& bounds, const std::string& unit_name) {
     return lower + " to " + with_unit(upper, unit_name);
 }
 
-std::string proven_bound_text(double si, Towards towards, double unit, const std::string& unit_name) {
-    const auto text = [](double number) { return number_text(number, proven_digits); };
+std::string bound_text(double si, Towards towards, double unit, const std::string& unit_name) {
+    const auto text = [](double number) { return number_text(number, bound_digits); };
     return with_unit(core::base::bound_text(si, unit, unit, towards, text), unit_name);
 }
 
-std::string proven_text(const Measurement& measured, const Bounds& bounds, const std::string& unit_name) {
-    const auto nearest = [&](double si) { return number_text(si / bounds.unit, proven_digits); };
+std::string known_text(const Measurement& measured, const Bounds& bounds, const std::string& unit_name) {
+    const std::string what = measured.is_proven ? "proven " : "computed ";
+    const auto nearest = [&](double si) { return number_text(si / bounds.unit, bound_digits); };
     if (nearest(measured.lower) != nearest(measured.upper))
-        return proven_bound_text(measured.lower, Towards::down, bounds.unit, "") + " to " +
-               proven_bound_text(measured.upper, Towards::up, bounds.unit, unit_name);
+        return what + bound_text(measured.lower, Towards::down, bounds.unit, "") + " to " +
+               bound_text(measured.upper, Towards::up, bounds.unit, unit_name);
     // One number: on the side of the limit that is nearer.
     const bool is_upper_nearer = bounds.upper - measured.upper < measured.lower - bounds.lower;
-    return is_upper_nearer ? proven_bound_text(measured.upper, Towards::up, bounds.unit, unit_name)
-                           : proven_bound_text(measured.lower, Towards::down, bounds.unit, unit_name);
+    return what + (is_upper_nearer ? bound_text(measured.upper, Towards::up, bounds.unit, unit_name)
+                                   : bound_text(measured.lower, Towards::down, bounds.unit, unit_name));
 }
 
 }  // namespace fettle::design::description

@@ -20,11 +20,11 @@ std::string amount_text(double si, double unit, const std::string& unit_name, in
 /// "at least 0.3 mm", "at most 2 N", "29.95 to 30.05 mm", "exactly 1".
 std::string required_text(const Bounds& bounds, const std::string& unit_name);
 
-/// A proven bound, rounded to its safe side: 0.30199996 mm downwards -> "0.3019999 mm".
-std::string proven_bound_text(double si, Towards towards, double unit, const std::string& unit_name);
+/// A bound, rounded to its safe side: 0.30199996 mm downwards -> "0.3019999 mm".
+std::string bound_text(double si, Towards towards, double unit, const std::string& unit_name);
 
-/// What is proven of it: "0.302 to 0.304 mm", the lower bound rounded down and the upper one up; "0.302 mm", the one that is nearer to its
-/// limit, where the two do not differ in the digits that are shown.
-std::string proven_text(const Measurement& measured, const Bounds& bounds, const std::string& unit_name);
+/// What a requirement is judged by, and what that is (Measurement::is_proven): "proven 0.302 to 0.304 mm", the lower bound rounded down and
+/// the upper one up; "computed 29.996 mm", the one that is nearer to its limit, where the two do not differ in the digits that are shown.
+std::string known_text(const Measurement& measured, const Bounds& bounds, const std::string& unit_name);
 
 }  // namespace fettle::design::description

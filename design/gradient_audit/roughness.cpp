@@ -283,6 +283,22 @@ std::string contact_damping_remedy(const core::scene::Scene& scene) {
 
 }  // namespace
 
+std::vector<std::string> motion_remedies(const core::scene::Scene& scene) {
+    std::vector<std::string> remedies;
+    if (scene.dhat)
+        remedies.push_back("a wider contact.dhat (it is " + with_unit(*scene.dhat) +
+                           "), up to the play of the fits: contact then sets in gently, and parts rattle less");
+    remedies.push_back("\"integrator\": \"quasi_static\", where inertia does not matter: parts then do not rattle at all");
+    if (scene.integrator != core::scene::Integrator::quasi_static) remedies.push_back(contact_damping_remedy(scene));
+    remedies.push_back("damping of the bodies that rattle");
+    if (scene.integrator != core::scene::Integrator::implicit_euler)
+        remedies.push_back("\"integrator\": \"implicit_euler\", which keeps least of the impacts' energy");
+    char step[96];
+    std::snprintf(step, sizeof step, "a smaller timestep (it is %.3g s), so that impacts fall less between steps", scene.timestep);
+    remedies.push_back(step);
+    return remedies;
+}
+
 std::vector<std::string> roughness_remedies(const description::Design& design, const RoughnessReport& report) {
     bool moving = false, fine = false;
     for (const QuantityRoughness& quantity : report.quantities) {
@@ -290,21 +306,7 @@ std::vector<std::string> roughness_remedies(const description::Design& design, c
         // Still there when the design hardly moves: not the motion's, but that of how accurately it is computed.
         (quantity.fine.noise > quantity.tolerance ? fine : moving) = true;
     }
-    std::vector<std::string> remedies;
-    if (moving) {
-        const core::scene::Scene& scene = design.scene;
-        if (scene.dhat)
-            remedies.push_back("a wider contact.dhat (it is " + with_unit(*scene.dhat) +
-                               "), up to the play of the fits: contact then sets in gently, and parts rattle less");
-        remedies.push_back("\"integrator\": \"quasi_static\", where inertia does not matter: parts then do not rattle at all");
-        if (scene.integrator != core::scene::Integrator::quasi_static) remedies.push_back(contact_damping_remedy(scene));
-        remedies.push_back("damping of the bodies that rattle");
-        if (scene.integrator != core::scene::Integrator::implicit_euler)
-            remedies.push_back("\"integrator\": \"implicit_euler\", which keeps least of the impacts' energy");
-        char step[96];
-        std::snprintf(step, sizeof step, "a smaller timestep (it is %.3g s), so that impacts fall less between steps", scene.timestep);
-        remedies.push_back(step);
-    }
+    std::vector<std::string> remedies = moving ? motion_remedies(design.scene) : std::vector<std::string>();
     if (fine)
         remedies.push_back("a smaller clearance tolerance (it is " + with_unit(design.clearance_tolerance) +
                            "), or a larger tolerance of the optimiser: the quantity is not computed that accurately");

@@ -29,6 +29,7 @@ struct EvaluateOptions {
     bool gradients = true;
     std::function<void(const core::stepper::Progress&)> on_step;  ///< optional
     std::function<bool()> should_stop;                            ///< optional
+    bool balance = false;                      ///< fill in each run's Simulation::balance, for the warnings on energy: costs a few percent
     BranchReach branches = BranchReach::near;  ///< with gradients: `near` fills in the evaluation's branches, `tied` its ties
 };
 

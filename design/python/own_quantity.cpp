@@ -131,13 +131,13 @@ void add_model_gradient(const FoundGradient& found, double scale, Seeds& seeds) 
     }
 }
 
-// A number that is exact, or a Measurement with bounds. What is not finite is left to the evaluation, which then has failed.
+// A number as computed, or a Measurement with bounds. What is not finite is left to the evaluation, which then has failed.
 Measurement measurement_from(py::handle answer, const std::string& where) {
     if (!py::isinstance(answer, record_class("Measurement")))
-        return description::exact(number_from(answer, where, "a number or a fettle.Measurement"));
+        return description::computed(number_from(answer, where, "a number or a fettle.Measurement"));
     const auto member = [&](const char* name) { return number_from(answer.attr(name), where + "/" + name); };
     const double value = member("value");
-    if (!std::isfinite(value)) return description::exact(value);
+    if (!std::isfinite(value)) return description::computed(value);
     if (!(member("lower") <= value && value <= member("upper")))
         refuse(ErrorCode::out_of_range, where, "a Measurement's value lies between its lower and its upper bound");
     return answer.cast<Measurement>();

@@ -21,4 +21,5 @@ void bind_quantities(pybind11::module_& module);
 }  // namespace fettle::design::python
 
 FETTLE_RECORD(fettle::design::description::Measurement, "Measurement", field("value", &Type::value), field("lower", &Type::lower),
-              field("upper", &Type::upper), field("clearance", &Type::clearance), field("fault", &Type::fault))
+              field("upper", &Type::upper), field("is_proven", &Type::is_proven), field("clearance", &Type::clearance),
+              field("fault", &Type::fault))

@@ -73,22 +73,23 @@ std::vector<T> Expression::inputs(const Simulated& simulated, PartValue part_val
 
 Measurement Expression::value(const Simulated& simulated) const {
     Measurement out;
-    bool exact = true;
+    bool single = true;  // a number each, and no bounds
     for (const NamedQuantity& part : parts_) {
         Measurement measured = part.quantity->value(simulated);
-        exact = exact && measured.lower == measured.value && measured.upper == measured.value;
+        single = single && !measured.is_proven && measured.lower == measured.value && measured.upper == measured.value;
         if (out.fault.empty()) out.fault = measured.fault;
         out.parts.push_back(std::move(measured));
     }
     const auto at = [&](int part) -> const Measurement& { return out.parts[part]; };
     const std::vector<double> values = inputs<double>(simulated, [&](int part) { return at(part).value; });
     out.value = out.lower = out.upper = core::expression::value_of<double>(formula_, values);
-    if (exact) return out;
+    if (single) return out;
     const auto bounds =
         inputs<core::geometry::Range>(simulated, [&](int part) { return core::geometry::Range(at(part).lower, at(part).upper); });
     const core::geometry::Range found = core::expression::value_of<core::geometry::Range>(formula_, bounds);
     out.lower = std::min(found.low, out.value);
     out.upper = std::max(found.high, out.value);
+    out.is_proven = std::all_of(out.parts.begin(), out.parts.end(), [](const Measurement& part) { return part.is_proven; });
     return out;
 }
 

@@ -2,8 +2,8 @@
 /// A formula of other quantities and of the design's parameters: max_force / mass, travel_a - travel_b, stroke - 2 * gap.
 ///   J = f(q_1, .., q_n, p),   dJ = sum df/dq_i dq_i + df/dp dp
 /// so that one sweep backwards serves it, however many quantities it names. What is proven of it follows from what is proven of them: its
-/// bounds enclose f over theirs, rounding of f included (core/geometry/range.hpp). Where one of them can meet no bound, it meets none
-/// either.
+/// bounds enclose f over theirs, rounding of f included (core/geometry/range.hpp), and are proven if all of theirs are. Where one of them
+/// can meet no bound, it meets none either.
 ///
 ///     const auto ratio = Expression::parse("force / mass", {{"force", force}, {"mass", mass}}, design.parameters);
 #pragma once

@@ -73,7 +73,7 @@ Measurement MarkerPath::value(const Simulated& simulated) const {
     const std::vector<Place> found = places(simulated);
     double sum = 0;
     for (const Place& place : found) sum += (place.position - place.target).squaredNorm();
-    return description::exact(sum / static_cast<double>(targets_.size()));
+    return description::computed(sum / static_cast<double>(targets_.size()));
 }
 
 void MarkerPath::add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const {

@@ -28,7 +28,7 @@ description::Measurement Mass::value(const description::Simulated& s) const {
         const Body& body = s.model.bodies[of.body];
         sum += body.given_mass ? *body.given_mass : body.density * amount(body, of.kind);
     }
-    return description::exact(sum);
+    return description::computed(sum);
 }
 
 void Mass::add_seeds(const description::Simulated& s, const description::Measurement&, double scale, description::Seeds& seeds) const {

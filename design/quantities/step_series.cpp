@@ -35,7 +35,7 @@ Dimension StepSeries::steps_dimension() const {
 Dimension StepSeries::dimension() const { return dimension_of(reduction_, step_dimension()).value_or(Dimension::number); }
 
 Measurement StepSeries::value(const Simulated& simulated) const {
-    return description::exact(number_of(reduction_, steps(simulated), simulated.trajectory.timestep));
+    return description::computed(number_of(reduction_, steps(simulated), simulated.trajectory.timestep));
 }
 
 void StepSeries::add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const {

@@ -40,7 +40,7 @@ double Stroke::deviation(const Simulated& simulated) const { return stroke(simul
 
 Measurement Stroke::value(const Simulated& simulated) const {
     const double s = deviation(simulated);
-    return description::exact(target_ ? s * s : s);
+    return description::computed(target_ ? s * s : s);
 }
 
 void Stroke::add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const {

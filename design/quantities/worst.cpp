@@ -27,8 +27,11 @@ Measurement Worst::value(const Simulated& simulated) const {
     out.value = extreme(&Measurement::value);
     out.lower = extreme(&Measurement::lower);
     out.upper = extreme(&Measurement::upper);
-    for (const Measurement& part : out.parts)
+    out.is_proven = true;
+    for (const Measurement& part : out.parts) {
+        out.is_proven = out.is_proven && part.is_proven;
         if (out.fault.empty()) out.fault = part.fault;
+    }
     return out;
 }
 

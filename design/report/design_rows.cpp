@@ -27,6 +27,7 @@ Json row_json(const std::string& name, const Json& told, const description::Boun
             {"unit", ""},
             {"lower", in_unit(member(told, "lower"), unit)},
             {"upper", in_unit(member(told, "upper"), unit)},
+            {"proven", member(told, "proven") == true},
             {"required_lower", in_unit(bounds.lower, unit)},
             {"required_upper", in_unit(bounds.upper, unit)},
             {"met", member(told, "met").is_boolean() && told["met"].get<bool>()},

@@ -12,10 +12,10 @@ namespace fettle::design::report {
 /// What numbers of this dimension are shown in, as an SI value: lengths in mm, all others in the unit that they are counted in.
 double shown_unit(Dimension dimension, double unit);
 
-/// List of {name, unit, lower, upper: the proven bounds, required_lower, required_upper: null where there is none, met, fault: null or
-/// text, cost: of the objective per unit, null if not told, counts: is it worth telling, pair: index into the pairs, or null,
-/// play_taken_up: the value with the play of the fits taken up, null where not known, in_doubt: is it met as written and not so}; relations
-/// follow.
+/// List of {name, unit, lower, upper: what it is judged by, proven: are these two proven, required_lower, required_upper: null where there
+/// is none, met, fault: null or text, cost: of the objective per unit, null if not told, counts: is it worth telling, pair: index into the
+/// pairs, or null, play_taken_up: the value with the play of the fits taken up, null where not known, in_doubt: is it met as written and
+/// not so}; relations follow.
 /// @param result  as `fettle optimise` answers (docs/interface.md).
 nlohmann::ordered_json requirement_rows(const description::Design& design, const nlohmann::ordered_json& result);
 

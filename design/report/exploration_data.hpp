@@ -5,7 +5,7 @@
 ///   or
 ///             0, lower, upper: of a parameter its bounds, of a constraint what is required, null where there is none, values f64: of each
 ///             design, NaN where it has none}
-///   designs   list of {status, kind: "evaluate", "optimise", seed, met: does it meet every requirement, proven?, reason: null or text,
+///   designs   list of {status, kind: "evaluate", "optimise", seed, met: does it meet every requirement?, reason: null or text,
 ///             view: index of the one that shows its parts at the start, or null}
 ///   design    path of the design's file; null: not known
 #pragma once

@@ -52,16 +52,13 @@ void add_optimisation(Json& data, const ReportSource& source) {
     data["evaluations"] = member(result, "evaluations");
     data["failed"] = member(result, "failed_evaluations");
     data["violation"] = member(result, "constraint_violation");
-    data["budget_spent"] = member(result, "budget_spent");
     data["repair"] = member(result, "repair");
+    data["why_not_optimal"] = member(result, "why_not_optimal");
     const Json starts = member(result, "starts"), optimality = member(result, "optimality");
     if (starts.is_array())
         data["notices"].push_back("The best of " + std::to_string(starts.size()) + " starts, seed " + member(result, "seed").dump() +
                                   "; the table of starts has all.");
-    data["optimality"] = optimality.is_object() ? Json{{"predicted_gain", member(optimality, "predicted_gain")},
-                                                       {"worth", member(optimality, "worth")},
-                                                       {"judged", member(optimality, "judged")}}
-                                                : Json();
+    data["optimality"] = optimality.is_object() ? Json{{"worth", member(optimality, "worth")}} : Json();
 }
 
 // Of what steps of the motion an answer's pairs are.

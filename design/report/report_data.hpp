@@ -5,15 +5,11 @@
 ///   command         that made the results; null if not known
 ///   kind            "optimise", "simulate", "clearance"
 ///   name, folder, description (null: the files have none), up: the direction against gravity
-///   status, message; budget_spent, evaluations, failed, violation, optimality, repair, objective {start, end} of an optimisation
-///   motion, step [s], steps, duration [s], least: proven over the path [mm], null if there is none
-///   meshes, views   moving_parts.hpp; "before" (of an optimisation) and "after"
-///   pairs, pair_count: of how many the rows are the worst, margins: pair_rows.hpp
-///   ranges          is a clearance over all positions of the joints?
-///   requirements, parameters, starts: design_rows.hpp; limits: texts
-///   history         search_curves.hpp; null if there is none
-///   series          step_curves.hpp; series_note
-///   notices         texts
+///   status, message; why_not_optimal, evaluations, failed, violation, optimality {worth}, repair, objective {start, end} of an
+///   optimisation motion, step [s], steps, duration [s], least: proven over the path [mm], null if there is none meshes, views
+///   moving_parts.hpp; "before" (of an optimisation) and "after" pairs, pair_count: of how many the rows are the worst, margins:
+///   pair_rows.hpp ranges          is a clearance over all positions of the joints? requirements, parameters, starts: design_rows.hpp;
+///   limits: texts history         search_curves.hpp; null if there is none series          step_curves.hpp; series_note notices texts
 ///   files           names in the page's folder that it offers
 #pragma once
 

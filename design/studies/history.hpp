@@ -6,8 +6,8 @@
 ///   evaluation  evaluation (1, 2, ...), model (a smoother one's name; not there: the file's own), usable, reason, parameters (by name,
 ///               SI), objective, constraints, gradient and jacobian (rows; not of values alone), residuals and residual_jacobian (rows;
 ///               where the objective has squared deviations), constraint_branches and objective_branches (of, values, jacobian by rows;
-///               where there are any: optimisers/problem.hpp), violation, terms (by name), certified (lower bounds by constraint),
-///               forward_seconds, backward_seconds
+///               where there are any: optimisers/problem.hpp), violation, terms (by name), certified (lower bounds by constraint, of those
+///               that are proven), forward_seconds, backward_seconds
 #pragma once
 
 #include <functional>
@@ -30,7 +30,7 @@ struct HistoryEntry {
     VectorX point;
     optimisers::Evaluation evaluation;
     std::vector<std::pair<std::string, double>> terms;      ///< of the objective, for people
-    std::vector<std::pair<std::string, double>> certified;  ///< lower bounds, for people
+    std::vector<std::pair<std::string, double>> certified;  ///< proven lower bounds, for people
     double forward_seconds = 0, backward_seconds = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "fettle/design/description/requirement_text.hpp"
+#include "fettle/design/gradient_audit/gradient_warnings.hpp"
 #include "fettle/design/problem/buildable.hpp"
 
 namespace fettle::design::studies {
@@ -38,6 +39,7 @@ Wanted wanted_directions(const Design& design, const problem::DesignEvaluation& 
     for (Eigen::Index i = 0; known && i < jacobian.rows(); ++i) {
         const Bounds& bounds = design.constraints[i].bounds;
         const description::Measurement& measured = final.constraints[i];
+        if (gradient_audit::is_out_of_reach(design, static_cast<int>(i), measured.value, jacobian.row(i).transpose())) continue;
         if (measured.lower < bounds.lower) want(wanted, design, jacobian.row(i).transpose(), 1);
         if (measured.upper > bounds.upper) want(wanted, design, jacobian.row(i).transpose(), -1);
     }
@@ -62,6 +64,7 @@ public:
         : problem_(problem), design_(problem.design()), point_(point), final_(final) {}
 
     std::vector<std::string> run(const MatrixX& jacobian, const std::vector<FailedTrial>& failures, int trials) {
+        add_out_of_reach(jacobian);
         add_parameters(wanted_directions(design_, final_, jacobian), jacobian.rows() > 0 || final_.relations.values.size() > 0);
         add_failures(failures, trials);
         if (!parts_to_blame_) add_requirements();
@@ -69,6 +72,13 @@ public:
     }
 
 private:
+    void add_out_of_reach(const MatrixX& jacobian) {
+        for (Eigen::Index i = 0; i < jacobian.rows(); ++i)
+            if (gradient_audit::is_out_of_reach(design_, static_cast<int>(i), final_.constraints[i].value, jacobian.row(i).transpose()))
+                lines_.push_back(gradient_audit::out_of_reach_text(design_, static_cast<int>(i), final_.constraints[i].value,
+                                                                   jacobian.row(i).transpose()));
+    }
+
     void add_parameters(const Wanted& wanted, bool directions_known) {
         for (size_t k = 0; k < wanted.size(); ++k) {
             const Parameter& p = design_.parameters[k];
@@ -115,9 +125,8 @@ private:
             const Bounds& bounds = design_.constraints[i].bounds;
             if (description::violation(bounds, measured) <= 0) continue;
             const std::string unit = description::unit_name(design_.constraints[i]);
-            lines_.push_back(design_.constraints[i].name + " is proven to be " + description::proven_text(measured, bounds, unit) +
-                             ", required is " + description::required_text(bounds, unit) +
-                             (measured.fault.empty() ? "" : ": " + measured.fault));
+            lines_.push_back(design_.constraints[i].name + ": " + description::known_text(measured, bounds, unit) + ", required is " +
+                             description::required_text(bounds, unit) + (measured.fault.empty() ? "" : ": " + measured.fault));
         }
         for (size_t i = 0; i < design_.relations.size(); ++i) {
             const description::Relation& relation = design_.relations[i];

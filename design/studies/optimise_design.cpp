@@ -33,7 +33,7 @@ std::string shortfall(const Design& design, const VectorX& p, const optimisers::
     };
     for (size_t i = 0; i < design.constraints.size(); ++i) {
         const description::Constraint& constraint = design.constraints[i];
-        const description::Measurement value = description::exact(e.constraints[i]);
+        const description::Measurement value = description::computed(e.constraints[i]);
         look_at(constraint.name, description::violation(constraint.bounds, value), description::unit_name(constraint));
     }
     for (const description::Relation& relation : design.relations)
@@ -103,9 +103,21 @@ private:
         seen.evaluate = [this, own = answered(problem_, {}, compute_, options_.history, Recorded::with_derivatives)](const VectorX& p) {
             optimisers::Evaluation e = own(p);
             if (e.usable && p == outcome_.start) outcome_.objective_start = e.objective;
+            if (e.usable && !std::exchange(has_begun_, true)) look_at_start(e);
             return e;
         };
         return seen;
+    }
+
+    void look_at_start(const optimisers::Evaluation& e) {
+        const Eigen::Index m = e.constraints.size();
+        VectorX values(1 + m);
+        values << e.objective, e.constraints;
+        MatrixX gradients(1 + m, e.gradient.size());
+        gradients << e.gradient.transpose(), e.jacobian;
+        outcome_.at_start = gradient_audit::gradient_warnings(design_, values, gradients);
+        for (const std::string& line : outcome_.at_start.warnings) narrate("warning: " + line);
+        for (const std::string& line : outcome_.at_start.notes) narrate("note: " + line);
     }
 
     void add_smoother_models(optimisers::Problem& seen) {
@@ -151,6 +163,7 @@ private:
         const VectorX& point = outcome_.report.point;
         problem::EvaluateOptions last;  // not interruptible: it is what makes the result of an interrupted run usable
         last.gradients = false;
+        last.balance = true;
         outcome_.final = problem_.evaluate(point, last);
         if (!smoother_.empty()) {
             last.should_stop = options_.should_stop;
@@ -174,6 +187,7 @@ private:
     std::vector<problem::SmootherDesign> smoother_;
     std::vector<FailedTrial> failures_;
     int computed_ = 0, refused_ = 0;
+    bool has_begun_ = false;
     OptimiseOutcome outcome_;
 };
 
@@ -185,7 +199,7 @@ std::vector<size_t> requirements_in_doubt(const Design& design, const DesignEval
     for (size_t i = 0; i < design.constraints.size(); ++i) {
         const description::Bounds& bounds = design.constraints[i].bounds;
         const bool met = description::violation(bounds, own.constraints[i]) <= 0;
-        const description::Measurement value = description::exact(other.constraints[i].value);  // it is no proof of anything
+        const description::Measurement value = description::computed(other.constraints[i].value);  // it is no proof of anything
         if (met && description::violation(bounds, value) > 0) doubtful.push_back(i);
     }
     return doubtful;
@@ -199,7 +213,7 @@ HistoryEntry history_entry(const Design& design, const VectorX& p, const DesignE
     entry.evaluation = problem::optimiser_evaluation(evaluation);
     if (!entry.evaluation.usable) return entry;
     for (size_t i = 0; i < evaluation.constraints.size(); ++i)
-        entry.certified.emplace_back(design.constraints[i].name, evaluation.constraints[i].lower);
+        if (evaluation.constraints[i].is_proven) entry.certified.emplace_back(design.constraints[i].name, evaluation.constraints[i].lower);
     for (size_t k = 0; k < evaluation.terms.size(); ++k) entry.terms.emplace_back(design.objective[k].name, evaluation.terms[k].value);
     return entry;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
+#include "fettle/design/gradient_audit/gradient_warnings.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/studies/history.hpp"
@@ -34,7 +35,9 @@ struct OptimiseOutcome {
     optimisers::OptimiserReport report;
     VectorX start;                          ///< where it began
     std::optional<double> objective_start;  ///< the design's own objective there, if it could be evaluated
-    problem::DesignEvaluation final;        ///< of report.point, without gradients; not usable if the start was not
+    /// What the derivatives of the first design say that could be evaluated: narrated before the search goes on from it.
+    gradient_audit::GradientWarnings at_start;
+    problem::DesignEvaluation final;  ///< of report.point, without gradients; not usable if the start was not
     /// The same design by its smoothest model, the one with the play of its fits taken up: where the two differ, the motion within the play
     /// matters. Not usable where there is no smoother model, or it cannot be simulated.
     problem::DesignEvaluation play_taken_up;

@@ -158,7 +158,7 @@ class Quantity(Measured):
 
     def value(self, simulated: "_fettle.Simulated") -> Union[float, Measurement]:
         """SI. A number that is known within bounds alone: a fettle.Measurement, lower <= value <= upper; requirements are judged by its
-        bounds, and `value` is what is optimised and differentiated."""
+        bounds, and `value` is what is optimised and differentiated. Bounds that you have proven have is_proven=True."""
         raise NotImplementedError
 
     def gradient(self, simulated: "_fettle.Simulated") -> QuantityGradient:

@@ -117,7 +117,7 @@ def _measured(problem: _fettle.DesignProblem, at: Any) -> Result:
         "violation": _number(at.violation),
         "terms": {term.name: _number(m.value) for term, m in zip(design.objective, at.terms)},
         "constraints": {c.name: _number(m.value) for c, m in zip(design.constraints, at.constraints)},
-        "certified": {c.name: _number(m.lower) for c, m in zip(design.constraints, at.constraints)},
+        "certified": {c.name: _number(m.lower) for c, m in zip(design.constraints, at.constraints) if m.is_proven},
     }
 
 
@@ -296,7 +296,7 @@ class Exploration:
         return [result for result in self.results if wanted(result)]
 
     def best(self, count: int = 1) -> List[Result]:
-        """Those with the least objective among the designs that meet every requirement, proven."""
+        """Those with the least objective among the designs that meet every requirement."""
         met = self.where(lambda r: r.get("violation") is not None and r["violation"] <= 0 and r.get("objective") is not None)
         return sorted(met, key=lambda r: float(r["objective"]))[:count]
 

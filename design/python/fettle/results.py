@@ -356,11 +356,12 @@ class CertificateReport(Record):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Measurement(Record):
-    """lower <= true value <= upper; `value` is what the optimiser sees."""
+    """lower <= value <= upper; `value` is what the optimiser sees. Requirements are judged by lower and upper."""
 
     value: float = 0.0
     lower: float = 0.0
     upper: float = 0.0
+    is_proven: bool = False  #: True: the true value lies within the bounds; False: they are as computed, and nothing bounds their error
     clearance: Optional[PairClearance] = None
     fault: str = ""
 
@@ -389,7 +390,7 @@ class DesignEvaluation(Record):
     constraints: List[Measurement] = dataclasses.field(default_factory=list)
     relations: Rows = dataclasses.field(default_factory=Rows)
     objective: float = math.nan
-    violation: float = math.nan  #: largest, in the constraints' units; 0: every requirement is met, proven
+    violation: float = math.nan  #: largest, in the constraints' units; 0: every requirement is met
     gradient: Array = dataclasses.field(default_factory=_empty)  #: (n)
     jacobian: Array = dataclasses.field(default_factory=_rows)  #: (m, n)
     residuals: Array = dataclasses.field(default_factory=_empty)  #: (r)
@@ -435,7 +436,7 @@ class OptimiserReport(Record):
     message: str = ""
     point: Array = dataclasses.field(default_factory=_empty)  #: (n) the best design, SI
     objective: float = math.nan  #: its objective (repair=True: the squared change); NaN: nothing could be evaluated
-    violation: float = math.nan  #: largest, in the constraints' units; 0: every requirement is met, proven
+    violation: float = math.nan  #: largest, in the constraints' units; 0: every requirement is met
     feasible: bool = False
     optimality: Optimality = dataclasses.field(default_factory=Optimality)
     evaluations: int = 0

@@ -112,6 +112,29 @@ TEST_CASE("gradient --check: a linkage assembled on either side, whatever its po
     CHECK(answer.says("the joints cannot be met"));
 }
 
+TEST_CASE("gradient: warns of energy from nowhere as simulate does, and calls computed what is not proven") {
+    const fettle::tests::support::TemporaryFolder folder;
+    const std::string scene = folder.file("cam.scene.json"), design = folder.file("cam.design.json");
+    REQUIRE(run("new cam --in " + folder.file("")).code == 0);
+    // A faceted cam that turns fast, by an integrator of second order.
+    std::string text =
+        replaced(fettle::tests::support::contents(scene), "\"timestep\": 0.005", "\"timestep\": 0.005, \"integrator\": \"bdf2\"");
+    text = replaced(replaced(text, "\"rate\": -360", "\"rate\": -1440"), ", \"damping\": 1", "");
+    folder.write("cam.scene.json", replaced(text, "\"end_time\": 0.8", "\"end_time\": 0.4"));
+    const std::string words = "the motion has gained energy from nowhere";
+    CHECK(run("simulate " + scene, true).says(words));
+    const Answer answer = run("gradient " + design, true);
+    CAPTURE(answer.out);
+    CHECK(answer.says("warning: " + words));
+    CHECK(answer.says(" mm, computed, required 7.98 to 8.02 mm"));
+    CHECK_FALSE(answer.says("proven"));
+    const nlohmann::json told = run("gradient " + design + " --json").json();
+    REQUIRE(told.at("warnings").size() == 1);
+    CHECK(told.at("warnings")[0].get<std::string>().find(words) == 0);
+    CHECK(told.at("constraints")[0].at("proven") == false);
+    CHECK(told.at("constraints")[0].at("certified_lower").is_null());
+}
+
 TEST_CASE("gradient, simulate: a linkage that goes over to its other side is a warning") {
     // A double rocker that its rocker drives: coupler and rocker come in line on the way.
     std::string scene =

@@ -228,21 +228,23 @@ TEST_CASE("requirements in words") {
     description::Measurement measured;
     measured.lower = 3.02e-4;
     measured.upper = 3.04e-4;
-    CHECK(description::proven_text(measured, {.unit = 1e-3}, "mm") == "0.302 to 0.304 mm");
+    CHECK(description::known_text(measured, {.unit = 1e-3}, "mm") == "computed 0.302 to 0.304 mm");
+    measured.is_proven = true;
+    CHECK(description::known_text(measured, {.unit = 1e-3}, "mm") == "proven 0.302 to 0.304 mm");
     measured.upper = measured.lower;
-    CHECK(description::proven_text(measured, {.unit = 1e-3}, "mm") == "0.302 mm");
+    CHECK(description::known_text(measured, {.unit = 1e-3}, "mm") == "proven 0.302 mm");
     // What is printed is proven: 3e-4 is not, of either.
     measured.lower = measured.upper = 2.99999999e-4;
-    CHECK(description::proven_text(measured, {.lower = 3e-4, .unit = 1e-3}, "mm") == "0.2999999 mm");
-    CHECK(description::proven_bound_text(2.99999999e-4, description::Towards::down, 1e-3, "mm") == "0.2999999 mm");
+    CHECK(description::known_text(measured, {.lower = 3e-4, .unit = 1e-3}, "mm") == "proven 0.2999999 mm");
+    CHECK(description::bound_text(2.99999999e-4, description::Towards::down, 1e-3, "mm") == "0.2999999 mm");
     measured.lower = measured.upper = 3.00000001e-4;
-    CHECK(description::proven_text(measured, {.upper = 3e-4, .unit = 1e-3}, "mm") == "0.3000001 mm");
+    CHECK(description::known_text(measured, {.upper = 3e-4, .unit = 1e-3}, "mm") == "proven 0.3000001 mm");
     measured.lower = 2.9999996e-4;
     measured.upper = 3.04000004e-4;
-    CHECK(description::proven_text(measured, {.unit = 1e-3}, "mm") == "0.2999999 to 0.3040001 mm");
+    CHECK(description::known_text(measured, {.unit = 1e-3}, "mm") == "proven 0.2999999 to 0.3040001 mm");
     for (const double least : {4.9406564584124654e-324, 1e-320, 3.3e-310})  // comes to an end
-        CHECK(std::strtod(description::proven_bound_text(least, description::Towards::down, 1, "").c_str(), nullptr) <= least);
-    CHECK(description::proven_bound_text(-INFINITY, description::Towards::down, 1e-3, "mm") == "-inf mm");
+        CHECK(std::strtod(description::bound_text(least, description::Towards::down, 1, "").c_str(), nullptr) <= least);
+    CHECK(description::bound_text(-INFINITY, description::Towards::down, 1e-3, "mm") == "-inf mm");
     CHECK(core::base::unit_name(core::base::Dimension::area, 1e-3 * 1e-3) == "mm^2");
     CHECK(core::base::unit_name(core::base::Dimension::number, 1).empty());
 }
@@ -259,13 +261,13 @@ TEST_CASE("what is met as written and not with the play taken up is in doubt, an
     for (const description::Constraint& constraint : design.constraints) {
         const double met = std::isfinite(constraint.bounds.upper) ? 0.5 * (constraint.bounds.lower + constraint.bounds.upper)
                                                                   : constraint.bounds.lower + constraint.bounds.unit;
-        outcome.final.constraints.push_back(description::exact(met));
+        outcome.final.constraints.push_back(description::computed(met));
     }
     outcome.play_taken_up.constraints = outcome.final.constraints;
     CHECK(studies::requirements_in_doubt(design, outcome.final, outcome.play_taken_up).empty());
     const std::size_t stroke = 3;
     REQUIRE(design.constraints[stroke].name.find("stroke") == 0);
-    outcome.play_taken_up.constraints[stroke] = description::exact(design.constraints[stroke].bounds.upper + 1e-3);
+    outcome.play_taken_up.constraints[stroke] = description::computed(design.constraints[stroke].bounds.upper + 1e-3);
     outcome.in_doubt = studies::requirements_in_doubt(design, outcome.final, outcome.play_taken_up);
     CHECK(outcome.in_doubt == std::vector<std::size_t>{stroke});
     outcome.play_taken_up_by = "contact 0.28 mm wide";
@@ -280,6 +282,53 @@ TEST_CASE("what is met as written and not with the play taken up is in doubt, an
     CHECK(checks[stroke].outcome == CheckOutcome::remarked);
     outcome.play_taken_up.usable = false;
     CHECK(studies::requirements_in_doubt(design, outcome.final, outcome.play_taken_up).empty());
+}
+
+TEST_CASE("why a feasible design is not shown to be optimal is told once, alike to people and to programs") {
+    const problem::DesignProblem problem = problem_of(DesignFolder());
+    const description::Design& design = problem.design();
+    studies::OptimiseOutcome outcome;
+    outcome.start = outcome.report.point = description::values_of(design.parameters);
+    outcome.report.best.usable = outcome.report.feasible = true;
+    outcome.report.best.objective = 2;
+    outcome.report.status = optimisers::OptimiserStatus::feasible;
+    optimisers::Optimality& o = outcome.report.optimality;
+    const auto n = outcome.start.size(), m = static_cast<Eigen::Index>(design.constraints.size());
+    o.judged = true;
+    o.step = o.residual = VectorX::Zero(n);
+    o.multipliers = VectorX::Zero(m);
+    o.held.assign(n, optimisers::Held::stationary);
+    o.worth = 1e-3;
+    const auto why = [&] {
+        const nlohmann::ordered_json json = answers::outcome_json(problem, outcome, {"out"});
+        const nlohmann::ordered_json& told = json.at("why_not_optimal");
+        const std::string text = told.is_null() ? "" : told.get<std::string>();
+        const std::string shown = outcome_text(design, outcome, Console({}), {"out"});
+        CHECK((shown.find("not shown to be optimal: " + text + "\n") != std::string::npos) == !text.empty());
+        return text;
+    };
+    // Too rough: no step is in sight, whatever the gain of the last one looked at.
+    o.roughest = 1;
+    o.noise_in_objective = 0.0154;
+    o.predicted_gain = 1e-4;
+    std::string text = why();
+    CHECK(text.find("simulated values scatter by up to 0.0154 in the objective (the tolerance is 0.001), most of it by " +
+                    design.constraints[0].name) == 0);
+    CHECK(text.find("in sight") == std::string::npos);
+    o.improvable = {0};
+    o.predicted_gain = 0.1;
+    text = why();
+    CHECK(text.find(
+              "a change is still in sight that promises to lower the objective by 0.1, 5% of it (the tolerance is 0.001); simulated") == 0);
+    o.roughest = -1;
+    CHECK(why() == "a change is still in sight that promises to lower the objective by 0.1, 5% of it (the tolerance is 0.001)");
+    outcome.report.budget_spent = true;
+    CHECK(why().find("the budget of evaluations (`max_evaluations`) ended the search; a change") == 0);
+    outcome.report.budget_spent = o.judged = false;
+    o.improvable.clear();
+    CHECK(why() == "whether a better design is near could not be judged");
+    outcome.report.status = optimisers::OptimiserStatus::optimal;
+    CHECK(why().empty());
 }
 
 TEST_CASE("what a requirement costs is said of the limit that holds") {

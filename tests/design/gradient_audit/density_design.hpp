@@ -34,7 +34,7 @@ public:
     OfDensities(Function f, Gradient gradient) : f_(std::move(f)), gradient_(std::move(gradient)) {}
     Dimension dimension() const override { return Dimension::length; }
     design::description::Measurement value(const design::description::Simulated& s) const override {
-        return design::description::exact(f_(shares(s)));
+        return design::description::computed(f_(shares(s)));
     }
     void add_seeds(const design::description::Simulated& s, const design::description::Measurement&, double scale,
                    design::description::Seeds& seeds) const override {

@@ -29,7 +29,7 @@ public:
     EndPosition(int body, const Vector3& point, const Vector3& along) : body_(static_cast<size_t>(body)), point_(point), along_(along) {}
     Dimension dimension() const override { return Dimension::length; }
     Measurement value(const Simulated& s) const override {
-        return exact(along_.dot(core::kinematics::world_position(s.trajectory.poses.back()[body_], arm(s))));
+        return computed(along_.dot(core::kinematics::world_position(s.trajectory.poses.back()[body_], arm(s))));
     }
     void add_seeds(const Simulated& s, const Measurement&, double scale, Seeds& seeds) const override {
         seeds.trajectory_bar.pose_bar.back()[body_] += scale * along_ * arm(s).homogeneous().transpose();
@@ -45,7 +45,7 @@ private:
 class Landing : public Quantity {
 public:
     Dimension dimension() const override { return Dimension::length; }
-    Measurement value(const Simulated& s) const override { return exact(fall(s).range); }
+    Measurement value(const Simulated& s) const override { return computed(fall(s).range); }
     void add_seeds(const Simulated& s, const Measurement&, double scale, Seeds& seeds) const override {
         const Fall f = fall(s);
         const double h = s.model.timestep, steep = -s.model.gravity.z() * f.time - f.up;  // dtime = (dz + time dup)/steep

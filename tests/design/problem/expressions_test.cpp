@@ -63,7 +63,8 @@ double largest(const MatrixX& m) { return m.cwiseAbs().maxCoeff(); }
 TEST_CASE("an expression of quantities and parameters is differentiated by the chain rule") {
     const std::string ratio = R"x({ "type": "expression", "name": "ratio", "expression": "rise * drift / height + 0.1 * drift" })x";
     const DesignEvaluation at = evaluated(design_with(ratio, plain_rows + "," + ratio.substr(0, ratio.size() - 2) + R"(, "upper": 5 },
-        { "type": "expression", "expression": "= sqrt('cube mass' / 2 g) - gap / width", "upper": 5 })"));
+        { "type": "expression", "expression": "= sqrt('cube mass' / 2 g) - gap / width", "upper": 5 },
+        { "type": "expression", "expression": "= gap / width", "upper": 5 })"));
     const double rise = at.constraints[0].value, drift = at.constraints[1].value, mass = at.constraints[2].value,
                  gap = at.constraints[3].value, height = 0.01, width = 0.02;
     CHECK(at.constraints[4].value == Approx(rise * drift / height + 0.1 * drift).epsilon(1e-14));
@@ -82,6 +83,10 @@ TEST_CASE("an expression of quantities and parameters is differentiated by the c
     CHECK(whole.upper >= std::sqrt(mass / 2e-3) - certified.lower / width);
     CHECK(whole.upper - whole.lower < 1.01 * (certified.upper - certified.lower) / width + 1e-13);
     CHECK(at.constraints[4].lower == at.constraints[4].upper);
+    // Proven are certified distances and formulas of these alone: no stroke, no mass.
+    std::vector<bool> proven;
+    for (const auto& measured : at.constraints) proven.push_back(measured.is_proven);
+    CHECK(proven == std::vector<bool>{false, false, false, true, false, false, true});
 }
 
 TEST_CASE("a bound that follows from parameters enters its constraint with its derivative") {

@@ -58,7 +58,7 @@ public:
     Measurement value(const Simulated& s) const override {
         double sum = 0;
         for (const auto& poses : s.trajectory.poses) sum += poses[body_].position.z();
-        return exact(sum / count(s) + 0.25 * s.model.bodies[body_].mesh.vertices(2, 7));
+        return computed(sum / count(s) + 0.25 * s.model.bodies[body_].mesh.vertices(2, 7));
     }
     void add_seeds(const Simulated& s, const Measurement&, double scale, Seeds& seeds) const override {
         for (auto& bar : seeds.trajectory_bar.pose_bar) bar[body_](2, 3) += scale / count(s);
@@ -75,7 +75,7 @@ class Numbers : public Quantity {
 public:
     Numbers(double value, double of_motion, double of_mesh) : value_(value), of_motion_(of_motion), of_mesh_(of_mesh) {}
     Dimension dimension() const override { return Dimension::length; }
-    Measurement value(const Simulated&) const override { return exact(value_); }
+    Measurement value(const Simulated&) const override { return computed(value_); }
     void add_seeds(const Simulated&, const Measurement&, double scale, Seeds& seeds) const override {
         seeds.trajectory_bar.pose_bar.back()[1](2, 3) += scale * of_motion_;
         seeds.model_bar.bodies[1].vertices_bar(2, 7) += scale * of_mesh_;

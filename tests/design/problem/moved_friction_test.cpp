@@ -20,7 +20,7 @@ class EndX : public Quantity {
 public:
     explicit EndX(int body) : body_(static_cast<size_t>(body)) {}
     Dimension dimension() const override { return Dimension::length; }
-    Measurement value(const Simulated& s) const override { return exact(s.trajectory.poses.back()[body_].position.x()); }
+    Measurement value(const Simulated& s) const override { return computed(s.trajectory.poses.back()[body_].position.x()); }
     void add_seeds(const Simulated&, const Measurement&, double scale, Seeds& seeds) const override {
         seeds.trajectory_bar.pose_bar.back()[body_](0, 3) += scale;
     }

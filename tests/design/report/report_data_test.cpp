@@ -223,7 +223,7 @@ TEST_CASE("report: rows of a design, what is required in mm, what it costs per m
     const auto file = reading::read_design(folder.design());
     REQUIRE(file);
     Json result = Json::parse(R"({"status": "optimal", "parameters_start": {"height": 10, "density": 1000}, "parameters": {"height": 9},
-        "constraints": [{"name": "x", "lower": 0.0151, "upper": 0.0152, "met": true}],
+        "constraints": [{"name": "x", "lower": 0.0151, "upper": 0.0152, "proven": true, "met": true}],
         "optimality": {"worth": 0.01, "held_by": {"height": "lower bound"}, "improvable": [{"parameter": "width", "step": 0.5}]}})");
     const auto& constraints = file->design.constraints;
     result["optimality"]["multipliers"][constraints[0].name] = 3.0;
@@ -233,6 +233,8 @@ TEST_CASE("report: rows of a design, what is required in mm, what it costs per m
     CHECK(rows[0]["required_lower"].get<double>() == Approx(15));
     CHECK(rows[0]["required_upper"].is_null());
     CHECK(rows[0]["lower"].get<double>() == Approx(15.1));
+    CHECK(rows[0]["proven"] == true);
+    CHECK(rows[1]["proven"] == false);
     CHECK(rows[0]["met"] == true);
     CHECK(rows[0]["cost"] == 3.0);
     CHECK(rows[0]["counts"] == true);

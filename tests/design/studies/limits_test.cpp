@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/studies/limits.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "fettle/design/studies/optimise_design.hpp"
@@ -73,7 +74,7 @@ TEST_CASE("where a bound limits the design it is told, with the requirement; oth
     const auto lines = limits_of(c.problem, c.p, c.at, c.at.jacobian, {}, 7);
     CHECK(any(lines, "parameter place is at its upper bound 20 mm"));
     CHECK_FALSE(any(lines, "speed"));
-    CHECK(any(lines, "play cube:wall is proven to be 7."));
+    CHECK(any(lines, "play cube:wall: proven 7."));
     // The trials that failed in the simulation do not change that.
     CHECK(any(limits_of(c.problem, c.p, c.at, c.at.jacobian, {{c.p, "step 3: blocked"}}, 7), "required is"));
 }
@@ -94,6 +95,43 @@ TEST_CASE("a run tells of parts that cannot be made before it simulates, and bla
     for (const std::string& line : outcome->limits) UNSCOPED_INFO(line);
     CHECK(any(outcome->limits, "`cube` and `wall` intersect"));
     CHECK_FALSE(any(outcome->limits, "required is"));
+}
+
+TEST_CASE("a requirement that no parameter moves is told before the search, and at its end instead of a parameter's bound") {
+    // A block that is pulled against the stop of its slide at once: its travel hardly follows from its mass.
+    const std::string scene = R"({ "fettle_scene": 1, "units": "mm", "timestep": 0.005, "end_time": 0.2, "gravity": [0, 0, 0],
+        "contact": { "dhat": 0.5 },
+        "bodies": [{ "name": "block", "density": 1000, "shape": { "part": "box", "dimensions": { "size_x": 10 } } }],
+        "joints": [{ "name": "slide", "type": "prismatic", "b": "block", "point": [0, 0, 0], "axis": [1, 0, 0], "limits": [-1, 4], "damping": 2 }],
+        "loads": [{ "name": "pull", "body": "block", "point": [0, 0, 0], "force": [1, 0, 0] }] })";
+    const std::string design = R"({ "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+        "parameters": [{ "name": "size", "value": 10, "lower": 5, "upper": 20 }],
+        "set": { "/bodies/block/shape/dimensions/size_x": "= size" },
+        "objective": [{ "type": "mass", "bodies": ["block"], "weight": 1 }],
+        "constraints": [{ "type": "stroke", "name": "travel", "body": "block", "axis": [1, 0, 0], "lower": 8 }],
+        "optimiser": { "max_evaluations": 12 } })";
+    const DesignFolder folder(design, scene);
+    const problem::DesignProblem problem = problem_of(folder);
+    std::vector<std::string> told;
+    OptimiseOptions options;
+    options.narrate = [&](const std::string& line) { told.push_back(line); };
+    const auto outcome = optimise_design(problem, options);
+    REQUIRE(outcome);
+    for (const std::string& line : told) UNSCOPED_INFO(line);
+    for (const std::string& line : outcome->limits) UNSCOPED_INFO(line);
+    const std::string words = "constraint `travel`: it is ";
+    const auto starts_with = [&](const std::string& begin) {
+        return std::find_if(told.begin(), told.end(), [&](const std::string& line) { return line.find(begin) == 0; });
+    };
+    const auto warning = starts_with("warning: " + words);
+    REQUIRE(warning != told.end());
+    CHECK(warning < std::find_if(
+                        told.begin(), told.end(), [](const std::string& line) { return line.find("objective") != std::string::npos; }));
+    CHECK(warning->find("a joint at its stop (`slide` may reach one)") != std::string::npos);
+    CHECK(outcome->at_start.warnings.size() == 1);
+    CHECK_FALSE(outcome->report.feasible);
+    CHECK(any(outcome->limits, words));
+    CHECK_FALSE(any(outcome->limits, "parameter size"));
 }
 
 }  // namespace fettle::design::studies::limits_test

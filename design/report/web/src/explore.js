@@ -307,7 +307,7 @@ export function showExploration(data, section, motion) {
   const controls = element("div", { class: "controls" },
     chooser("Across", designs, designs.x, null, (x) => designs.set({ x })), chooser("Up", designs, designs.y, null, (y) => designs.set({ y })),
     chooser("Colour", designs, null, "none", (shade) => designs.set({ shade })), element("label", { class: "field" }, only, "only designs that meet every requirement"));
-  section("Designs", "Each dot is a design: full where it meets every requirement, proven. A click shows it.", controls, plot, frontWords);
+  section("Designs", "Each dot is a design: full where it meets every requirement. A click shows it.", controls, plot, frontWords);
   const drawn = scatter(plot, designs);
   const clear = element("button", { type: "button", class: "quiet", onclick: () => {
     designs.ranges.clear();
@@ -319,7 +319,7 @@ export function showExploration(data, section, motion) {
   section("The best", bestWords(designs), bestTable(designs));
   const update = () => {
     const i = designs.chosen, design = designs.list[i], objective = designs.of("objective")[0].column;
-    const verdict = `${design.met ? "It meets every requirement, proven" : design.reason ? design.reason : "It does not meet every requirement"}.`.replace("..", ".");
+    const verdict = `${design.met ? "It meets every requirement" : design.reason ? design.reason : "It does not meet every requirement"}.`.replace("..", ".");
     chosenWords.textContent = `Design ${i + 1} of ${designs.list.length}, ${Number.isFinite(objective.values[i]) ? `objective ${number(objective.values[i])}` : design.status}. ${verdict}${motion && design.view === null ? " Its parts are not in this page, which has those of the best designs." : ""}`;
     chosen.replaceChildren(...chosenTables(designs));
     for (const row of document.querySelectorAll("tr[data-design]")) row.classList.toggle("chosen", Number(row.dataset.design) === i);

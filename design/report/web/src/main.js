@@ -59,7 +59,7 @@ function fillSections(data, motion) {
   const show = (k) => motion.show(k);
   show.can = (k) => !!motion && motion.canShow(k);
   if (data.requirements.length) {
-    section("Requirements", "Each is judged by its proven side. A requirement of a clearance shows its narrowest gap in the picture above.", requirementTable(data, show));
+    section("Requirements", "Each is judged by these two numbers. Proven ones enclose the true value; computed ones have the error of the time step and of facets. A requirement of a clearance shows its narrowest gap in the picture above.", requirementTable(data, show));
   } else if (data.pairs.length) {
     const shared = data.pairs.filter(words.isShared);
     if (shared.length) section("Interferences", "Two parts share material. Depth: the least move that parts them. A row shows the deepest instant in the picture above.", interferenceTable(data, show));

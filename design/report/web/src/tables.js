@@ -65,12 +65,13 @@ export function requirementTable(data, show) {
     return element("tr", r.pair === null ? {} : { "data-pair": r.pair },
       opener(r.name, r.fault, r.pair, show),
       cell("Required", "num", requiredWords(r)),
-      cell("Proven at least", "num", shared ? "\u2013" : withUnit(lowerBound(r.lower), r.unit)),
+      cell("At least", "num", shared ? "\u2013" : withUnit(lowerBound(r.lower), r.unit)),
       cell("At most", "num", shared ? "\u2013" : withUnit(upperBound(r.upper), r.unit)),
+      cell("These are", "", r.proven ? "proven" : "computed"),
       cell("When", "num", pair && pair.motion ? seconds(pair.time, data.step) : "\u2013"),
       cell("Verdict", "", status(r.met ? "met" : shared ? "interference" : "not met")));
   });
-  return tableOf("Requirements", [["Requirement"], ["Required", "num"], ["Proven at least", "num"], ["At most", "num"], ["When", "num"], ["Verdict"]], rows);
+  return tableOf("Requirements", [["Requirement"], ["Required", "num"], ["At least", "num"], ["At most", "num"], ["These are"], ["When", "num"], ["Verdict"]], rows);
 }
 
 export function rangeDrawing(p) {

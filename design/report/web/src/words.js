@@ -29,6 +29,8 @@ export function touchWords(pair) {
 }
 export const acceptWords = (pair) => `if they are meant to touch, --allow-touch ${pair.a}:${pair.b} accepts it`;
 
+const sentence = (text) => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
+
 const list = (names) => (names.length < 2 ? names.join("") : `${names.slice(0, -1).join(", ")} and ${names[names.length - 1]}`);
 const some = (names, most = 3) => (names.length <= most ? list(names) : `${names.slice(0, most).join(", ")} and ${names.length - most} more`);
 
@@ -44,6 +46,14 @@ export function asked(data) {
   if (data.status === "shown") return "A look at the parts.";
   if (data.kind === "clearance") return data.motion ? "Certified clearances over the motion." : "Certified clearances as assembled.";
   return "A simulation of the mechanism.";
+}
+
+// What the verdicts on requirements rest on: not every number is proven.
+function byWhat(data) {
+  const proven = data.requirements.filter((r) => r.proven).length, count = data.requirements.length;
+  if (proven === count) return count === 1 ? "by a proven bound" : "by proven bounds";
+  if (!proven) return count === 1 ? "by a computed value" : "by computed values";
+  return `${proven} by ${proven === 1 ? "a proven bound" : "proven bounds"} and ${count - proven} by ${count - proven === 1 ? "a computed value" : "computed values"}`;
 }
 
 const unmet = (data) => data.requirements.filter((r) => !r.met).map((r) => r.name);
@@ -68,19 +78,20 @@ function optimised(data) {
 function verdict(data) {
   const shared = data.pairs.filter(isShared);
   const bad = unmet(data), o = data.optimality, count = data.requirements.length;
-  const all = count === 1 ? "The requirement is met" : count === 2 ? "Both requirements are met, each" : `All ${count} requirements are met, each`;
-  const proven = count ? `${all} by a proven bound.` : "There are no requirements.";
+  const all = count === 1 ? "The requirement is met" : count === 2 ? "Both requirements are met" : `All ${count} requirements are met`;
+  const why = data.why_not_optimal ? ` ${sentence(data.why_not_optimal)}` : "";
+  const proven = count ? `${all}, ${byWhat(data)}.` : "There are no requirements.";
   if (data.repair && ["optimal", "feasible"].includes(data.status)) {
     const far = `The change of the file's values is ${number(data.repair.distance, 3)} of the ranges between their bounds`;
     return data.status === "optimal"
       ? { tone: "good", head: "Repaired.", rest: `${proven} ${far}; no smaller one is in sight.` }
-      : { tone: "open", head: "Repaired, not shown to be by the smallest change.", rest: `${proven} ${far}.` };
+      : { tone: "open", head: "Repaired, not shown to be by the smallest change.", rest: `${proven} ${far}.${why}` };
   }
   switch (data.status) {
     case "optimal":
       return { tone: "good", head: "Optimal.", rest: `${proven} No change near by promises to lower the objective by more than ${share(o.worth, data)}.` };
     case "feasible":
-      return { tone: "open", head: "Feasible, not shown to be optimal.", rest: `${proven} ${data.budget_spent ? "The budget of evaluations ended the search." : o && !o.judged ? "Optimality could not be judged." : o ? `A change is still in sight that promises to lower the objective by ${share(o.predicted_gain, data)}.` : ""}` };
+      return { tone: "open", head: "Feasible, not shown to be optimal.", rest: `${proven}${why}` };
     case "infeasible":
       return { tone: "bad", head: shared.length ? `Infeasible, with ${plural(shared.length, "interference")}.` : "Infeasible.", rest: `Not met: ${some(bad)}.` };
     case "interrupted":
@@ -141,7 +152,7 @@ function explored(data) {
   const without = data.designs.filter((design) => ["unusable", "failed", "lost"].includes(design.status)).length;
   const rest = `${plural(all, "design")} of ${plural(data.columns.filter((c) => c.group === "parameter").length, "parameter")}.${without ? ` ${plural(without, "design has", "designs have")} no numbers: they cannot be built or simulated.` : ""}`;
   if (!met) return { tone: "bad", head: "No design meets every requirement.", rest };
-  return { tone: "good", head: `${plural(met, "design meets", "designs meet")} every requirement, proven.`, rest };
+  return { tone: "good", head: `${plural(met, "design meets", "designs meet")} every requirement.`, rest };
 }
 
 // The requirement that a design's violation is of, in whose unit it is; null where that is not known, as of one without bounds in the file.
@@ -153,7 +164,7 @@ function violatedOf(designs, i) {
 }
 
 function exploredFacts(data) {
-  const rows = [["Designs", String(data.designs.length), "in this file"], ["Meet everything", String(data.designs.filter((d) => d.met).length), "by proven bounds"]];
+  const rows = [["Designs", String(data.designs.length), "in this file"], ["Meet everything", String(data.designs.filter((d) => d.met).length), "clearances by proven bounds"]];
   if (!data.designs.length) return rows;
   const designs = new Designs(data), [best] = designs.bestFirst(), of = (group) => designs.of(group)[0].column.values[best];
   if (best === undefined) return rows;
@@ -173,7 +184,7 @@ export function facts(data) {
   const rows = [];
   if (data.kind === "optimise" && data.objective.end !== null) {
     rows.push(["Objective", number(data.objective.end), data.objective.start !== null ? `from ${number(data.objective.start)} at the start` : "the start could not be evaluated"]);
-    rows.push(["Requirements met", `${data.requirements.filter((r) => r.met).length} of ${data.requirements.length}`, "by proven bounds"]);
+    rows.push(["Requirements met", `${data.requirements.filter((r) => r.met).length} of ${data.requirements.length}`, data.requirements.length ? byWhat(data) : ""]);
   }
   const shared = data.pairs.filter(isShared), apart = data.pairs.filter((p) => !isShared(p));
   if (shared.length) {
@@ -200,10 +211,10 @@ export const fileWords = {
 
 // What is proven, and what is not.
 export function provenWords(data) {
-  if (data.kind === "explore") return "Proven: that a design meets its requirements is judged by certified bounds. Values in the curves are what was measured; the parts are shown at the start of their motion.";
+  if (data.kind === "explore") return "Proven: that a design meets its requirements of clearance is judged by certified bounds; others are judged by computed values. Values in the curves are what was measured; the parts are shown at the start of their motion.";
   if (data.status === "shown") return "Nothing is proven here. Lengths in mm.";
   const where = data.ranges ? "over all positions of the joints within their limits" : data.motion ? "over the whole continuous motion" : "for the parts as they lie";
-  return `Proven: a bound that holds ${where}, of the meshes as stored, rounding included; not a figure from samples. Pictures and curves of forces are not proofs. Lengths in mm.`;
+  return `Proven: a bound that holds ${where}, of the meshes as stored, rounding included; not a figure from samples. Numbers called computed, pictures and curves of forces are not proofs: they have the error of the time step and of facets. Lengths in mm.`;
 }
 
 // Is a logarithmic scale wanted?
