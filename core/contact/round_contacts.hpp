@@ -11,7 +11,7 @@
 /// plane, or the border of a plane against a centre line. A circle within a circle has in each the contact on the far side too, which makes
 /// the potential smooth where both have one centre.
 ///
-/// The primitives of these sides then have no contacts of their own with each other, where their distance is across the direction.
+/// The primitives of these sides then have no contacts of their own with each other, where one closest point is beside the other's side.
 #pragma once
 
 #include <vector>
