@@ -97,6 +97,23 @@ Within faces(const Placed& p, int corner, const Vector3& direction) {
     return within(margin, 1);
 }
 
+// Does a corner face a plane as the end of a flat beside it, which the direction is nearly normal to? The flat's other end is nearer then;
+// but a flat lies on both. This goes on until the corner is beyond the activation distance, so that no force ends suddenly: where the flat
+// is turned from the plane by delta, the corner's circle is L sin(delta) - r (1 - cos(delta)) farther from it, at most sqrt(L^2 + r^2) - r.
+// On shorter flats, and the facets of curves, the nearer end alone counts.
+bool faces_as_end(const Placed& p, int corner, const Vector3& direction, double activation) {
+    const Vector2 w = p.across(direction);
+    const double radius = p.radius(corner, 0);
+    const auto is_end_of = [&](int rectangle, int other, double turn) {
+        const Vector2& n = p.surface.normals[rectangle];
+        const double flat = p.surface.lengths[rectangle] - p.surface.tangents[corner] - p.surface.tangents[other];
+        return flat * flat > activation * (activation + 2 * radius) && turn * cross(n, w) > 0 &&
+               radius * turn * cross(n, w) < flat * n.dot(w);
+    };
+    return (p.has_after(corner) && is_end_of(corner, p.next(corner), 1)) ||
+           (p.has_before(corner) && is_end_of(p.before(corner), p.before(corner), -1));
+}
+
 // Is a place on a rectangle, t from its first corner along it, on what its corners' arcs leave plane?
 Within on_plane(const Placed& p, int rectangle, double t) {
     const double length = p.surface.lengths[rectangle];
@@ -125,9 +142,12 @@ public:
 
     void take_over(NearPairs& near) const {
         if (met_.empty()) return;
-        std::erase_if(near.on_second, [&](const ContactPair& p) { return is_of_sides({p.vertex[0], -1, -1}, closest_feature(p), p, true); });
-        std::erase_if(near.on_first,
-                      [&](const ContactPair& p) { return is_of_sides(closest_feature(p), {p.vertex[0], -1, -1}, p, false); });
+        std::erase_if(near.on_second, [&](const ContactPair& p) {
+            return is_of_sides({p.vertex[0], -1, -1}, closest_feature(p), p, true);
+        });
+        std::erase_if(near.on_first, [&](const ContactPair& p) {
+            return is_of_sides(closest_feature(p), {p.vertex[0], -1, -1}, p, false);
+        });
         std::erase_if(near.edges, [&](const ContactPair& p) {
             return is_of_sides({p.vertex[0], p.vertex[1], -1}, {p.vertex[2], p.vertex[3], -1}, p, true);
         });
@@ -292,7 +312,8 @@ private:
         const double height = outward.dot(end - p0);
         if (height <= 0 || !is_near(height - radius)) return;
         const Vector3 p1 = plane.rim_point(next, e);
-        const Within facing_arc = faces(arc, corner, -outward);
+        Within facing_arc = faces(arc, corner, -outward);
+        if (facing_arc == Within::no && faces_as_end(arc, corner, -outward, activation_)) facing_arc = Within::yes;
         if (facing_arc == Within::no) return;
         ContactPair pair;
         RoundGap& gap = pair.round;
@@ -390,8 +411,8 @@ private:
         for (std::size_t k = 0; k < found_.size(); ++k) {
             bool is_known = false;
             for (std::size_t other = 0; found_[k].at_border && other < found_.size() && !is_known; ++other)
-                is_known = (!found_[other].at_border || other < k) &&
-                           (found_[other].place - found_[k].place).norm() < 10 * same_place * a_.radius;
+                is_known =
+                    (!found_[other].at_border || other < k) && (found_[other].place - found_[k].place).norm() < 10 * same_place * a_.radius;
             if (!is_known) (found_[k].on_a ? forward_ : backward_).push_back(found_[k].pair);
         }
         found_.clear();
