@@ -52,13 +52,12 @@ BarrierByDmin pair_barrier_by_dmin(const ContactPair& pair, const BarrierParamet
     const core::contact::RoundGap& round = pair.round;
     if (round.side == 0) return barrier_by_dmin(pair.closest.distance_squared, p, slope);
     const double d = std::sqrt(pair.closest.distance_squared), radius = round.radius();
-    if (!(d > 0)) return {};
-    const double s = round.side * (d - radius);
+    const double s = round.side * (d - radius), inverse = d > 0 ? 1 / d : 0;  // where centre lines are one it is times r = 0
     BarrierByDmin b = barrier_by_dmin(s * s, p, slope);
-    b.first *= round.side * s / d;
+    b.first *= round.side * s * inverse;
     if (!round.has_far) return b;
     const BarrierByDmin far = barrier_by_dmin((radius + d) * (radius + d), p, slope);
-    return {b.value + far.value, b.first + far.first * (radius + d) / d};
+    return {b.value + far.value, b.first + far.first * (radius + d) * inverse};
 }
 
 std::array<Vector3, 4> pair_forces_radius_derivative(const ContactPair& pair, const BarrierParameters& p) {

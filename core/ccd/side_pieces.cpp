@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/ccd/side_pieces.hpp"
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -9,6 +11,31 @@ namespace {
 
 using geometry::RoundedSide;
 using geometry::RoundedSides;
+
+std::array<int, 4> vertices_of(const RoundedSides& sides, const RoundedSides::Place& rectangle) {
+    const RoundedSide& side = sides.sides[rectangle.side];
+    const auto &first = side.corners[rectangle.at].rim, &last = side.corners[(rectangle.at + 1) % count_of(side.corners)].rim;
+    std::array<int, 4> out{first[0], first[1], last[0], last[1]};
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+// The rectangles that a face is of: a plane facet may be one of two directions, of which of_triangle names one.
+std::array<RoundedSides::Place, 2> rectangles_of(const RoundedSides& sides, int face) {
+    std::array<RoundedSides::Place, 2> out;
+    if (face >= count_of(sides.of_triangle)) return out;  // faces of wires and points come after the triangles
+    out[0] = sides.of_triangle[face];
+    if (out[0].side < 0) return out;
+    const std::array<int, 4> vertices = vertices_of(sides, out[0]);
+    for (const RoundedSides::Place& at : sides.of_vertex[vertices[0]]) {
+        if (at.side == out[0].side) continue;
+        const RoundedSide& side = sides.sides[at.side];
+        const int before = at.at > 0 ? at.at - 1 : side.closed ? count_of(side.corners) - 1 : -1;
+        for (const int k : {before, at.at})
+            if (k >= 0 && k < side.rectangles() && vertices_of(sides, {at.side, k}) == vertices) out[1] = {at.side, k};
+    }
+    return out;
+}
 
 // Corners that candidates have, of one side.
 class Corners {
@@ -49,13 +76,12 @@ std::vector<SidePieces> side_pieces(const model::Body& a, const model::Body& b, 
         corners_a.add(side_a, at_a, rectangle_a);
         corners_b.add(side_b, at_b, rectangle_b);
     };
-    const auto of_triangle = [](const RoundedSides& sides, int face) {  // faces of wires and points come after the triangles
-        return face < count_of(sides.of_triangle) ? sides.of_triangle[face] : RoundedSides::Place{};
-    };
     for (const geometry::PrimitivePair& pair : candidates.vertex_triangle)
-        for (const auto& at_a : sides_a.of_vertex[pair.a]) add(at_a, false, of_triangle(sides_b, pair.b), true);
+        for (const auto& at_a : sides_a.of_vertex[pair.a])
+            for (const auto& at_b : rectangles_of(sides_b, pair.b)) add(at_a, false, at_b, true);
     for (const geometry::PrimitivePair& pair : candidates.triangle_vertex)
-        for (const auto& at_b : sides_b.of_vertex[pair.b]) add(of_triangle(sides_a, pair.a), true, at_b, false);
+        for (const auto& at_b : sides_b.of_vertex[pair.b])
+            for (const auto& at_a : rectangles_of(sides_a, pair.a)) add(at_a, true, at_b, false);
     for (const geometry::PrimitivePair& pair : candidates.edge_edge)
         for (const int v : a.mesh.edges[pair.a])
             for (const int w : b.mesh.edges[pair.b])

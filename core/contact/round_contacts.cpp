@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "fettle/core/contact/closest_feature.hpp"
@@ -38,12 +39,15 @@ struct Placed {
           across_2(p.rotation * surface.across_2),
           low(0) {}
 
-    // Corners that are asked for.
+    // Corners that are asked for, and the first.
     void place(const std::vector<int>& corners) {
         centres.resize(2 * side.corners.size());
-        for (const int k : corners)
-            for (const int e : {0, 1})
-                centres[2 * static_cast<std::size_t>(k) + e] = world_position(pose, body.round->centres.col(centre_index(k, e)));
+        place(0);
+        for (const int k : corners) place(k);
+    }
+    void place(int corner) {
+        for (const int e : {0, 1})
+            centres[2 * static_cast<std::size_t>(corner) + e] = world_position(pose, body.round->centres.col(centre_index(corner, e)));
     }
 
     int corners() const { return count_of(side.corners); }
@@ -93,6 +97,23 @@ Within faces(const Placed& p, int corner, const Vector3& direction) {
     return within(margin, 1);
 }
 
+// Does a corner face a plane as the end of a flat beside it, which the direction is nearly normal to? The flat's other end is nearer then;
+// but a flat lies on both. This goes on until the corner is beyond the activation distance, so that no force ends suddenly: where the flat
+// is turned from the plane by delta, the corner's circle is L sin(delta) - r (1 - cos(delta)) farther from it, at most sqrt(L^2 + r^2) - r.
+// On shorter flats, and the facets of curves, the nearer end alone counts.
+bool faces_as_end(const Placed& p, int corner, const Vector3& direction, double activation) {
+    const Vector2 w = p.across(direction);
+    const double radius = p.radius(corner, 0);
+    const auto is_end_of = [&](int rectangle, int other, double turn) {
+        const Vector2& n = p.surface.normals[rectangle];
+        const double flat = p.surface.lengths[rectangle] - p.surface.tangents[corner] - p.surface.tangents[other];
+        return flat * flat > activation * (activation + 2 * radius) && turn * cross(n, w) > 0 &&
+               radius * turn * cross(n, w) < flat * n.dot(w);
+    };
+    return (p.has_after(corner) && is_end_of(corner, p.next(corner), 1)) ||
+           (p.has_before(corner) && is_end_of(p.before(corner), p.before(corner), -1));
+}
+
 // Is a place on a rectangle, t from its first corner along it, on what its corners' arcs leave plane?
 Within on_plane(const Placed& p, int rectangle, double t) {
     const double length = p.surface.lengths[rectangle];
@@ -121,10 +142,14 @@ public:
 
     void take_over(NearPairs& near) const {
         if (met_.empty()) return;
-        std::erase_if(near.on_second, [&](const ContactPair& p) { return is_of_sides({p.vertex[0], -1, -1}, closest_feature(p), p); });
-        std::erase_if(near.on_first, [&](const ContactPair& p) { return is_of_sides(closest_feature(p), {p.vertex[0], -1, -1}, p); });
+        std::erase_if(near.on_second, [&](const ContactPair& p) {
+            return is_of_sides({p.vertex[0], -1, -1}, closest_feature(p), p, true);
+        });
+        std::erase_if(near.on_first, [&](const ContactPair& p) {
+            return is_of_sides(closest_feature(p), {p.vertex[0], -1, -1}, p, false);
+        });
         std::erase_if(near.edges, [&](const ContactPair& p) {
-            return is_of_sides({p.vertex[0], p.vertex[1], -1}, {p.vertex[2], p.vertex[3], -1}, p);
+            return is_of_sides({p.vertex[0], p.vertex[1], -1}, {p.vertex[2], p.vertex[3], -1}, p, true);
         });
     }
 
@@ -151,13 +176,26 @@ private:
         });
     }
 
-    // Do these vertices belong to sides that meet, and is the pair's distance one across them?
-    bool is_of_sides(const Feature& of_a, const Feature& of_b, const ContactPair& p) const {
-        constexpr double along = 0.5;  // at most, of the distance
+    // Is the point, so far from the body, beside a side of it, not beyond its ends? Across another direction it may be beyond a little.
+    static bool is_beside(const model::Body& body, const kinematics::Pose& pose, int side, const Vector3& point, double distance) {
+        const RoundedSide& of = body.round->mesh_sides.sides[side];
+        const double along = of.axis.dot(pose.rotation.transpose() * (point - pose.position));
+        const double slack = same_place * body.radius + largest_slant * distance;
+        return along >= of.ends[0] - slack && along <= of.ends[1] + slack;
+    }
+
+    // Do these vertices belong to sides that meet, and is one closest point beside the other's side?
+    bool is_of_sides(const Feature& of_a, const Feature& of_b, const ContactPair& p, bool is_a_first) const {
+        std::array<Vector3, 2> at{Vector3::Zero(), Vector3::Zero()};  // of the first body and the second
+        for (int i = 0; i < 4; ++i) {
+            const bool on_first = i < geometry::first_count(p.type);
+            at[on_first ? 0 : 1] += (on_first ? 1 : -1) * p.closest.weight[i] * p.x[i];
+        }
+        const Vector3 &at_a = at[is_a_first ? 0 : 1], &at_b = at[is_a_first ? 1 : 0];
+        const double d = std::sqrt(p.closest.distance_squared);
         return std::any_of(met_.begin(), met_.end(), [&](const ccd::SidePieces* pieces) {
-            if (!is_on(a_, pieces->side_a, of_a) || !is_on(b_, pieces->side_b, of_b)) return false;
-            const Vector3 axis = pose_a_.rotation * a_.round->mesh_sides.sides[pieces->side_a].axis;
-            return std::abs(axis.dot(p.closest.difference)) < along * std::sqrt(p.closest.distance_squared);
+            return is_on(a_, pieces->side_a, of_a) && is_on(b_, pieces->side_b, of_b) &&
+                   (is_beside(b_, pose_b_, pieces->side_b, at_a, d) || is_beside(a_, pose_a_, pieces->side_a, at_b, d));
         });
     }
 
@@ -167,6 +205,7 @@ private:
         a.place(pieces.corners_a);
         b.place(pieces.corners_b);
         cover_ = a.surface.cover + b.surface.cover;
+        along_ = a.axis + (b.low == 0 ? 1 : -1) * b.axis;
         for (int e = 0; e < 2; ++e) {
             if (a.surface.is_circle && b.surface.is_circle) {
                 circles(a, pieces.corners_a, b, pieces.corners_b, e);
@@ -183,9 +222,10 @@ private:
         }
     }
 
-    // Which of the two ends of lines is within the other: the point that the contact is at?
-    static bool ends_within(const Vector3& axis, const Vector3& end, const Vector3& other_end, int e) {
-        const double beyond = axis.dot(end) - axis.dot(other_end);
+    // Which of the two ends of lines is within the other: the point that the contact is at? Half-way between the two directions, so that
+    // the distance is the same either way where the answer changes.
+    bool ends_within(const Vector3& end, const Vector3& other_end, int e) const {
+        const double beyond = along_.dot(end - other_end);
         return e == 0 ? beyond >= 0 : beyond <= 0;
     }
 
@@ -196,9 +236,9 @@ private:
         double d, t;     // |r|; where on the line
         Vector3 from_b;  // unit, from b's line to a's
     };
-    static Lines lines(const Placed& a, int i, const Placed& b, int j, int e) {
+    Lines lines(const Placed& a, int i, const Placed& b, int j, int e) const {
         Lines out;
-        out.at_b = ends_within(a.axis, b.centre(j, e), a.centre(i, e), e);
+        out.at_b = ends_within(b.centre(j, e), a.centre(i, e), e);
         const Placed &point = out.at_b ? b : a, &line = out.at_b ? a : b;
         const int point_corner = out.at_b ? j : i, line_corner = out.at_b ? i : j;
         const Vector3& from = line.centre(line_corner, 0);
@@ -217,24 +257,19 @@ private:
         return {hollow_a ? from_b : Vector3(inside * from_b), hollow_b ? Vector3(-from_b) : Vector3(-inside * from_b)};
     }
 
-    // Of circles all arcs are in one place, so that the direction says which two meet. Those beside them too: they know it better.
+    // Of circles all arcs are about one line: one direction says which two meet. Each for itself would see another one by rounding, which
+    // near concentric circles is any.
     void circles(const Placed& a, const std::vector<int>& corners_a, const Placed& b, const std::vector<int>& corners_b, int e) {
-        const Lines at = lines(a, corners_a[0], b, corners_b[0], e);
-        const auto [out_a, out_b] = outward(a.is_hollow(0), b.is_hollow(0), at.from_b);
-        constexpr double clear = 1e-2;  // above what centres differ by
-        const bool is_clear = at.d > clear * std::abs(a.radius(0, e) - b.radius(0, e));
-        const auto near = [&](const Placed& p, const Vector3& out, int k) {
-            return !is_clear || faces(p, k, out) != Within::no || faces(p, p.next(k), out) != Within::no ||
-                   faces(p, p.before(k), out) != Within::no;
+        const auto [out_a, out_b] = outward(a.is_hollow(0), b.is_hollow(0), lines(a, 0, b, 0, e).from_b);
+        const auto first_that_faces = [](const Placed& p, const std::vector<int>& corners, const Vector3& out) {
+            return std::find_if(corners.begin(), corners.end(), [&](int k) { return faces(p, k, out) != Within::no; });
         };
-        for (const int i : corners_a) {
-            if (!near(a, out_a, i)) continue;
-            for (const int j : corners_b)
-                if (near(b, out_b, j)) arcs(a, i, b, j, e);
-        }
+        const auto i = first_that_faces(a, corners_a, out_a), j = first_that_faces(b, corners_b, out_b);
+        if (i != corners_a.end() && j != corners_b.end()) arcs(a, *i, b, *j, e, Within::yes);
     }
 
-    void arcs(const Placed& a, int i, const Placed& b, int j, int e) {
+    // @param known  whether the two face each other, where that is known already
+    void arcs(const Placed& a, int i, const Placed& b, int j, int e, std::optional<Within> known = {}) {
         const bool hollow_a = a.is_hollow(i), hollow_b = b.is_hollow(j), inside = hollow_a || hollow_b;
         if ((hollow_a && hollow_b) || (!a.is_convex(i) && !hollow_a) || (!b.is_convex(j) && !hollow_b)) return;
         const int sign_a = hollow_a || !inside ? 1 : -1, sign_b = hollow_b || !inside ? 1 : -1;
@@ -245,7 +280,7 @@ private:
         const double distance = side * (at.d - radius);
         if (!is_near(distance)) return;
         const auto [out_a, out_b] = outward(hollow_a, hollow_b, at.from_b);
-        const Within facing = std::min(faces(a, i, out_a), faces(b, j, out_b));
+        const Within facing = known ? *known : std::min(faces(a, i, out_a), faces(b, j, out_b));
         if (facing == Within::no) return;
         ContactPair pair;
         pair.round.side = static_cast<signed char>(side);
@@ -277,13 +312,14 @@ private:
         const double height = outward.dot(end - p0);
         if (height <= 0 || !is_near(height - radius)) return;
         const Vector3 p1 = plane.rim_point(next, e);
-        const Within facing_arc = faces(arc, corner, -outward);
+        Within facing_arc = faces(arc, corner, -outward);
+        if (facing_arc == Within::no && faces_as_end(arc, corner, -outward, activation_)) facing_arc = Within::yes;
         if (facing_arc == Within::no) return;
         ContactPair pair;
         RoundGap& gap = pair.round;
         gap.side = 1;
         Within facing;
-        if (ends_within(plane.axis, end, p0, plane.end(e))) {
+        if (ends_within(end, p0, e)) {
             // The arc's end against the plane.
             const Vector3 p2 = plane.rim_point(next, 1 - e), e1 = p1 - p0, e2 = p2 - p1;
             // p0 + s e1 + u e2.
@@ -370,12 +406,13 @@ private:
         found_.push_back({std::move(pair), &first.body == &a_, facing == Within::at_border, place});
     }
 
-    // Where pieces of a surface meet, the contact is with either.
+    // Where pieces of a surface meet, the contact is with either: with one that is not at its border, or the first.
     void keep() {
         for (std::size_t k = 0; k < found_.size(); ++k) {
             bool is_known = false;
-            for (std::size_t other = 0; found_[k].at_border && other < k && !is_known; ++other)
-                is_known = found_[other].at_border && (found_[other].place - found_[k].place).norm() < 10 * same_place * a_.radius;
+            for (std::size_t other = 0; found_[k].at_border && other < found_.size() && !is_known; ++other)
+                is_known =
+                    (!found_[other].at_border || other < k) && (found_[other].place - found_[k].place).norm() < 10 * same_place * a_.radius;
             if (!is_known) (found_[k].on_a ? forward_ : backward_).push_back(found_[k].pair);
         }
         found_.clear();
@@ -384,6 +421,7 @@ private:
     const model::Body &a_, &b_;
     const kinematics::Pose &pose_a_, &pose_b_;
     double activation_, deepest_, cover_ = 0;
+    Vector3 along_ = Vector3::Zero();  // from the lower ends to the upper
     std::vector<ContactPair>&forward_, &backward_;
     std::vector<const ccd::SidePieces*> met_;
     std::vector<Found> found_;

@@ -11,7 +11,10 @@
 /// plane, or the border of a plane against a centre line. A circle within a circle has in each the contact on the far side too, which makes
 /// the potential smooth where both have one centre.
 ///
-/// The primitives of these sides then have no contacts of their own with each other, where their distance is across the direction.
+/// In the section a flat that lies on a flat has contacts at both ends of what they share, as long as it is long enough that the farther
+/// one ends beyond the activation distance (its length squared above activation (activation + 2 radius of the corner)).
+///
+/// The primitives of these sides then have no contacts of their own with each other, where one closest point is beside the other's side.
 #pragma once
 
 #include <vector>

@@ -64,6 +64,7 @@ public:
 
     Vector3 at(int vertex) const { return mesh_.vertices.col(vertex); }
     int edge_of(int triangle, int k) const { return edges_[3 * triangle + k]; }
+    const Triangle& corners_of(int triangle) const { return mesh_.triangles[triangle]; }
     bool is_flat(int edge) const { return flat_.is_flat_edge(edge); }
     bool is_sound(int edge) const { return sides_of_[edge].count == 2; }
 
@@ -351,6 +352,10 @@ void add_side(const Rectangles& rectangles, const DrawnSide& drawn, RoundedSides
         for (const int t : r.triangles) {
             RoundedSides::Place& place = out.of_triangle[t];
             if (place.side < 0 || (round && !out.sides[place.side].is_round())) place = {number, k};
+            for (const int v : rectangles.corners_of(t)) {
+                auto& places = out.of_vertex[v];
+                if (places.empty() || places.back().side != number) places.push_back({number, k});
+            }
             for (int j = 0; j < 3; ++j)
                 if (const int e = rectangles.edge_of(t, j); rectangles.is_flat(e)) add_place(out.of_edge[e], {number, k});
         }

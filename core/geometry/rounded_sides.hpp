@@ -66,8 +66,9 @@ struct RoundedSides {
     struct Place {
         int side = -1, at = -1;
     };
-    std::vector<std::vector<Place>> of_vertex;  ///< [vertex]: a rim of that corner; further vertices on its line have none
-    std::vector<Place> of_triangle;             ///< [triangle]: part of that rectangle; of a side that is round if there is one
+    /// [vertex]: a rim of that corner; of further vertices in a rectangle or on its border, a corner of the rectangle.
+    std::vector<std::vector<Place>> of_vertex;
+    std::vector<Place> of_triangle;  ///< [triangle]: part of that rectangle; of a side that is round if there is one
     /// [edge of the mesh]: along the axis and not within a plane facet: that corner's line or a part of it; any other: in that rectangle
     /// (its border at an end, or within).
     std::vector<std::vector<Place>> of_edge;
