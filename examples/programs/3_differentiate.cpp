@@ -16,7 +16,7 @@ public:
     Measurement value(const Simulated& simulated) const override {
         double sum = 0;
         for (const auto& poses : simulated.trajectory.poses) sum += poses[body_].position.z();
-        return exact(sum / static_cast<double>(simulated.trajectory.poses.size()));
+        return computed(sum / static_cast<double>(simulated.trajectory.poses.size()));
     }
     void add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const override {
         for (auto& bars : seeds.trajectory_bar.pose_bar)
