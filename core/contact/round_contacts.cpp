@@ -301,82 +301,86 @@ private:
         add(point, std::move(pair), distance, facing);
     }
 
+    // A convex arc and what the arcs beside it leave plane of a rectangle.
     void arc_and_plane(const Placed& arc, int corner, const Placed& plane, int rectangle, int e) {
         if (!arc.is_convex(corner)) return;
-        const int next = plane.next(rectangle);
         const double length = plane.surface.lengths[rectangle];
-        if (length - plane.surface.tangents[rectangle] - plane.surface.tangents[next] < same_place * length) return;  // the arcs meet
-        const Vector3 outward = plane.outward(rectangle);
-        const Vector3 end = arc.centre(corner, e), p0 = plane.rim_point(rectangle, e);
-        const double radius = arc.radius(corner, e) + cover_;
-        const double height = outward.dot(end - p0);
-        if (height <= 0 || !is_near(height - radius)) return;
-        const Vector3 p1 = plane.rim_point(next, e);
-        Within facing_arc = faces(arc, corner, -outward);
-        if (facing_arc == Within::no && faces_as_end(arc, corner, -outward, activation_)) facing_arc = Within::yes;
-        if (facing_arc == Within::no) return;
+        const double flat = length - plane.surface.tangents[rectangle] - plane.surface.tangents[plane.next(rectangle)];
+        if (flat < same_place * length) return;  // the arcs meet
+        const Vector3 outward = plane.outward(rectangle), from_plane = arc.centre(corner, e) - plane.rim_point(rectangle, e);
+        const double height = outward.dot(from_plane);
+        if (height <= 0 || !is_near(height - arc.radius(corner, e) - cover_)) return;
+        Within facing = faces(arc, corner, -outward);
+        if (facing == Within::no && faces_as_end(arc, corner, -outward, activation_)) facing = Within::yes;
+        if (facing == Within::no) return;
+        if (ends_within(arc.centre(corner, e), plane.rim_point(rectangle, e), e))
+            end_on_plane(arc, corner, plane, rectangle, e, facing);
+        else
+            border_on_line(arc, corner, plane, rectangle, e, facing);
+    }
+
+    // The end of the arc's centre line against the plane p0 + s e1 + t e2.
+    void end_on_plane(const Placed& arc, int corner, const Placed& plane, int rectangle, int e, Within facing) {
+        const int next = plane.next(rectangle);
         ContactPair pair;
-        RoundGap& gap = pair.round;
-        gap.side = 1;
-        Within facing;
-        if (ends_within(end, p0, e)) {
-            // The arc's end against the plane.
-            const Vector3 p2 = plane.rim_point(next, 1 - e), e1 = p1 - p0, e2 = p2 - p1;
-            // p0 + s e1 + u e2.
-            Matrix2 k;
-            k << e1.dot(e1), e1.dot(e2), e1.dot(e2), e2.dot(e2);
-            const Vector2 su = k.inverse() * Vector2(e1.dot(end - p0), e2.dot(end - p0));
-            facing = on_plane(plane, rectangle, su[0] * length);
-            pair.type = geometry::PairType::point_triangle;
-            pair.x = {end, p0, p1, p2};
-            pair.vertex = {arc.vertex(corner, e), plane.rim(rectangle, e), plane.rim(next, e), plane.rim(next, 1 - e)};
-            pair.closest.weight = {1, su[0] - 1, su[1] - su[0], -su[1]};
-            pair.closest.free_count = 2;
-            pair.closest.free_weight[0] = {0, 1, -1, 0};
-            pair.closest.free_weight[1] = {0, 0, 1, -1};
-            pair.closest.difference = end - p0 - su[0] * e1 - su[1] * e2;
-            facing = std::min(facing, facing_arc);
-            if (facing == Within::no) return;
-            pair.closest.distance_squared = pair.closest.difference.squaredNorm();
-            set_part(gap, 0, arc, corner, e, 1);
-            set_part(gap, 1, plane, -1, e, 0);
-            add(arc, std::move(pair), std::sqrt(pair.closest.distance_squared) - radius, facing);
-            return;
-        }
-        // The plane's border against the arc's centre line.
-        const Vector3 c0 = arc.centre(corner, 0), c1 = arc.centre(corner, 1), e1 = p1 - p0, e2 = c1 - c0;
+        pair.type = geometry::PairType::point_triangle;
+        pair.x = {arc.centre(corner, e), plane.rim_point(rectangle, e), plane.rim_point(next, e), plane.rim_point(next, 1 - e)};
+        pair.vertex = {arc.vertex(corner, e), plane.rim(rectangle, e), plane.rim(next, e), plane.rim(next, 1 - e)};
+        const Vector3 e1 = pair.x[2] - pair.x[1], e2 = pair.x[3] - pair.x[2], from = pair.x[0] - pair.x[1];
+        Matrix2 k;
+        k << e1.dot(e1), e1.dot(e2), e1.dot(e2), e2.dot(e2);
+        const Vector2 st = k.inverse() * Vector2(e1.dot(from), e2.dot(from));
+        pair.closest.weight = {1, st[0] - 1, st[1] - st[0], -st[1]};
+        pair.closest.free_count = 2;
+        pair.closest.free_weight = {{{0, 1, -1, 0}, {0, 0, 1, -1}}};
+        pair.closest.difference = from - st[0] * e1 - st[1] * e2;
+        add_arc_on_plane(std::move(pair), arc, corner, plane, e,
+                         std::min(facing, on_plane(plane, rectangle, st[0] * plane.surface.lengths[rectangle])));
+    }
+
+    // The plane's border p0 + s e1 against the arc's centre line c0 + t e2.
+    void border_on_line(const Placed& arc, int corner, const Placed& plane, int rectangle, int e, Within facing) {
+        const int next = plane.next(rectangle);
+        const Vector3 p0 = plane.rim_point(rectangle, e), p1 = plane.rim_point(next, e);
+        const Vector3 &c0 = arc.centre(corner, 0), &c1 = arc.centre(corner, 1), e1 = p1 - p0, e2 = c1 - c0;
         Matrix2 k;
         k << e1.dot(e1), -e1.dot(e2), -e1.dot(e2), e2.dot(e2);
         const Vector2 st = k.inverse() * Vector2(-e1.dot(p0 - c0), e2.dot(p0 - c0));
-        facing = std::min(on_plane(plane, rectangle, st[0] * length), facing_arc);
-        if (facing == Within::no) return;
-        const Vector3 r = p0 + st[0] * e1 - c0 - st[1] * e2;  // from the line to the border
-        const double d = r.norm();
-        if (!is_near(d - radius)) return;
+        const Vector3 r = p0 + st[0] * e1 - c0 - st[1] * e2;
+        const bool is_plane_first = &plane.body == &a_;  // the first edge is on body a
+        const std::array<double, 2> first{1 - st[is_plane_first ? 0 : 1], st[is_plane_first ? 0 : 1]},
+            second{st[is_plane_first ? 1 : 0] - 1, -st[is_plane_first ? 1 : 0]};
+        ContactPair pair;
         pair.type = geometry::PairType::edge_edge;
+        pair.closest.weight = {first[0], first[1], second[0], second[1]};
         pair.closest.free_count = 2;
-        pair.closest.distance_squared = d * d;
-        if (&plane.body == &a_) {  // the first edge is on body a
+        pair.closest.free_weight = {{{-1, 1, 0, 0}, {0, 0, 1, -1}}};
+        const int v0 = plane.rim(rectangle, e), v1 = plane.rim(next, e), w0 = arc.vertex(corner, 0), w1 = arc.vertex(corner, 1);
+        if (is_plane_first) {
             pair.x = {p0, p1, c0, c1};
-            pair.vertex = {plane.rim(rectangle, e), plane.rim(next, e), arc.vertex(corner, 0), arc.vertex(corner, 1)};
-            pair.closest.weight = {1 - st[0], st[0], st[1] - 1, -st[1]};
-            pair.closest.free_weight[0] = {-1, 1, 0, 0};
-            pair.closest.free_weight[1] = {0, 0, 1, -1};
+            pair.vertex = {v0, v1, w0, w1};
             pair.closest.difference = r;
-            set_part(gap, 0, plane, -1, e, 0);
-            set_part(gap, 1, arc, corner, e, 1);
         } else {
             pair.x = {c0, c1, p0, p1};
-            pair.vertex = {arc.vertex(corner, 0), arc.vertex(corner, 1), plane.rim(rectangle, e), plane.rim(next, e)};
-            pair.closest.weight = {1 - st[1], st[1], st[0] - 1, -st[0]};
-            pair.closest.free_weight[0] = {-1, 1, 0, 0};
-            pair.closest.free_weight[1] = {0, 0, 1, -1};
+            pair.vertex = {w0, w1, v0, v1};
             pair.closest.difference = -r;
-            set_part(gap, 0, arc, corner, e, 1);
-            set_part(gap, 1, plane, -1, e, 0);
         }
-        add(&plane.body == &a_ ? plane : arc, std::move(pair), d - radius, facing);
+        add_arc_on_plane(std::move(pair), arc, corner, plane, e,
+                         std::min(facing, on_plane(plane, rectangle, st[0] * plane.surface.lengths[rectangle])));
     }
+
+    // Its distance, reach and bodies, if it is one.
+    void add_arc_on_plane(ContactPair&& pair, const Placed& arc, int corner, const Placed& plane, int e, Within facing) {
+        if (facing == Within::no) return;
+        const bool is_plane_first = pair.type == geometry::PairType::edge_edge && &plane.body == &a_;
+        pair.round.side = 1;
+        set_part(pair.round, is_plane_first ? 1 : 0, arc, corner, e, 1);
+        set_part(pair.round, is_plane_first ? 0 : 1, plane, -1, e, 0);
+        pair.closest.distance_squared = pair.closest.difference.squaredNorm();
+        const double distance = gap_of(pair);
+        if (is_near(distance)) add(pair.type == geometry::PairType::edge_edge ? on_a(arc, plane) : arc, std::move(pair), distance, facing);
+    }
+    const Placed& on_a(const Placed& p, const Placed& q) const { return &p.body == &a_ ? p : q; }
 
     // @param k  0 for the pair's first body, 1 for its second  @param corner  -1: a plane  @param sign  of its radius in R
     static void set_part(RoundGap& gap, std::size_t k, const Placed& of, int corner, int e, int sign) {
