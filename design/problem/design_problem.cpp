@@ -333,8 +333,12 @@ std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const
 
 Result<DesignProblem> DesignProblem::with_contact_width(double dhat) const {
     Design design = design_;
-    design.scene.dhat = dhat;
-    for (description::Scenario& scenario : design.scenarios) scenario.scene.dhat = dhat;
+    const auto widen = [dhat](core::scene::Scene& scene) {
+        scene.dhat = dhat;
+        scene.round_contact = false;
+    };
+    widen(design.scene);
+    for (description::Scenario& scenario : design.scenarios) widen(scenario.scene);
     return create(std::move(design));
 }
 
