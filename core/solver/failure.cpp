@@ -138,7 +138,11 @@ std::string describe_failure(const FailedStep& step) {
     describe_stop(step, out);
     if (const Closest closest = closest_of(step.contacts); closest.pair)
         out << "; closest pair '" << bodies[closest.pair->first].name << "' and '" << bodies[closest.pair->second].name << "' at "
-            << base::length_text(closest.distance, unit);
+            << base::length_text(closest.distance, unit)
+            << (closest.distance <= step.problem.model->dmin  // only round surfaces can be: meshes are kept apart
+                    ? " between their round surfaces, which contain the facets: leave more gap, take finer facets, or set `contact.round` "
+                      "to false"
+                    : "");
     out << "; out of balance by " << 100 * step.residual << "% of the forces that act";
     describe_stiffness(step, out);
     return out.str();

@@ -34,15 +34,20 @@ Result<std::shared_ptr<const Expression>> Expression::create(Formula formula, co
     return std::shared_ptr<const Expression>(new Expression(std::move(formula), std::move(used), *dimension));
 }
 
-Result<std::shared_ptr<const Expression>> Expression::parse(std::string_view text, const std::vector<NamedQuantity>& parts,
-                                                            const std::vector<description::Parameter>& parameters) {
+Result<Formula> formula_of_quantities(std::string_view text, std::vector<core::expression::Scope::Name> names,
+                                      const std::vector<description::Parameter>& parameters) {
     core::expression::Scope scope = description::scope_of(parameters);
     scope.what = "quantity or parameter";
-    for (core::expression::Scope::Name& name : names_of(parts)) {
-        std::erase_if(scope.names, [&](const auto& other) { return other.name == name.name; });  // the quantity is meant
+    for (core::expression::Scope::Name& name : names) {
+        std::erase_if(scope.names, [&](const auto& other) { return other.name == name.name; });
         scope.names.push_back(std::move(name));
     }
-    Result<Formula> formula = core::expression::parse_formula(text, scope);
+    return core::expression::parse_formula(text, scope);
+}
+
+Result<std::shared_ptr<const Expression>> Expression::parse(std::string_view text, const std::vector<NamedQuantity>& parts,
+                                                            const std::vector<description::Parameter>& parameters) {
+    Result<Formula> formula = formula_of_quantities(text, names_of(parts), parameters);
     if (!formula) return formula.errors();
     return create(std::move(formula).value(), parts);
 }

@@ -60,4 +60,8 @@ private:
 /// The names that an expression may use besides parameters, as parse_formula wants them.
 std::vector<core::expression::Scope::Name> names_of(const std::vector<NamedQuantity>& parts);
 
+/// A formula from a text that names these quantities, and parameters of the design; where one name is both the quantity is meant.
+Result<core::expression::Formula> formula_of_quantities(std::string_view text, std::vector<core::expression::Scope::Name> names,
+                                                        const std::vector<description::Parameter>& parameters);
+
 }  // namespace fettle::design::quantities

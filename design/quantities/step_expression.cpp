@@ -67,13 +67,7 @@ Result<std::shared_ptr<const StepExpression>> StepExpression::create(Formula for
 Result<std::shared_ptr<const StepExpression>> StepExpression::parse(std::string_view text, const std::vector<NamedQuantity>& parts,
                                                                     const Reduction& reduction,
                                                                     const std::vector<description::Parameter>& parameters) {
-    core::expression::Scope scope = description::scope_of(parameters);
-    scope.what = "quantity or parameter";
-    for (core::expression::Scope::Name& name : step_names_of(parts)) {
-        std::erase_if(scope.names, [&](const auto& other) { return other.name == name.name; });  // the quantity is meant
-        scope.names.push_back(std::move(name));
-    }
-    Result<Formula> formula = core::expression::parse_formula(text, scope);
+    Result<Formula> formula = formula_of_quantities(text, step_names_of(parts), parameters);
     if (!formula) return formula.errors();
     return create(std::move(formula).value(), parts, reduction);
 }

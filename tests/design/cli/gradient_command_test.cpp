@@ -112,6 +112,17 @@ TEST_CASE("gradient --check: a linkage assembled on either side, whatever its po
     CHECK(answer.says("the joints cannot be met"));
 }
 
+TEST_CASE("simulate: parts whose round surfaces overlap at the start are told what helps") {
+    const fettle::tests::support::TemporaryFolder folder;
+    const std::string scene = folder.file("cam.scene.json");
+    REQUIRE(run("new cam --in " + folder.file("")).code == 0);
+    folder.write("cam.scene.json", replaced(fettle::tests::support::contents(scene), "\"gap\": \"0.05mm\"", "\"gap\": \"0.02mm\""));
+    const Answer answer = run("simulate " + scene, true);
+    CAPTURE(answer.out);
+    CHECK(answer.code == 2);
+    CHECK(answer.says("between their round surfaces, which contain the facets: leave more gap, take finer facets"));
+}
+
 TEST_CASE("gradient: warns of energy from nowhere as simulate does, and calls computed what is not proven") {
     const fettle::tests::support::TemporaryFolder folder;
     const std::string scene = folder.file("cam.scene.json"), design = folder.file("cam.design.json");
