@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// From a model back to the scene that it was built of (core/model/build_model.hpp), reference points, dhat, kappa and the scales of terms
+/// From a model back to the scene that it was built of (core/setup/build_model.hpp), reference points, dhat, kappa and the scales of terms
 /// held. With q = R c + x for the reference point c of a body's file frame, and increments of prescribed coordinates linear in their rates;
 /// of a model with joints through the start's assembly (mechanism_start_adjoint.hpp) to what was written.
 #pragma once

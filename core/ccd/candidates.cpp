@@ -153,6 +153,7 @@ void take_over(std::vector<std::pair<int, int>> wanted, Candidates& candidates) 
 
 // What the pairs are searched along.
 struct Search {
+    const model::Model& model;
     const std::vector<PathSegment>& segments;
     const std::vector<SweptBody>& swept;
     double activation, allowance;
@@ -224,7 +225,7 @@ void search(const Search& along, const std::vector<BodyPairCandidates*>& searche
             append(out.edge_edge, tasks[k].found.edge_edge);
         }
         sort_by_distance(out);
-        pair.sides = side_pieces(*along.swept[pair.a].body, *along.swept[pair.b].body, out);
+        pair.sides = side_pieces(along.model, pair.a, pair.b, out);
     });
 }
 
@@ -265,7 +266,7 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
         candidates.fresh.push_back(static_cast<int>(k));
         searched.push_back(&candidates.pairs[k]);
     }
-    search({segments, swept, activation, allowance}, searched);
+    search({model, segments, swept, activation, allowance}, searched);
 }
 
 void settle(const std::vector<Pose>& poses, Candidates& candidates) {

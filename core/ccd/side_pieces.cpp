@@ -64,7 +64,8 @@ private:
 
 }  // namespace
 
-std::vector<SidePieces> side_pieces(const model::Body& a, const model::Body& b, const geometry::PrimitivePairs& candidates) {
+std::vector<SidePieces> side_pieces(const model::Model& model, int body_a, int body_b, const geometry::PrimitivePairs& candidates) {
+    const model::Body &a = model.bodies[body_a], &b = model.bodies[body_b];
     if (!a.round || !b.round || !(a.round->any() || b.round->any())) return {};
     const RoundedSides &sides_a = a.round->mesh_sides, &sides_b = b.round->mesh_sides;
     std::map<std::pair<int, int>, std::pair<Corners, Corners>> near;
@@ -88,7 +89,9 @@ std::vector<SidePieces> side_pieces(const model::Body& a, const model::Body& b, 
                 for (const auto& at_a : sides_a.of_vertex[v])
                     for (const auto& at_b : sides_b.of_vertex[w]) add(at_a, false, at_b, false);
     std::vector<SidePieces> out;
+    const std::vector<model::FacetSides>& facets = model.facet_sides;
     for (const auto& [sides, corners] : near) {
+        if (std::binary_search(facets.begin(), facets.end(), model::FacetSides{body_a, sides.first, body_b, sides.second})) continue;
         SidePieces& pieces = out.emplace_back();
         pieces.side_a = sides.first;
         pieces.side_b = sides.second;

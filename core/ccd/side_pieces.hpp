@@ -16,7 +16,8 @@ struct SidePieces {
 };
 
 /// Of all sides that are near each other and not both without round corners, by (side_a, side_b). A corner that a candidate has is near
-/// with its neighbours, so that the arc or plane is among them which is nearest there. Empty where one of the bodies has no round surfaces.
-std::vector<SidePieces> side_pieces(const model::Body& a, const model::Body& b, const geometry::PrimitivePairs& candidates);
+/// with its neighbours, so that the arc or plane is among them which is nearest there. Without Model::facet_sides. Empty where one of the
+/// bodies has no round surfaces.
+std::vector<SidePieces> side_pieces(const model::Model& model, int a, int b, const geometry::PrimitivePairs& candidates);
 
 }  // namespace fettle::core::ccd

@@ -140,6 +140,16 @@ public:
         return least_;
     }
 
+    std::vector<SidesGap> gaps() {
+        std::vector<SidesGap> out;
+        for (const ccd::SidePieces* pieces : met_) {
+            least_ = std::numeric_limits<double>::infinity();
+            meet(*pieces);
+            out.push_back({pieces->side_a, pieces->side_b, least_, cover_});
+        }
+        return out;
+    }
+
     void take_over(NearPairs& near) const {
         if (met_.empty()) return;
         std::erase_if(near.on_second, [&](const ContactPair& p) {
@@ -440,6 +450,11 @@ double find_round_contacts(const NearAt& at, NearPairs& near, std::vector<Contac
     const double least = search.find();
     search.take_over(near);
     return least;
+}
+
+std::vector<SidesGap> gaps_of_sides(const NearAt& at) {
+    std::vector<ContactPair> forward, backward;
+    return RoundSearch(at, forward, backward).gaps();
 }
 
 }  // namespace fettle::core::contact

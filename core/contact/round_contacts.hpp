@@ -31,4 +31,14 @@ inline constexpr double largest_slant = 0.1;
 /// @return the least gap, with its sign; infinity if there is none
 double find_round_contacts(const NearAt& at, NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward);
 
+/// How far the round surfaces of two sides are apart.
+struct SidesGap {
+    int side_a = 0, side_b = 0;  ///< into RoundSurfaces::sides of list.a and list.b
+    double gap = 0;              ///< with its sign [m]; infinity if they have no contact
+    double covers = 0;           ///< of both [m]
+};
+
+/// Of all sides of the two bodies that meet here.
+std::vector<SidesGap> gaps_of_sides(const NearAt& at);
+
 }  // namespace fettle::core::contact

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What the stepper works on: bodies with mass, hierarchy and prescribed coordinates. Built once by build_model.hpp, const ever after.
+/// What the stepper works on: bodies with mass, hierarchy and prescribed coordinates. Built once by setup/build_model.hpp, const ever
+/// after.
 #pragma once
 
 #include <array>
@@ -62,6 +63,12 @@ struct Friction {
     int rounds = 1;                    ///< per step; negative: until normal forces and tangents agree
 };
 
+/// Two sides, of bodies a < b, that meet each other with their facets although they are round.
+struct FacetSides {
+    int a = 0, side_a = 0, b = 0, side_b = 0;  ///< sides: into Body::round's
+    auto operator<=>(const FacetSides&) const = default;
+};
+
 struct Model {
     std::vector<Body> bodies;
     Vector3 gravity = Vector3::Zero();  ///< [m/s^2]
@@ -73,7 +80,8 @@ struct Model {
     bool adaptive_kappa = false;  ///< may a simulation start from a stiffer kappa and vary it (stepper/step.cpp)? never for a gradient
     bool area_weighted = false;
     double round_reach = 0;  ///< twice the largest distance of a round surface from its mesh; 0: contact takes facets as they are [m]
-    double contact_damping_time = 0;  ///< T of contact/contact_damping.hpp [s]; 0: none
+    std::vector<FacetSides> facet_sides;  ///< ascending (setup/round_contact.hpp)
+    double contact_damping_time = 0;      ///< T of contact/contact_damping.hpp [s]; 0: none
     Friction friction;
     Mechanism mechanism;
     scene::Integrator integrator = scene::Integrator::implicit_euler;

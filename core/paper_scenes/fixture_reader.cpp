@@ -51,6 +51,7 @@ public:
         const files::JsonNode root = scene_root();
         root.warn_of_other_keys(top_keys);
         scene_.path = document_.path();
+        scene_.round_contact = false;  // the paper's contact is that of triangles
         read_scene_type(root["scene_type"].unless_null());
         read_time(root);
         const files::JsonNode problem = root["rigid_body_problem"].unless_null();

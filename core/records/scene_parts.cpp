@@ -98,6 +98,7 @@ std::string contact_model(const model::Model& model) {
     Part part;
     part.add(model.dhat).add(model.dmin).add(model.kappa).add(model.adaptive_kappa ? 1 : 0).add(model.area_weighted ? 1 : 0);
     if (model.round_reach > 0) part.add(model.round_reach);
+    for (const model::FacetSides& sides : model.facet_sides) part.add(sides.a).add(sides.side_a).add(sides.b).add(sides.side_b);
     if (model.contact_damping_time > 0) part.add(model.contact_damping_time);
     return part.value();
 }

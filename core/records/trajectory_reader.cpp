@@ -8,7 +8,7 @@
 #include "fettle/core/base/rounding.hpp"
 #include "fettle/core/files/hash.hpp"
 #include "fettle/core/files/json_document.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/model/body_geometry.hpp"
 #include "fettle/core/records/checkpoint_io.hpp"
 #include "fettle/core/records/geometry_hash.hpp"
 #include "fettle/core/records/path_hash.hpp"

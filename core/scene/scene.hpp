@@ -162,8 +162,9 @@ struct Scene {
     double dmin = 0;                    ///< minimum separation [m]
     std::optional<double> kappa;  ///< barrier stiffness [N/m]; default: choose_kappa's, varied from step to step (docs/method/contact.md)
     bool area_weighted = false;   ///< barrier per vertex and edge area: pressure does not depend on the mesh; kappa in [N/m^3]
-    bool round_contact = false;   ///< facets of extruded sides push like the smooth surface that they stand for (docs/method/contact.md)
-    double contact_damping_time = 0;  ///< of contacts against kappa [s] (docs/method/contact.md); 0: none
+    std::optional<bool> round_contact;  ///< do facets push like the smooth surface that they stand for? default: yes, wherever they can
+                                        ///< (setup/round_contact.hpp)
+    double contact_damping_time = 0;    ///< of contacts against kappa [s] (docs/method/contact.md); 0: none
     Friction friction;
     Mechanism mechanism;  ///< joints, springs, motors, loads at points
     Integrator integrator = Integrator::implicit_euler;

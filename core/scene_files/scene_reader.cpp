@@ -65,7 +65,7 @@ private:
         scene_.dmin = node["dmin"].length(unit_, files::not_negative).value_or(0);
         scene_.kappa = node["kappa"].number(files::positive);
         scene_.area_weighted = node["area_weighted"].boolean().value_or(false);
-        scene_.round_contact = node["round"].boolean().value_or(scene_.round_contact);
+        scene_.round_contact = node["round"].boolean();
         scene_.contact_damping_time = node["damping_time"].number(files::not_negative).value_or(0);
         scene_.velocity_tolerance = node["velocity_tolerance"].length(unit_, files::positive);
         scene_.max_newton_iterations = node["max_newton_iterations"].integer(1).value_or(scene_.max_newton_iterations);

@@ -8,7 +8,7 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/unique_names.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/solids/mesh_repair.hpp"
 
 namespace fettle::design::clearance {
@@ -138,9 +138,9 @@ Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::
         for (Mesh& mesh : *parts) scene.bodies.push_back(body_of(std::move(mesh), path, input, names, subject.warnings));
     }
     if (!errors.empty()) return errors;
-    core::model::BuildOptions options;
+    core::setup::BuildOptions options;
     options.check_start = false;
-    Result<core::model::Model> model = core::model::build_model(scene, options);
+    Result<core::model::Model> model = core::setup::build_model(scene, options);
     if (!model) return model.errors();
     subject.model = std::move(*model);
     const auto& more = subject.model.warnings;

@@ -7,11 +7,11 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
 #include "fettle/core/files/unique_names.hpp"
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/records/geometry_hash.hpp"
 #include "fettle/core/records/path_hash.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/clearance/certificate_files.hpp"
@@ -166,9 +166,9 @@ int run_export_urdf(const ExportArguments& options, const CommonOptions& common,
     const Result<core::scene::Scene> scene =
         core::scene_files::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
     if (!scene) return console.input_errors(scene.errors());
-    core::model::BuildOptions build;
+    core::setup::BuildOptions build;
     build.check_start = false;
-    const Result<core::model::Model> model = core::model::build_model(*scene, build);
+    const Result<core::model::Model> model = core::setup::build_model(*scene, build);
     if (!model) return console.input_errors(model.errors());
     const auto robot = urdf::robot_of_scene(*scene, *model, fs::path(options.to).stem().string());
     if (!robot) return console.input_errors(robot.errors());

@@ -9,7 +9,7 @@
 #include "fettle/adjoint/stepper/seeded_sweep.hpp"
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/design/problem/check_design.hpp"
 
 namespace fettle::design::problem {
@@ -117,12 +117,12 @@ SimulatedDesign::SimulatedDesign(const Design& design, const DesignEvaluation& e
 }
 
 Result<DesignProblem> DesignProblem::create(Design design) {
-    core::model::BuildOptions options;
+    core::setup::BuildOptions options;
     options.check_start = false;  // parts that intersect at the parameters' values are a trial that cannot begin: other trials may
     DesignProblem problem;
     std::vector<Model> models;
     for (int s = 0; s < description::scenario_count(design); ++s) {
-        Result<Model> model = core::model::build_model(description::design_of_scenario(design, s).scene, options);
+        Result<Model> model = core::setup::build_model(description::design_of_scenario(design, s).scene, options);
         if (!model) return in_scenario(design, s, model.errors());
         for (const std::string& warning : model->warnings) add_once(warning, problem.warnings_);
         models.push_back(std::move(model).value());
@@ -148,17 +148,18 @@ Result<DesignProblem> DesignProblem::create(Design design) {
 
 // @param model  Of the scene as written.
 Result<DesignProblem::Setting> DesignProblem::fixed(Design design, Model model) {
-    core::model::BuildOptions options;
+    core::setup::BuildOptions options;
     options.check_start = false;
     if (const VectorX reference = description::references_of(design.parameters); reference != description::values_of(design.parameters)) {
         const Result<MovedScene> moved = move_scene(design, reference, SceneDerivative::not_wanted);
-        Result<Model> there = moved ? core::model::build_model(moved->scene, options) : moved.errors();
+        Result<Model> there = moved ? core::setup::build_model(moved->scene, options) : moved.errors();
         if (!there) return description::at_reference(there.errors());
         model = std::move(there).value();
     }
     Setting setting;
     for (const core::model::Body& body : model.bodies) setting.reference_points.push_back(body.reference_point);
     setting.kappa = model.kappa;
+    setting.facet_sides = model.facet_sides;
     setting.term_scales = term_scales_of(model);
     if (model.proximal_weight > 0) setting.proximal_weight = model.proximal_weight;
     // Their defaults are functions of the scene's size, which parameters change.
@@ -169,15 +170,16 @@ Result<DesignProblem::Setting> DesignProblem::fixed(Design design, Model model) 
 }
 
 Result<Model> DesignProblem::build(const Setting& setting, const core::scene::Scene& scene) {
-    core::model::BuildOptions options;
+    core::setup::BuildOptions options;
     options.reference_points = setting.reference_points;
     options.kappa = setting.kappa;
     options.term_scales = setting.term_scales;
     options.proximal_weight = setting.proximal_weight;
+    options.facet_sides = setting.facet_sides;
     // The scene's were checked; what a shape makes that does not vouch for it has to be checked each time.
     options.check_meshes = std::any_of(setting.design.shapes.begin(), setting.design.shapes.end(),
                                        [](const auto& shape) { return shape != nullptr && !shape->is_always_solid(); });
-    Result<Model> model = core::model::build_model(scene, options);
+    Result<Model> model = core::setup::build_model(scene, options);
     if (model) model.value().for_gradient = true;
     return model;
 }

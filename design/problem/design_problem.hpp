@@ -121,6 +121,7 @@ private:
         description::Design design;  ///< design_of_scenario
         std::vector<Vector3> reference_points;
         double kappa = 0;
+        std::vector<core::model::FacetSides> facet_sides;
         core::model::TermScales term_scales;
         std::optional<double> proximal_weight;  ///< of quasi-static steps
     };

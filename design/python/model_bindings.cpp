@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
 #include "fettle/design/python/errors.hpp"
@@ -19,13 +19,13 @@ std::shared_ptr<Model> build_model(const core::scene::Scene& scene, const py::ob
     if (kappa) check_above("kappa", *kappa, 0);
     check_above("scene/length_unit", scene.length_unit, 0);
     check_at_least("scene/max_newton_iterations", scene.max_newton_iterations, 1);
-    core::model::BuildOptions options;
+    core::setup::BuildOptions options;
     options.kappa = kappa;
     options.check_start = check_start;
     std::shared_ptr<Model> model;
     {
         const py::gil_scoped_release unlocked;
-        model = std::make_shared<Model>(value_or_raise(core::model::build_model(scene, options)));
+        model = std::make_shared<Model>(value_or_raise(core::setup::build_model(scene, options)));
     }
     warn_of(model->warnings);
     return model;

@@ -15,10 +15,10 @@
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/model/check_scene.hpp"
 #include "fettle/core/part_files/part_file.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
@@ -109,10 +109,10 @@ Result<LoadedModel> load_scene(const std::string& path, const InputOptions& opti
     LoadedModel loaded;
     loaded.scene_path = path;
     loaded.warnings = std::move(scene->warnings);
-    core::model::BuildOptions build;
+    core::setup::BuildOptions build;
     build.check_start = options.check_start;
     const core::base::StopScope scope(options.should_stop);
-    Result<core::model::Model> model = core::model::build_model(*std::move(scene), build);
+    Result<core::model::Model> model = core::setup::build_model(*std::move(scene), build);
     if (!model) return model.errors();
     loaded.model = std::move(model).value();
     return loaded;

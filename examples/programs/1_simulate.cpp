@@ -2,7 +2,7 @@
 // A scene made in memory: a cube falls 1 mm onto a table, and comes to rest. SI units throughout.
 #include <cstdio>
 
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/design/shapes/file_part.hpp"
 
@@ -30,7 +30,7 @@ int main() {
     scene.bodies[1].pose.position = {0, 0, 0.006};
     scene.bodies[1].density = 1240;
 
-    const auto model = core::model::build_model(scene);
+    const auto model = core::setup::build_model(scene);
     for (const auto& error : model.errors()) std::printf("%s: %s\n", error.where.c_str(), error.message.c_str());
     if (!model) return 3;
 

@@ -5,7 +5,7 @@
 
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/design/shapes/file_part.hpp"
 
@@ -34,7 +34,7 @@ int main() {
     hinge.b = {.body = "hammer", .point = {-0.02, 0, 0}, .axis = {0, 1, 0}};
     scene.mechanism.joints.push_back(hinge);
 
-    const auto model = core::model::build_model(scene);
+    const auto model = core::setup::build_model(scene);
     for (const auto& error : model.errors()) std::printf("%s: %s\n", error.where.c_str(), error.message.c_str());
     if (!model) return 3;
     const core::stepper::Simulation simulation = core::stepper::simulate(*model);

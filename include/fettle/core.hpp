@@ -7,7 +7,7 @@
 #include "fettle/core/scene/scene.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
 // The model that is built from it, const from then on.
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 // Its motion: by dynamics, or where scripts or joints and motors say everything.
 #include "fettle/core/stepper/jointed_motion.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"

@@ -14,7 +14,7 @@
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/pair_search.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/model/body_geometry.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
 #include "fettle/tests/support/test_models.hpp"
@@ -59,7 +59,7 @@ model::Model chain(int links) {
                                                          kinematics::Pose{tilt * turn, i * pitch * along},
                                                          i == 0 ? scene::BodyType::static_body : scene::BodyType::dynamic_body));
     }
-    model::complete_geometry(model.bodies);  // copies share their hierarchies, as in a model from a file
+    core::model::complete_geometry(model.bodies);  // copies share their hierarchies, as in a model from a file
     model.gravity = Vector3(0, 0, -9.81);
     model.timestep = 0.005;
     model.dhat = 1e-4;

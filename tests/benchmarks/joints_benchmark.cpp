@@ -12,7 +12,7 @@
 #include <string>
 
 #include "fettle/adjoint/stepper/reverse_sweep.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 
@@ -40,7 +40,7 @@ scene::Joint hinge(const std::string& name, const scene::Attachment& a, const sc
 }
 
 model::Model built(const scene::Scene& scene) {
-    auto model = model::build_model(scene);
+    auto model = setup::build_model(scene);
     if (model) return std::move(model).value();
     std::fprintf(stderr, "%s\n", model.errors()[0].message.c_str());
     std::exit(1);

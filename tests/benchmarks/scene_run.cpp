@@ -12,8 +12,8 @@
 #include <numeric>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/benchmarks/child_run.hpp"
 #include "fettle/tests/benchmarks/scene_row.hpp"
@@ -132,7 +132,7 @@ SceneRow run_here(const std::string& name, const std::string& text, const std::s
     const double start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     const auto scene = core::scene_files::parse_scene(text, path);
     if (!scene) return refused(row, scene.errors());
-    const auto model = core::model::build_model(*scene);
+    const auto model = core::setup::build_model(*scene);
     if (!model) return refused(row, model.errors());
     row.build_seconds = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start;
     row.bodies = static_cast<long>(model->bodies.size());

@@ -20,7 +20,7 @@
 #include "fettle/core/geometry/half_edges.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/solids/mesh_judgement.hpp"
 #include "fettle/core/solids/mesh_repair.hpp"
 #include "fettle/core/solids/mesh_validity.hpp"
@@ -137,7 +137,7 @@ void run_phases(const std::string& name, const geometry::Mesh& mesh, std::option
     phase("strict validity", [&] { return solids::validate_mesh(mesh, {}).empty(); });
     phase("hierarchy", [&] { return holds_its_elements(geometry::BodyHierarchy(mesh), mesh); });
     const scene::Scene scene = two_of(mesh);
-    phase("model of two copies, with mesh and start check", [&] { return static_cast<bool>(model::build_model(scene)); });
+    phase("model of two copies, with mesh and start check", [&] { return static_cast<bool>(setup::build_model(scene)); });
     std::printf("\n  ], \"right\": %s}", all_right ? "true" : "false");
 }
 

@@ -14,13 +14,13 @@
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/model/check_scene.hpp"
 #include "fettle/core/part_files/part_file.hpp"
 #include "fettle/core/records/continuation.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/solids/mesh_judgement.hpp"
 #include "fettle/core/solids/mesh_repair.hpp"
 #include "fettle/core/solids/mesh_validity.hpp"
@@ -127,7 +127,7 @@ void read_scene(std::string_view bytes) {
         const auto scene = core::scene_files::parse_scene(std::string(bytes), scratch().file("a.scene.json"), options);
         if (!scene || !is_small(*scene)) return;
         (void)core::model::check_scene(*scene, strict);
-        if (!strict) (void)core::model::build_model(*scene);
+        if (!strict) (void)core::setup::build_model(*scene);
     }
 }
 

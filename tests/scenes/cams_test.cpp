@@ -131,6 +131,7 @@ std::string fault_of(const Run& run, const Cam& cam, double facets) {
     if (!part) return part.errors().front().message;
     double out = 1e3 * part->deviation.out, in = 1e3 * part->deviation.in;
     if (cam.follower == Follower::roller) in += facets > 0 ? facets : roller_radius * (1 / std::cos(pi / 48) - 1);
+    in += 1e3 * run.covers();
     const double cosine = pressure_cosine(cam), dhat = 1e3 * run.model.dhat;
     const std::vector<double> turned = run.turned(0);
     double worst = 0;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/intersection_oracle.hpp"
 #include "fettle/tests/support/shared_files.hpp"
@@ -32,7 +32,7 @@ std::vector<std::string> fixtures() {
 model::Model model_of(const std::string& path) {
     const auto scene = scene_files::read_scene(path);
     for (const auto& error : scene.errors()) FAIL(error.where << ": " << error.message);
-    auto model = model::build_model(*scene);
+    auto model = setup::build_model(*scene);
     for (const auto& error : model.errors()) FAIL(error.where << ": " << error.message);
     return std::move(*model);
 }

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "fettle/core/base/text.hpp"
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 #include "fettle/design/shapes/part_library.hpp"
@@ -76,6 +76,17 @@ struct Run {
     double x(int body, int t) const { return pose(body, t).position.x(); }
     /// Least distance of parts at the end of step t [m]: of those that are nearer than dhat, infinity if none is. Contract: t > 0.
     double distance(int t) const { return simulation.report.steps[t - 1].minimum_distance; }
+    /// How much farther out than its round surfaces a pair of parts meets [m]: the largest covers (geometry/round_surfaces.hpp).
+    double covers() const {
+        double sum = 0;
+        for (const core::model::Body& body : model.bodies) {
+            double largest = 0;
+            if (body.round)
+                for (const auto& side : body.round->sides) largest = std::max(largest, side.cover);
+            sum += largest;
+        }
+        return sum;
+    }
     /// Angle about z that a body has turned by since the start [rad], per node of the path; it may pass full turns.
     std::vector<double> turned(int body) const {
         std::vector<double> out{0};
@@ -90,7 +101,7 @@ struct Run {
 inline Run run(const std::string& scene_text) {
     const auto scene = core::scene_files::parse_scene(scene_text, "part_mechanism.scene.json", design::reading::scene_read_options());
     for (const Error& error : scene.errors()) FAIL(error.where << ": " << error.message);
-    auto model = core::model::build_model(*scene);
+    auto model = core::setup::build_model(*scene);
     for (const Error& error : model.errors()) FAIL(error.where << ": " << error.message);
     Run out{std::move(*model), {}};
     out.simulation = core::stepper::simulate(out.model);

@@ -2,8 +2,8 @@
 // What the paper builds with friction stands: scenes as they are, over 5 s. Needs ../shared; skipped without it.
 #include <catch2/catch.hpp>
 
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
@@ -21,7 +21,7 @@ struct Run {
     explicit Run(const std::string& name, double seconds) {
         const auto scene = scene_files::read_scene(shared_file("scenes/fixtures/friction/" + name + ".json"));
         REQUIRE(scene.has_value());
-        auto built = model::build_model(*scene);
+        auto built = setup::build_model(*scene);
         REQUIRE(built.has_value());
         model = std::move(*built);
         stepper::SimulationOptions options;

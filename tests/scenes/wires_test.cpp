@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/exact_ccd.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
@@ -41,7 +41,7 @@ model::Model wires(const Matrix3& rotation, const Vector3& position, const Vecto
     scene.dhat = 1e-3;
     scene.bodies = {wire("a", scene::BodyType::static_body, rotation, {0, 0, 0}, {0, 0, 0}),
                     wire("b", scene::BodyType::dynamic_body, rotation, position, velocity)};
-    auto model = model::build_model(scene);
+    auto model = setup::build_model(scene);
     REQUIRE(model.has_value());
     return *model;
 }
@@ -123,7 +123,7 @@ TEST_CASE("two wires do not pass through each other end-on") {
          "linear_velocity": [-22.395771348614076, -40.40304102903929, 12.377907937726317]}]})");
     const auto scene = scene_files::read_scene(path);
     REQUIRE(scene.has_value());
-    const auto model = model::build_model(*scene);
+    const auto model = setup::build_model(*scene);
     REQUIRE(model.has_value());
     const stepper::Simulation simulation = one_step(*model);
     CHECK(never_meet(*model, simulation.trajectory));

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 #include "fettle/tests/support/text.hpp"
@@ -119,7 +119,7 @@ inline core::scene::Curve at_rate(double rate) {
 }
 
 inline core::model::Model built(const core::scene::Scene& scene) {
-    auto model = core::model::build_model(scene);
+    auto model = core::setup::build_model(scene);
     if (!model) {
         for (const auto& error : model.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
         REQUIRE(model);

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/model/body_geometry.hpp"
 
 namespace fettle::tests::support {
 

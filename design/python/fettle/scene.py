@@ -316,7 +316,7 @@ class Scene(Record):
     dmin: Number = number("length", 0.0)  #: minimum separation [m]
     kappa: Optional[Number] = number("stiffness", None)  #: barrier stiffness [N/m]
     area_weighted: bool = False
-    round_contact: bool = False
+    round_contact: Optional[bool] = None  #: None: round surfaces wherever they can be, like True
     contact_damping_time: Number = number("time", 0.0)  #: [s]
     friction: Friction = dataclasses.field(default_factory=Friction)
     mechanism: Mechanism = dataclasses.field(default_factory=Mechanism)

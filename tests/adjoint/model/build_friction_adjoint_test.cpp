@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "fettle/adjoint/scene/scene_gradient.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 
 namespace fettle::adjoint::model::build_friction_adjoint_test {
@@ -34,7 +34,7 @@ Scene sliding() {
 }
 
 double weighted(const Scene& scene, const FrictionGradient& weights) {
-    const auto model = core::model::build_model(scene);
+    const auto model = core::setup::build_model(scene);
     REQUIRE(model);
     double sum = 0;
     for (const auto& [pair, weight] : weights) sum += weight * friction_coefficient(*model, pair.first, pair.second);

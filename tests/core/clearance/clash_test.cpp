@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/tests/core/clearance/clearance_models.hpp"
 
 namespace fettle::core::clearance::clash_test {
@@ -254,7 +254,7 @@ TEST_CASE("A cup in a fixture, which has no word for sheets, is not taken for on
         core::scene_files::parse_scene(R"({"rigid_body_problem": {"rigid_bodies": [)" + cup + ", " + part + "]}}", "cup.json");
     REQUIRE(scene);
     CHECK(scene->bodies[0].mass_kind == core::scene::MassKind::area);
-    const auto built = core::model::build_model(*scene);
+    const auto built = core::setup::build_model(*scene);
     REQUIRE(built);
     CHECK(!is_sheet(built->bodies[0]));
     const auto result = certify_clearance(*built, as_assembled(*built), {{0, 1, 0.01}}, options_with(1e-6))[0];

@@ -7,7 +7,7 @@
 
 #include "fettle/core/contact/contact_areas.hpp"
 #include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/test_models.hpp"
 

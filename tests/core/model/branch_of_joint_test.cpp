@@ -7,6 +7,7 @@
 
 namespace fettle::core::model::branch_of_joint_test {
 
+using core::setup::build_model;
 using namespace fettle::tests::mechanisms;
 using core::scene::AssembleSide;
 using core::scene::JointKind;

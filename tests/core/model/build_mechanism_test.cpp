@@ -8,6 +8,7 @@
 
 namespace fettle::core::model::build_mechanism_test {
 
+using core::setup::build_model;
 using namespace fettle::tests::mechanisms;
 using core::scene::JointKind;
 using fettle::tests::support::contains;

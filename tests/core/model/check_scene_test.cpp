@@ -8,12 +8,13 @@
 #include <optional>
 
 #include "fettle/core/base/text.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/tests/core/model/box_scenes.hpp"
 #include "fettle/tests/support/text.hpp"
 
 namespace fettle::core::model::check_scene_test {
 
+using core::setup::build_model;
 namespace {
 
 using base::ErrorCode;

@@ -4,12 +4,14 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/support/text.hpp"
 
 namespace fettle::core::model::start_check_test {
 
+using core::setup::build_model;
+using core::setup::BuildOptions;
 namespace {
 
 using base::ErrorCode;

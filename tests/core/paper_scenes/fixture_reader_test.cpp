@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/tests/core/paper_scenes/fixture_texts.hpp"
 #include "fettle/tests/support/shared_files.hpp"
 
@@ -75,7 +75,7 @@ TEST_CASE("Placement: scale or dimensions, then rotation, then position", "[scen
     // Mirrored, it stays a solid.
     scene::Scene mirrored;
     mirrored.bodies = {body_with(R"("scale": [-1, 1, 1])")};
-    CHECK(model::build_model(mirrored)->bodies[0].moments(3, 3) == Approx(1000.0 / 6));
+    CHECK(setup::build_model(mirrored)->bodies[0].moments(3, 3) == Approx(1000.0 / 6));
 }
 
 TEST_CASE("Types, fixed coordinates and scripts", "[scene]") {
@@ -118,7 +118,7 @@ TEST_CASE("Groups: bodies that are not dynamic share one", "[scene]") {
                                  "fixture.json");
     REQUIRE(scene);
     REQUIRE(scene->bodies.size() == 5);
-    const auto model = model::build_model(*scene);
+    const auto model = setup::build_model(*scene);
     REQUIRE(model);
     CHECK_FALSE(model::may_collide(*model, 0, 1));
     CHECK_FALSE(model::may_collide(*model, 0, 2));
@@ -157,11 +157,11 @@ TEST_CASE("Friction of a fixture", "[scene]") {
     CHECK(some.friction.mu == 0.5);
     CHECK(some.friction.eps_v == 1e-5);
     CHECK(some.friction.rounds == 3);
-    CHECK(model::build_model(some)->friction.mu == MatrixX::Constant(1, 1, 0.5));
+    CHECK(setup::build_model(some)->friction.mu == MatrixX::Constant(1, 1, 0.5));
     CHECK(friction(R"("friction_constraints": {"iterations": -7},)", rough).friction.rounds < 0);
     const scene::Scene off = friction(R"("friction_constraints": {"iterations": 0},)", rough);
     CHECK(off.friction.rounds == 0);
-    CHECK(model::build_model(off)->friction.mu == MatrixX::Zero(1, 1));
+    CHECK(setup::build_model(off)->friction.mu == MatrixX::Zero(1, 1));
 }
 
 TEST_CASE("Torque is newton metres, once; time steppers are ours", "[scene]") {
@@ -211,7 +211,7 @@ TEST_CASE("What a fixture's density is per follows from its geometry", "[scene]"
     CHECK(kind(R"("vertices": [[0,0,0],[1,0,0],[0,1,0]])") == scene::MassKind::vertex);
 
     const auto model_of = [](const std::string& body) {
-        const auto model = model::build_model(scene_with_body(body));
+        const auto model = setup::build_model(scene_with_body(body));
         REQUIRE(model);
         return model->bodies[0];
     };
@@ -246,7 +246,7 @@ TEST_CASE("Components of a fixture's mesh become bodies", "[scene]") {
     REQUIRE(scene.bodies.size() == 2);
     CHECK(scene.bodies[0].name == "body-0");
     CHECK(scene.bodies[1].name == "body-1");
-    const auto model = model::build_model(scene);
+    const auto model = setup::build_model(scene);
     REQUIRE(model);
     CHECK(model->bodies[0].mesh.vertices.cols() == 4);
     CHECK(model->bodies[0].moments(3, 3) == Approx(8000.0 / 6));
@@ -271,7 +271,7 @@ TEST_CASE("All of the paper's scenes load and build", "[scene]") {
         CAPTURE(file);
         const auto scene = scene_files::read_scene(file);
         REQUIRE(scene);
-        const auto model = model::build_model(*scene);
+        const auto model = setup::build_model(*scene);
         for (const auto& error : model.errors()) {
             CAPTURE(error.where, error.message);
             CHECK(model);
@@ -284,7 +284,7 @@ TEST_CASE("The scenes that must run load with what they say", "[scene]") {
     const auto load = [](const std::string& name) {
         const auto scene = scene_files::read_scene(tests::support::shared_file("scenes/fixtures/" + name + ".json"));
         REQUIRE(scene);
-        const auto model = model::build_model(*scene);
+        const auto model = setup::build_model(*scene);
         REQUIRE(model);
         return *model;
     };

@@ -6,8 +6,8 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 #include "fettle/tests/support/test_models.hpp"

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
@@ -30,7 +30,7 @@ model::Model boxes() {
         scene.bodies.push_back(body);
     }
     scene.bodies[2].type = scene::BodyType::static_body;
-    return model::build_model(scene).value();
+    return setup::build_model(scene).value();
 }
 
 std::string csv(const std::string& rows) { return "time,body,px[mm],py[mm],pz[mm],qw,qx,qy,qz\n" + rows; }

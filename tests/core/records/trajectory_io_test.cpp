@@ -10,9 +10,9 @@
 
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/kinematics/rotation.hpp"
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/records/trajectory_lines.hpp"
 #include "fettle/core/records/trajectory_reader.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/step.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
@@ -42,7 +42,7 @@ model::Model two_boxes() {
     scene.bodies[1].type = scene::BodyType::static_body;
     scene.bodies[1].group = 4;
     geometry::build_connectivity(scene.bodies[1].mesh, {{0, 7}});  // a codimensional edge
-    return model::build_model(scene).value();
+    return setup::build_model(scene).value();
 }
 
 Trajectory random_path(const model::Model& model, int steps) {

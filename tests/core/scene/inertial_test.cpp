@@ -6,7 +6,7 @@
 
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/kinematics/rotation.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/core/scene_files/scene_workshop.hpp"
 
@@ -116,7 +116,7 @@ TEST_CASE("given inertia: an open mesh moves by it, about its centre", "[scene]"
     file["timestep"] = 0.01;
     const auto scene = shop.read(file);
     REQUIRE(scene);
-    const auto model = model::build_model(*scene);
+    const auto model = setup::build_model(*scene);
     REQUIRE(model);
     const model::Body& body = model->bodies[0];
     CHECK(body.given_mass == 0.5);
@@ -133,7 +133,7 @@ TEST_CASE("given inertia: an open mesh moves by it, about its centre", "[scene]"
     CHECK(kinematics::rotation_vector(run.trajectory.poses.back()[0].rotation).z() == Approx(expected).epsilon(1e-4));
     Scene wrong = *scene;
     wrong.bodies[0].inertial->mass = 0;
-    const auto refused = model::build_model(wrong);
+    const auto refused = setup::build_model(wrong);
     REQUIRE_FALSE(refused);
     CHECK(contains(refused.errors().front().where, "/bodies/0/inertial"));
 }

@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/tests/core/geometry/sample_meshes.hpp"
 #include "fettle/tests/core/scene_files/scene_workshop.hpp"
 
@@ -182,7 +182,7 @@ TEST_CASE("Shells, wires and points, from files and written out", "[scene]") {
         const auto scene = shop.read(text);
         for (const auto& error : scene.errors()) FAIL_CHECK(error.where + ": " + error.message);
         REQUIRE(scene);
-        const auto model = model::build_model(*scene);
+        const auto model = setup::build_model(*scene);
         for (const auto& error : model.errors()) FAIL_CHECK(error.where + ": " + error.message);
         REQUIRE(model);
         return model->bodies[0];
@@ -208,7 +208,7 @@ TEST_CASE("Shells, wires and points, from files and written out", "[scene]") {
     json text = plain();
     sheet.erase("mass_per");
     text["bodies"][0] = sheet;
-    const auto refused = model::build_model(*shop.read(text));
+    const auto refused = setup::build_model(*shop.read(text));
     REQUIRE_FALSE(refused);
     CHECK(refused.errors()[0].code == ErrorCode::mesh_invalid);
 }
@@ -229,7 +229,7 @@ TEST_CASE("Components become bodies of their own", "[scene]") {
     REQUIRE(split->bodies.size() == 2);
     CHECK(split->bodies[0].name == "box-0");
     CHECK(split->bodies[1].name == "box-1");
-    const auto model = model::build_model(*split);
+    const auto model = setup::build_model(*split);
     REQUIRE(model);
     CHECK(model->bodies[1].moments(3, 3) == Approx(1240 * 2e-9));
     CHECK(model->bodies[1].reference_point.isApprox(Vector3(5.5e-3, 0.5e-3, 1e-3)));

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "fettle/core/energy/start_history.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/solver/newton.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/intersection_oracle.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "fettle/core/energy/start_history.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/solver/failure.hpp"
 #include "fettle/core/solver/newton_direction.hpp"
 #include "fettle/tests/support/derivative_check.hpp"

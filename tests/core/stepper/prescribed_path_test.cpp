@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/intersection_oracle.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/tests/support/intersection_oracle.hpp"
 #include "fettle/tests/support/test_models.hpp"
 

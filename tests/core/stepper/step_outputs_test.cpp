@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/records/step_tables.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/support/test_models.hpp"
 

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/design/clearance/report.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
@@ -31,7 +31,7 @@ Judged pin_in_bore(double offset, const std::string& facets, const std::string& 
     const auto scene = core::scene_files::read_scene(path, reading::scene_read_options());
     for (const Error& error : scene.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
     REQUIRE(scene);
-    auto model = core::model::build_model(*scene);
+    auto model = core::setup::build_model(*scene);
     for (const Error& error : model.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
     REQUIRE(model);
     Judged out{subject_of(std::move(*model)), {}};

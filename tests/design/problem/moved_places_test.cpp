@@ -378,10 +378,10 @@ std::set<Place> follow_random_formulas(Design& design, std::mt19937_64& random) 
 Model model_at(const Design& design, const VectorX& p, const std::vector<Vector3>& reference_points) {
     const Result<MovedScene> moved = move_scene(design, p);
     REQUIRE(moved);
-    core::model::BuildOptions options;
+    core::setup::BuildOptions options;
     options.kappa = 1;
     options.reference_points = reference_points;
-    auto model = core::model::build_model(moved->scene, options);
+    auto model = core::setup::build_model(moved->scene, options);
     if (!model) UNSCOPED_INFO(model.errors()[0].message);
     REQUIRE(model);
     return std::move(model).value();

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/tests/design/small_design.hpp"
 #include "fettle/tests/support/derivative_check.hpp"
@@ -21,9 +21,9 @@ using namespace fettle::tests::design_support;
 constexpr int steps = 4;
 
 core::model::Model built(const core::scene::Scene& scene, const std::vector<Vector3>& reference_points) {
-    core::model::BuildOptions options;
+    core::setup::BuildOptions options;
     options.reference_points = reference_points;
-    auto model = core::model::build_model(scene, options);
+    auto model = core::setup::build_model(scene, options);
     REQUIRE(model);
     return std::move(model).value();
 }

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/design/description/constraint.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 
@@ -29,7 +29,7 @@ core::scene::Body box(const std::string& name, double half, double x) {
 core::model::Model cubes(double x) {
     core::scene::Scene scene;
     scene.bodies = {box("small", 0.01, x), box("large", 0.05, 0)};
-    auto model = core::model::build_model(scene);
+    auto model = core::setup::build_model(scene);
     REQUIRE(model);
     return std::move(model).value();
 }

@@ -10,7 +10,7 @@
 #include <functional>
 #include <iterator>
 
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/design/exports/palette.hpp"
 #include "fettle/design/reading/design_reader.hpp"
@@ -74,7 +74,7 @@ Motion parting_cubes(int steps) {
         scene.bodies.push_back(box(name, Vector3::Constant(0.01), Vector3(x, 0, 0)));
     scene.bodies[1].prescribed[0]->rate = 0.02;
     scene.bodies[1].prescribed[3]->rate = M_PI;
-    Motion motion{core::model::build_model(scene).value(), {}};
+    Motion motion{core::setup::build_model(scene).value(), {}};
     motion.trajectory = core::stepper::follow_scripts(motion.model, steps);
     return motion;
 }

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/model/build_model.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/core/setup/build_model.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 #include "fettle/design/urdf/urdf_parser.hpp"
 #include "fettle/design/urdf/urdf_scene.hpp"
@@ -60,7 +60,7 @@ struct Mass {
 
 // What moves of a body, along the world's axes: frames differ from scene to scene.
 Mass mass_in_world(const core::scene::Scene& scene, std::size_t body) {
-    const auto model = core::model::build_model(scene);
+    const auto model = core::setup::build_model(scene);
     REQUIRE(model);
     const core::model::Body& of = model->bodies[body];
     const core::scene::Inertial own = core::scene::inertial_of(of.moments);
@@ -83,7 +83,7 @@ TEST_CASE("URDF: names that files or ids are made of stay apart, both ways") {
     const auto scene = core::scene_files::read_scene(
         folder.write("a.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [)" + bodies + "]}"), reading::scene_read_options());
     REQUIRE(scene);
-    const auto robot = robot_of_scene(*scene, core::model::build_model(*scene).value(), "a");
+    const auto robot = robot_of_scene(*scene, core::setup::build_model(*scene).value(), "a");
     REQUIRE(robot);
     std::set<std::string> files;
     for (const auto& [name, contents] : robot->files) {
@@ -288,9 +288,9 @@ TEST_CASE("URDF out: inertia about the centre of mass, joints that it has not ar
     const auto exported = [&](const std::string& joints) {
         const auto read = core::scene_files::read_scene(scene(joints), reading::scene_read_options());
         REQUIRE(read);
-        core::model::BuildOptions options;
+        core::setup::BuildOptions options;
         options.check_start = false;
-        return robot_of_scene(*read, core::model::build_model(*read, options).value(), "a");
+        return robot_of_scene(*read, core::setup::build_model(*read, options).value(), "a");
     };
     const auto robot = exported(pivot);
     REQUIRE(robot);

@@ -12,15 +12,16 @@
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/scene/scene.hpp"
 
-namespace fettle::core::model {
+namespace fettle::core::setup {
 
 struct BuildOptions {
     std::vector<Vector3> reference_points;  ///< one per body, from the first design; empty: centres of mass of this one
     std::optional<double> kappa;            ///< overrides the scene's
     std::optional<double> proximal_weight;  ///< of quasi-static steps, from the first design; default: choose_proximal_weight's
-    TermScales term_scales;                 ///< of joints and springs, from the first design
-    bool check_meshes = true;               ///< by each body's MeshPolicy (a design's trial checks its own)
-    bool check_start = true;                ///< refuse bodies that intersect at the start (a clearance report lists them instead)
+    model::TermScales term_scales;          ///< of joints and springs, from the first design
+    std::optional<std::vector<model::FacetSides>> facet_sides;  ///< from the first design; default: choose_facet_sides'
+    bool check_meshes = true;                                   ///< by each body's MeshPolicy (a design's trial checks its own)
+    bool check_start = true;  ///< refuse bodies that intersect at the start (a clearance report lists them instead)
 };
 
 /// Mass of a dynamic body is by its MassKind, exactly (geometry/mass_moments.hpp); its default reference point is its centre of mass, that
@@ -33,14 +34,8 @@ struct BuildOptions {
 ///
 /// @return the model, with `warnings` (meshes: check_scene.hpp; the start: start_check.hpp), or every fault found: `where` names body, mesh
 /// and element.
-Result<Model> build_model(const scene::Scene& scene, const BuildOptions& options = {});
+base::Result<model::Model> build_model(const scene::Scene& scene, const BuildOptions& options = {});
 /// The same, with the scene's own meshes: large ones need not be copied.
-Result<Model> build_model(scene::Scene&& scene, const BuildOptions& options = {});
+base::Result<model::Model> build_model(scene::Scene&& scene, const BuildOptions& options = {});
 
-/// Fills radius (rounded up), edge_length_squared, areas and hierarchy from the body's mesh.
-void complete_geometry(Body& body);
-
-/// The same for all; bodies whose meshes have the same shape share one hierarchy.
-void complete_geometry(std::vector<Body>& bodies);
-
-}  // namespace fettle::core::model
+}  // namespace fettle::core::setup

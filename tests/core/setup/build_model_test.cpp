@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -10,11 +10,12 @@
 #include "fettle/tests/core/model/box_scenes.hpp"
 #include "fettle/tests/support/text.hpp"
 
-namespace fettle::core::model::build_model_test {
+namespace fettle::core::setup::build_model_test {
 
 namespace {
 
 using base::ErrorCode;
+using model::Body;
 using scene::BodyType;
 
 using fettle::tests::box_body;
@@ -402,4 +403,4 @@ TEST_CASE("Defaults of size follow what moves", "[model]") {
 
 }  // namespace
 
-}  // namespace fettle::core::model::build_model_test
+}  // namespace fettle::core::setup::build_model_test

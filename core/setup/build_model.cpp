@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/build_model.hpp"
+#include "fettle/core/setup/build_model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,24 +8,22 @@
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
+#include "fettle/core/model/body_geometry.hpp"
 #include "fettle/core/model/body_mass.hpp"
 #include "fettle/core/model/check_scene.hpp"
 #include "fettle/core/model/start_check.hpp"
+#include "fettle/core/setup/round_contact.hpp"
 
-namespace fettle::core::model {
+namespace fettle::core::setup {
 namespace {
 
 using base::Error;
 using base::ErrorCode;
 using base::Errors;
+using model::Body;
+using model::Friction;
+using model::Model;
 using scene::BodyType;
-
-double rounded_up_radius(const Matrix3X& vertices) {
-    const double radius = std::sqrt(vertices.colwise().squaredNorm().maxCoeff());
-    return radius * (1 + 8 * std::numeric_limits<double>::epsilon());  // three products, two sums, a root: below 4 units of rounding
-}
 
 /// The file's frame about another point.
 kinematics::Pose pose_about(const kinematics::Pose& pose, const Vector3& reference_point) {
@@ -57,21 +55,6 @@ Body build_body(const scene::Body& from, geometry::Mesh mesh, const Vector3& ref
     body.damping = from.damping;
     body.group = from.group;
     return body;
-}
-
-void add_areas(Body& body) {
-    const geometry::Mesh& mesh = body.mesh;
-    body.vertex_area.assign(mesh.vertices.cols(), 0);
-    body.edge_area.assign(mesh.edges.size(), 0);
-    const geometry::EdgeIndex edge_index(mesh.edges);
-    for (const geometry::Triangle& t : mesh.triangles) {
-        const Vector3 u = mesh.vertices.col(t[1]) - mesh.vertices.col(t[0]), v = mesh.vertices.col(t[2]) - mesh.vertices.col(t[0]);
-        const double third = u.cross(v).norm() / 6;
-        for (int k = 0; k < 3; ++k) {
-            body.vertex_area[t[k]] += third;
-            if (const int e = edge_index.find(t[k], t[(k + 1) % 3]); e >= 0) body.edge_area[e] += third;
-        }
-    }
 }
 
 /// Bodies that share a hierarchy have one mesh, which is integrated once.
@@ -163,62 +146,6 @@ void warn_of_unused_rates(Model& model) {
     }
 }
 
-// Each contact is that of a side with a side, so that nothing is gained where none is round. Contact damping and area weights know facets
-// alone.
-void add_round_surfaces(Model& model) {
-    if (model.area_weighted || model.contact_damping_time > 0) {
-        model.warnings.push_back(std::string("contact.round has no effect with ") +
-                                 (model.area_weighted ? "contact.area_weighted" : "contact.damping_time") +
-                                 ": contact takes facets as they are");
-        return;
-    }
-    std::vector<std::shared_ptr<const geometry::RoundSurfaces>> round(model.bodies.size());
-    base::parallel_for(count_of(model.bodies), 1, [&](int i) {
-        round[i] = std::make_shared<const geometry::RoundSurfaces>(geometry::round_surfaces(model.bodies[i].mesh));
-    });
-    double height = 0;
-    for (const auto& of : round)
-        if (of->any()) height = std::max(height, of->largest_height);
-    model.round_reach = 2 * height;
-    for (std::size_t i = 0; i < round.size() && height > 0; ++i) model.bodies[i].round = round[i];
-}
-
-}  // namespace
-
-void complete_geometry(Body& body) {
-    body.radius = rounded_up_radius(body.mesh.vertices);
-    body.edge_length_squared.clear();
-    body.edge_length_squared.reserve(body.mesh.edges.size());
-    for (const auto& edge : body.mesh.edges) {
-        body.edge_length_squared.push_back((body.mesh.vertices.col(edge[1]) - body.mesh.vertices.col(edge[0])).squaredNorm());
-    }
-    add_areas(body);
-    body.hierarchy = std::make_shared<const geometry::BodyHierarchy>(body.mesh);
-    constexpr double flatness = 1e-5;  // of the body: above single precision, and above what derivatives are checked with
-    body.flat = std::make_shared<const geometry::FlatFeatures>(geometry::flat_features(body.mesh, flatness * body.radius));
-}
-
-namespace {
-
-void complete_copies(std::vector<Body>& bodies, const std::vector<std::size_t>& first_of_shape) {
-    base::parallel_for(count_of(bodies), 1, [&](int i) {
-        const auto at = static_cast<std::size_t>(i);
-        if (first_of_shape[at] == at) complete_geometry(bodies[at]);
-    });
-    base::parallel_for(count_of(bodies), 1, [&](int i) {
-        const std::size_t first = first_of_shape[i];
-        if (first == static_cast<std::size_t>(i)) return;
-        Body& body = bodies[i];
-        const Body& twin = bodies[first];
-        body.radius = twin.radius;
-        body.edge_length_squared = twin.edge_length_squared;
-        body.vertex_area = twin.vertex_area;
-        body.edge_area = twin.edge_area;
-        body.hierarchy = twin.hierarchy;
-        body.flat = twin.flat;
-    });
-}
-
 // Copies of a mesh that are told from the same reference point are copies in their bodies' frames, too.
 std::vector<std::size_t> first_in_frame(const std::vector<Body>& bodies, const std::vector<std::size_t>& first_of_mesh) {
     std::vector<std::size_t> first;
@@ -231,13 +158,6 @@ std::vector<std::size_t> first_in_frame(const std::vector<Body>& bodies, const s
 
 }  // namespace
 
-void complete_geometry(std::vector<Body>& bodies) {
-    std::vector<const geometry::Mesh*> meshes;
-    meshes.reserve(bodies.size());
-    for (const Body& body : bodies) meshes.push_back(&body.mesh);
-    complete_copies(bodies, geometry::first_of_shape(meshes));
-}
-
 namespace {
 
 /// @param mesh_of  (int body) -> geometry::Mesh; each is asked for once, on any thread
@@ -245,7 +165,7 @@ template <class MeshOf>
 base::Result<Model> build(const scene::Scene& scene, const BuildOptions& options, const MeshOf& mesh_of) {
     FETTLE_ASSERT(options.reference_points.empty() || options.reference_points.size() == scene.bodies.size(),
                   "one reference point per body is expected");
-    SceneCheck check = check_scene(scene, options.check_meshes);
+    model::SceneCheck check = model::check_scene(scene, options.check_meshes);
     Errors errors = std::move(check.errors);
     if (!errors.empty()) return errors;
 
@@ -270,24 +190,24 @@ base::Result<Model> build(const scene::Scene& scene, const BuildOptions& options
         const Vector3 point = given ? options.reference_points[i] : default_reference_point(scene.bodies[i], check.measures[i]);
         model.bodies[i] = build_body(scene.bodies[i], mesh_of(i), point);
     });
-    complete_copies(model.bodies, first_in_frame(model.bodies, check.shapes));
+    model::complete_geometry(model.bodies, first_in_frame(model.bodies, check.shapes));
     add_masses(scene, model);
     model.friction = build_friction(scene, model.bodies);
     model.integrator = scene.integrator;
     model.area_weighted = scene.area_weighted;
     model.contact_damping_time = scene.contact_damping_time;
-    if (scene.round_contact) add_round_surfaces(model);
     model.adaptive_kappa = !options.kappa && !scene.kappa;
     if (errors = check_areas(model); !errors.empty()) return errors;
     model.kappa = options.kappa ? *options.kappa : scene.kappa ? *scene.kappa : choose_kappa(model);
     model.warnings = std::move(check.warnings);
+    add_round_contact(scene.round_contact, options.facet_sides, model);
     if (model.integrator == scene::Integrator::quasi_static) {
         model.proximal_weight = options.proximal_weight ? *options.proximal_weight : choose_proximal_weight(model);
         warn_of_unused_rates(model);
     }
     if (errors = build_mechanism(scene, model, options.term_scales); !errors.empty()) return errors;
     if (options.check_start) {
-        StartReport start = report_start(model);
+        model::StartReport start = model::report_start(model);
         errors = std::move(start.errors);
         model.warnings.insert(model.warnings.end(), start.warnings.begin(), start.warnings.end());
     }
@@ -306,4 +226,4 @@ base::Result<Model> build_model(scene::Scene&& scene, const BuildOptions& option
     return build(scene, options, [&](int i) { return std::move(scene.bodies[i].mesh); });
 }
 
-}  // namespace fettle::core::model
+}  // namespace fettle::core::setup
