@@ -99,6 +99,8 @@ private:
     optimisers::Problem begun() {
         optimisers::Problem seen = problem::optimiser_problem(problem_, with_derivatives_);
         seen.start = outcome_.start = start_of_seed(problem_, options_.seed);
+        for (const core::scene::Joint& joint : description::design_of_scenario(design_, 0).scene.mechanism.joints)
+            if (joint.assemble) outcome_.sides.push_back({joint.name, *joint.assemble});
         seen.values = answered(problem_, {}, compute_, options_.history, Recorded::values);
         seen.evaluate = [this, own = answered(problem_, {}, compute_, options_.history, Recorded::with_derivatives)](const VectorX& p) {
             optimisers::Evaluation e = own(p);
