@@ -19,13 +19,15 @@ using fettle::tests::support::contents;
 using fettle::tests::support::run;
 using namespace fettle::tests::design_support;
 
-// Crank 20 mm, coupler 50 mm, rocker 40 mm, pivots 45 mm apart, all bars written at one place; B joins coupler and rocker.
+// Crank 20 mm, coupler 50 mm, rocker 40 mm, pivots 45 mm apart, all bars written about one place; B joins coupler and rocker.
 const char* const four_bar = R"({
   "fettle_scene": 1, "units": "mm", "timestep": 0.02, "end_time": 0.2,
   "bodies": [
     {"name": "crank", "group": 1, "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 20, "size_y": 4, "size_z": 3}}},
-    {"name": "coupler", "group": 1, "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 50, "size_y": 4, "size_z": 3}}},
-    {"name": "rocker", "group": 1, "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 40, "size_y": 4, "size_z": 3}}}
+    {"name": "coupler", "group": 1, "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 50, "size_y": 4, "size_z": 3}},
+     "rotation": [0, 0, 30]},
+    {"name": "rocker", "group": 1, "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 40, "size_y": 4, "size_z": 3}},
+     "rotation": [0, 0, 90]}
   ],
   "joints": [
     {"name": "O", "type": "revolute", "b": "crank", "point_a": [0, 0, 0], "point_b": [-10, 0, 0], "axis": [0, 0, 1]},
@@ -122,7 +124,8 @@ TEST_CASE("--starts takes the sides in turn, and says which", "[branch]") {
     const std::string first = rows.at(0).at("sides").at("B");
     CHECK(rows.at(1).at("sides").at("B") != first);
     CHECK(rows.at(2).at("sides").at("B") == first);
-    CHECK(answer.at("sides") == rows.at(1).at("sides"));  // the lesser swing is on the other side
+    for (const nlohmann::json& row : rows)
+        if (row.at("seed") == answer.at("seed")) CHECK(answer.at("sides") == row.at("sides"));
     const nlohmann::json final = nlohmann::json::parse(contents(out / "design.final.json"));
     CHECK(final.at("set").at("/joints/B/assemble").at("side") == answer["sides"]["B"]);
     CHECK(run("gradient " + (out / "design.final.json").string() + " --json").json().at("objective") == answer.at("objective"));
