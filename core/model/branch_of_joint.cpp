@@ -2,6 +2,7 @@
 #include "fettle/core/model/branch_of_joint.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -168,7 +169,121 @@ private:
     Errors errors_;
 };
 
+// Finds the pairs of bodies that a motor's motion leaves two places for (dyads), one after another outwards from what does not move.
+class OpenSides {
+public:
+    OpenSides(const scene::Scene& scene, const Model& model) : scene_(scene), model_(model), poses_(start_poses(model)) {
+        const int bodies = count_of(model.bodies);
+        is_placed_.assign(bodies, false);
+        for (int i = 0; i < bodies; ++i) {
+            is_placed_[i] = true;
+            for (int k = 0; k < 6; ++k)
+                if (is_free(model.bodies[i], k)) is_placed_[i] = false;
+        }
+        for (const scene::Motor& motor : scene.mechanism.motors)
+            if (motor.kind == scene::MotorKind::motion) driven_.insert(motor.joint);
+        for (const scene::Joint& joint : scene.mechanism.joints)
+            if (joint.assemble) said_.insert(joint.name);
+    }
+
+    std::vector<JointSide> find() {
+        while (place_driven() || place_pair()) {
+        }
+        return std::move(found_);
+    }
+
+private:
+    const std::vector<Joint>& joints() const { return model_.mechanism.joints; }
+    bool is_placed(int body) const { return body == measure::world || is_placed_[body]; }
+
+    // The joints between a body and another, or between it and what is placed (`other` is the world).
+    std::vector<int> between(int body, int other) const {
+        std::vector<int> all;
+        for (int i = 0; i < count_of(joints()); ++i) {
+            if (joints()[i].is_motor || !joins(joints()[i], body)) continue;
+            const int beyond = joints()[i].a == body ? joints()[i].b : joints()[i].a;
+            if (other == measure::world ? is_placed(beyond) : beyond == other) all.push_back(i);
+        }
+        return all;
+    }
+
+    bool place_driven() {
+        for (int i = 0; i < count_of(joints()); ++i) {
+            const Joint& joint = joints()[i];
+            if (joint.is_motor || !has_ends(joint) || is_placed(joint.a) == is_placed(joint.b)) continue;
+            const int body = is_placed(joint.a) ? joint.b : joint.a;
+            if (joint.kind != JointKind::fixed && driven_.count(joint.name) == 0 && between(body, measure::world).size() < 2) continue;
+            is_placed_[body] = true;
+            return true;
+        }
+        return false;
+    }
+
+    bool place_pair() {
+        for (int i = 0; i < count_of(joints()); ++i) {
+            const Joint& joint = joints()[i];
+            if (joint.is_motor || !has_ends(joint) || is_placed(joint.a) || is_placed(joint.b)) continue;
+            const std::vector<int> from = between(joint.a, measure::world), to = between(joint.b, measure::world);
+            if (from.size() != 1 || to.size() != 1 || between(joint.a, joint.b).size() != 1) continue;
+            add(from.front(), i, to.front());
+            is_placed_[joint.a] = is_placed_[joint.b] = true;
+            return true;
+        }
+        return false;
+    }
+
+    Vector3 axis(int joint) const {
+        const Joint& j = joints()[joint];
+        return placed(model_.mechanism.set.frames, poses_)[j.frame_b].axes.col(2);
+    }
+
+    bool is_in_a_plane(const std::vector<int>& three) const {
+        constexpr double nearly = 1e-6;
+        std::optional<Vector3> normal;
+        int slides_seen = 0;
+        for (const int joint : three) {
+            if (joints()[joint].kind != JointKind::revolute && !slides(joints()[joint])) return false;
+            if (slides(joints()[joint])) {
+                ++slides_seen;
+                continue;
+            }
+            if (normal && normal->cross(axis(joint)).norm() > nearly) return false;
+            normal = axis(joint);
+        }
+        return slides_seen == 0 || (slides_seen == 1 && std::all_of(three.begin(), three.end(), [&](int joint) {
+                                        return !slides(joints()[joint]) || std::abs(normal->dot(axis(joint))) < nearly;
+                                    }));
+    }
+
+    void add(int from, int middle, int to) {
+        const std::vector<int> three{from, middle, to};
+        const std::string& name = joints()[middle].name;
+        if (said_.count(name) != 0 || driven_.count(name) != 0 || !is_in_a_plane(three)) return;
+        const auto described = std::find_if(scene_.mechanism.joints.begin(), scene_.mechanism.joints.end(),
+                                            [&](const scene::Joint& joint) { return joint.name == name; });
+        const bool along = std::any_of(three.begin(), three.end(), [&](int joint) { return slides(joints()[joint]); });
+        scene::Joint joint = *described;
+        joint.assemble = scene::Assemble{along ? AssembleSide::ahead : AssembleSide::left, joints()[from].name, joints()[to].name};
+        std::vector<Branch> branch;
+        if (!BranchBuilder(joint, middle, model_).build(branch).empty()) return;
+        const double side = side_of(branch.front(), placed(model_.mechanism.set.frames, poses_));
+        constexpr double dead_centre = 1e-6;
+        if (!(std::abs(side) > dead_centre)) return;
+        if (side < 0) joint.assemble->side = along ? AssembleSide::behind : AssembleSide::right;
+        found_.push_back({name, *joint.assemble});
+    }
+
+    const scene::Scene& scene_;
+    const Model& model_;
+    std::vector<kinematics::Pose> poses_;
+    std::vector<bool> is_placed_;
+    std::set<std::string> driven_, said_;
+    std::vector<JointSide> found_;
+};
+
 }  // namespace
+
+std::vector<JointSide> sides_left_open(const scene::Scene& scene, const Model& model) { return OpenSides(scene, model).find(); }
 
 Errors add_branches(const scene::Scene& scene, Model& model) {
     Errors errors;
@@ -180,6 +295,40 @@ Errors add_branches(const scene::Scene& scene, Model& model) {
         errors.insert(errors.end(), more.begin(), more.end());
     }
     return errors;
+}
+
+const char* to_string(AssembleSide side) {
+    switch (side) {
+        case AssembleSide::left:
+            return "left";
+        case AssembleSide::right:
+            return "right";
+        case AssembleSide::ahead:
+            return "ahead";
+        case AssembleSide::behind:
+            return "behind";
+    }
+    return "unknown";
+}
+
+AssembleSide other_side(AssembleSide side) {
+    switch (side) {
+        case AssembleSide::left:
+            return AssembleSide::right;
+        case AssembleSide::right:
+            return AssembleSide::left;
+        case AssembleSide::ahead:
+            return AssembleSide::behind;
+        case AssembleSide::behind:
+            return AssembleSide::ahead;
+    }
+    return side;
+}
+
+std::vector<kinematics::Pose> start_poses(const Model& model) {
+    std::vector<kinematics::Pose> out;
+    for (const Body& body : model.bodies) out.push_back(body.pose_start);
+    return out;
 }
 
 std::string words_of_side(const Mechanism& mechanism, const Branch& branch, double sign) {

@@ -21,12 +21,6 @@ using constraint::Assembly;
 using constraint::AssemblyProblem;
 using constraint::Row;
 
-std::vector<kinematics::Pose> start_poses(const Model& model) {
-    std::vector<kinematics::Pose> out;
-    for (const Body& body : model.bodies) out.push_back(body.pose_start);
-    return out;
-}
-
 // Names of the joints of these rows, each once.
 std::string names_of(const Mechanism& mechanism, const std::vector<int>& rows) {
     std::set<std::string> names;

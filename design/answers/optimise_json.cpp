@@ -184,6 +184,7 @@ Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, 
     json["objective"] = objective_json(outcome, run);
     if (run.repair && report.best.usable) json["repair"] = repair_json(design, report);
     json["seed"] = run.seed;
+    for (const core::model::JointSide& side : outcome.sides) json["sides"][side.joint] = core::model::to_string(side.assemble.side);
     json["parameters_start"] = parameters_json(design, outcome.start);
     json["parameters"] = parameters_json(design, report.point);
     json["units"] = units_json(design);

@@ -15,6 +15,7 @@
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/optimise_file.hpp"
 #include "fettle/design/studies/random_start.hpp"
+#include "fettle/design/studies/starting_sides.hpp"
 
 namespace fettle::design::cli {
 
@@ -74,8 +75,17 @@ void add_interruption(Json& json, const std::vector<StartResult>& rows, const st
     json["best_start"] = best ? Json(rows[*best].seed) : Json();
 }
 
-// One run, told. @param rows  the runs from `starts`, of which this one is the best, replayed; empty: there is no other.
+int run_sided(const Run& run, const std::vector<StartResult>& rows, Starts starts);
+
+// One run, on the sides of its seed.
 int run_one(const Run& run, const std::vector<StartResult>& rows, Starts starts) {
+    const Result<studies::FileOfSeed> begun = studies::file_of_seed(run.file, run.problem, run.facts.seed);
+    if (!begun) return run.console.input_errors(begun.errors());
+    return run_sided({run.options, begun->file, begun->problem, run.common, run.console, run.facts}, rows, starts);
+}
+
+// One run, told. @param rows  the runs from `starts`, of which this one is the best, replayed; empty: there is no other.
+int run_sided(const Run& run, const std::vector<StartResult>& rows, Starts starts) {
     Console& console = run.console;
     const bool was_stopped = starts == Starts::interrupted;
     const auto answer = [&](const OptimiseOutcome& outcome) {

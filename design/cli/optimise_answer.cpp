@@ -161,6 +161,8 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
     text += core::base::counted(static_cast<size_t>(report.evaluations), "evaluation") + formatted(" (%d failed), ", report.failures) +
             core::base::counted(static_cast<size_t>(report.iterations), "iteration") + "\n" + terms_text(design, outcome);
     if (run.repair && report.feasible) text += changes_text(design, report);
+    for (const core::model::JointSide& side : outcome.sides)
+        text += formatted("  assembled %s at joint %s\n", core::model::to_string(side.assemble.side), side.joint.c_str());
     for (size_t k = 0; k < design.parameters.size(); ++k) {
         const description::Parameter& p = design.parameters[k];
         const bool told = k < report.optimality.held.size();

@@ -85,6 +85,9 @@ std::string line_of(const StartResult& start) {
     if (!std::isfinite(objective)) return text + " " + start.message;  // no design was evaluated
     text += formatted(" objective %-12.8g %3d %s", objective, start.result["evaluations"].get<int>(),
                       start.result["evaluations"] == 1 ? "evaluation" : "evaluations");
+    if (const auto sides = start.result.find("sides"); sides != start.result.end() && sides->is_object())
+        for (const auto& [joint, side] : sides->items())
+            if (side.is_string()) text += ", " + side.get<std::string>() + " at " + joint;
     const double violation = number(start.result, "constraint_violation");
     if (violation > 0) return text + formatted(", largest violation %.3g", violation);
     const std::string limits = joined_names(start.result["limited_by"]);
@@ -181,7 +184,7 @@ Json starts_json(const std::vector<StartResult>& starts) {
     for (const StartResult& start : starts) {
         Json row{{"seed", start.seed}, {"status", start.status}, {"message", start.message}};
         for (const char* key :
-             {"objective", "constraint_violation", "evaluations", "limited_by", "parameters_start", "parameters", "repair"}) {
+             {"objective", "constraint_violation", "evaluations", "limited_by", "sides", "parameters_start", "parameters", "repair"}) {
             if (start.result.is_object() && start.result.contains(key)) row[key] = start.result[key];
         }
         if (!row.contains("objective")) row["objective"] = Json();

@@ -38,6 +38,7 @@ struct OptimiserSettings {
     std::string name = "sqp";  ///< optimisers/optimisation.hpp knows which there are
     int max_evaluations = 100;
     double tolerance = 1e-4;
+    bool keep_sides = false;  ///< random starts assemble closed linkages on the sides as written alone (studies/starting_sides.hpp)
 };
 
 /// A setting beside which the design is simulated: the scene with other loads, friction, motors, start, time step ...

@@ -322,6 +322,22 @@ private:
 
 }  // namespace
 
+OptimiserReport better_of(OptimiserReport first, OptimiserReport later) {
+    OptimiserReport best = is_better(later.best, first.best) ? later : first;
+    best.start = first.start;
+    best.evaluations = first.evaluations + later.evaluations;
+    best.failures = first.failures + later.failures;
+    best.iterations = first.iterations + later.iterations;
+    best.stages = std::move(first.stages);
+    best.stages.insert(best.stages.end(), later.stages.begin(), later.stages.end());
+    const std::string count = core::base::counted(static_cast<std::size_t>(best.evaluations), "evaluation");
+    if (best.budget_spent) best.message = "stopped after " + count + ", which `max_evaluations` allows, of several searches";
+    if (later.status != OptimiserStatus::interrupted) return best;
+    best.status = OptimiserStatus::interrupted;
+    best.message = "stopped as asked after " + count;
+    return best;
+}
+
 OptimiserReport optimise(const Problem& problem, const Optimiser& optimiser, const OptimiserOptions& options) {
     OptimiserReport report = StagedRun(problem, optimiser, options).run();
     if (report.best.usable) {

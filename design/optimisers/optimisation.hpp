@@ -55,6 +55,10 @@ struct OptimiserReport {
 /// Throws what Problem::evaluate throws (Interrupted excepted).
 OptimiserReport optimise(const Problem& problem, const Optimiser& optimiser, const OptimiserOptions& options);
 
+/// Two searches of one problem, one after the other, as one: the start of the first, the end of the better one and its verdict, evaluations
+/// of both. Interrupted if the later one was.
+OptimiserReport better_of(OptimiserReport first, OptimiserReport later);
+
 struct OptimiserInfo {
     std::string name, description;
 };

@@ -81,7 +81,8 @@ FETTLE_RECORD(fettle::design::description::ObjectiveTerm, "ObjectiveTerm", field
 FETTLE_RECORD(fettle::design::description::Constraint, "Constraint", field("name", &Type::name), field("bounds", &Type::bounds),
               field("quantity", &Type::quantity))
 FETTLE_RECORD(fettle::design::description::OptimiserSettings, "OptimiserSettings", field("name", &Type::name),
-              field("max_evaluations", &Type::max_evaluations), field("tolerance", &Type::tolerance))
+              field("max_evaluations", &Type::max_evaluations), field("tolerance", &Type::tolerance),
+              field("keep_sides", &Type::keep_sides))
 
 namespace pybind11::detail {
 

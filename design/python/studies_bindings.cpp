@@ -12,6 +12,7 @@
 #include "fettle/design/report/report_folder.hpp"
 #include "fettle/design/studies/optimise_file.hpp"
 #include "fettle/design/studies/random_start.hpp"
+#include "fettle/design/studies/starting_sides.hpp"
 
 namespace fettle::design::python {
 
@@ -68,8 +69,10 @@ OptimiseOutcome optimise_design(const DesignProblem& problem, const std::string&
     options.optimiser = optimiser;
     options.seed = seed_from(seed);
     options.repair = repair;
-    return optimise(std::move(options), progress,
-                    [&](const studies::OptimiseOptions& all) { return value_or_raise(studies::optimise_design(problem, all)); });
+    return optimise(std::move(options), progress, [&](const studies::OptimiseOptions& all) {
+        const DesignProblem begun = value_or_raise(studies::problem_of_seed(problem, all.seed));
+        return value_or_raise(studies::optimise_design(begun, all));
+    });
 }
 
 struct FileArguments {
@@ -84,7 +87,10 @@ OptimiseOutcome optimise_file(reading::DesignFile file, FileArguments arguments,
     raise_if_any(answers::others_files(arguments.directory, {"design.final.json"}));
     if (arguments.max_evaluations) file.design.optimiser.max_evaluations = *arguments.max_evaluations;
     const auto run = [&](const studies::OptimiseOptions& all) {
-        const DesignProblem problem = value_or_raise(DesignProblem::create(file.design));
+        const DesignProblem written = value_or_raise(DesignProblem::create(file.design));
+        studies::FileOfSeed begun = value_or_raise(studies::file_of_seed(file, written, all.seed));
+        file = std::move(begun.file);
+        const DesignProblem& problem = begun.problem;
         const std::string command = "fettle.optimise_file, Python";
         nlohmann::ordered_json answer;
         const studies::RunFolder folder{
@@ -139,7 +145,7 @@ void bind_studies(py::module_& module) {
         [](const DesignProblem& problem, std::int64_t given) {
             const std::uint64_t seed = seed_from(given);
             const py::gil_scoped_release unlocked;
-            return studies::start_of_seed(problem, seed);
+            return studies::start_of_seed(value_or_raise(studies::problem_of_seed(problem, seed)), seed);
         },
         py::arg("problem"), py::arg("seed"),
         "(n) SI: where a run of that seed begins: a sample that meets the relations and can be made and assembled, if one is found.");

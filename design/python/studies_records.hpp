@@ -21,9 +21,11 @@ FETTLE_RECORD(fettle::design::optimisers::OptimiserReport, "OptimiserReport", fi
               field("violation", &Type::violation), field("feasible", &Type::feasible), field("optimality", &Type::optimality),
               field("evaluations", &Type::evaluations), field("failures", &Type::failures), field("iterations", &Type::iterations),
               field("budget_spent", &Type::budget_spent), field("stages", &Type::stages))
+FETTLE_RECORD(fettle::core::model::JointSide, "JointSide", field("joint", &Type::joint), field("assemble", &Type::assemble))
 FETTLE_RECORD(fettle::design::studies::OptimiseOutcome, "OptimiseOutcome", field("report", &Type::report), field("start", &Type::start),
-              field("objective_start", &Type::objective_start), field("final", &Type::final), field("clearance", &Type::clearance),
-              field("limits", &Type::limits), field("unbuildable", &Type::unbuildable), field("replayed", &Type::replayed))
+              field("sides", &Type::sides), field("objective_start", &Type::objective_start), field("final", &Type::final),
+              field("clearance", &Type::clearance), field("limits", &Type::limits), field("unbuildable", &Type::unbuildable),
+              field("replayed", &Type::replayed))
 FETTLE_RECORD(fettle::design::gradient_audit::CheckRow, "CheckRow", field("quantity", &Type::quantity),
               field("parameter", &Type::parameter), field("adjoint", &Type::adjoint), field("difference", &Type::difference),
               field("difference_error", &Type::difference_error), field("relative_error", &Type::relative_error),

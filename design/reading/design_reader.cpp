@@ -358,11 +358,12 @@ private:
     double read_optimiser(const JsonNode& node) {
         constexpr double default_margin = 2e-6;
         if (!node.exists()) return default_margin;
-        node.allow_keys({"name", "max_evaluations", "tolerance", "clearance_margin"});
+        node.allow_keys({"name", "max_evaluations", "tolerance", "clearance_margin", "keep_sides"});
         description::OptimiserSettings& settings = design_.optimiser;
         settings.name = node["name"].choice(views(optimisers::optimiser_names())).value_or(settings.name);
         settings.max_evaluations = node["max_evaluations"].integer(1).value_or(settings.max_evaluations);
         settings.tolerance = node["tolerance"].number({0, 1, true}).value_or(settings.tolerance);
+        settings.keep_sides = node["keep_sides"].boolean().value_or(settings.keep_sides);
         return node["clearance_margin"].length(to_si(1, file_.length_unit), core::files::not_negative).value_or(default_margin);
     }
 

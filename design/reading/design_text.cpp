@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/reading/design_text.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -46,6 +47,30 @@ std::string design_text(const DesignFile& file, const VectorX& values, const std
     const fs::path scene = fs::relative(fs::absolute(file.scene_path), fs::absolute(directory), failure);
     json["scene"] = failure || scene.empty() ? fs::absolute(file.scene_path).string() : scene.generic_string();
     json.erase("output");  // it was relative to the first file's folder
+    return json.dump(2) + "\n";
+}
+
+std::string text_with_sides(const DesignFile& file, const std::vector<core::model::JointSide>& sides) {
+    using Json = nlohmann::ordered_json;
+    auto json = Json::parse(file.text);
+    const std::vector<core::scene::Joint>& joints = file.design.scene.mechanism.joints;
+    for (const core::model::JointSide& side : sides) {
+        const auto joint = std::find_if(joints.begin(), joints.end(), [&](const auto& each) { return each.name == side.joint; });
+        const Json::json_pointer place = Json::json_pointer("/joints") / side.joint / "assemble";
+        const Json::json_pointer numbered = Json::json_pointer("/joints") / static_cast<size_t>(joint - joints.begin()) / "assemble";
+        const auto unset = [&](Json& holder) {
+            if (!holder.contains("set")) return;
+            for (const std::string& old : {place.to_string(), numbered.to_string()})
+                for (const char* within : {"", "/side", "/from", "/to"}) holder["set"].erase(old + within);
+        };
+        unset(json);
+        if (json.contains("scenarios"))
+            for (Json& scenario : json["scenarios"]) unset(scenario);
+        Json said{{"side", core::model::to_string(side.assemble.side)}};
+        if (!side.assemble.from.empty()) said["from"] = side.assemble.from;
+        if (!side.assemble.to.empty()) said["to"] = side.assemble.to;
+        json["set"][place.to_string()] = std::move(said);
+    }
     return json.dump(2) + "\n";
 }
 

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "fettle/core/model/branch_of_joint.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 
 namespace fettle::design::reading {
@@ -12,6 +14,10 @@ namespace fettle::design::reading {
 /// as it was, comments of `description` included. Values that are representable (description/parameter.hpp)
 /// read back as the same bits.
 std::string design_text(const DesignFile& file, const VectorX& values, const std::string& directory);
+
+/// The text of the design file with closed linkages assembled on these sides, in its `set` and in no scenario's. Contract: the scene has
+/// these joints.
+std::string text_with_sides(const DesignFile& file, const std::vector<core::model::JointSide>& sides);
 
 /// Hash of all that an evaluation's numbers depend on: the program's version, the design without optimiser and output, the scene and its
 /// meshes.

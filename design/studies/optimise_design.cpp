@@ -63,6 +63,16 @@ std::function<optimisers::Evaluation(const VectorX&)> answered(const problem::De
     return [entry](const VectorX& p) { return entry(p).evaluation; };
 }
 
+// No contact is possible: a simulation takes milliseconds.
+bool moves_by_joints_alone(const problem::DesignProblem& problem) {
+    const Result<core::model::Model> model = problem.model_at(description::values_of(problem.design().parameters));
+    if (!model || model->mechanism.empty() || problem::has_costly_shapes(problem.design())) return false;
+    for (int a = 0; a < count_of(model->bodies); ++a)
+        for (int b = a + 1; b < count_of(model->bodies); ++b)
+            if (core::model::may_collide(*model, a, b)) return false;
+    return true;
+}
+
 // One run: the problem that the optimiser sees, what it has tried, and the outcome.
 class DesignRun {
 public:
@@ -86,6 +96,7 @@ public:
         for (const std::string& line : outcome_.unbuildable) narrate("bounds: " + line);
         if (options_.repair) seen = optimisers::nearest_to(description::values_of(design_.parameters), std::move(seen));
         outcome_.report = optimisers::optimise(seen, optimiser, settings());
+        if (options_.seed != 0 && !options_.repair && moves_by_joints_alone(problem_)) search_again(seen, optimiser);
         outcome_.replayed = outcome_.report.evaluations - computed_;
         if (outcome_.report.best.usable) measure_end();
         return std::move(outcome_);
@@ -99,6 +110,8 @@ private:
     optimisers::Problem begun() {
         optimisers::Problem seen = problem::optimiser_problem(problem_, with_derivatives_);
         seen.start = outcome_.start = start_of_seed(problem_, options_.seed);
+        for (const core::scene::Joint& joint : description::design_of_scenario(design_, 0).scene.mechanism.joints)
+            if (joint.assemble) outcome_.sides.push_back({joint.name, *joint.assemble});
         seen.values = answered(problem_, {}, compute_, options_.history, Recorded::values);
         seen.evaluate = [this, own = answered(problem_, {}, compute_, options_.history, Recorded::with_derivatives)](const VectorX& p) {
             optimisers::Evaluation e = own(p);
@@ -143,6 +156,34 @@ private:
             }
             return reason;
         };
+    }
+
+    // From other places, for as long as evaluations are left.
+    void search_again(optimisers::Problem& seen, const optimisers::Optimiser& optimiser) {
+        constexpr int least = 40;  // worth a search, its verdict included
+        constexpr int enough = 3;  // searches that end with the same objective
+        constexpr double same = 5e-3;
+        std::vector<double> ends{outcome_.report.objective};
+        for (int k = 1; outcome_.report.status != optimisers::OptimiserStatus::interrupted; ++k) {
+            const double best = outcome_.report.objective;
+            const auto agree = [best](double end) { return std::abs(end - best) <= same * std::abs(best); };
+            if (std::count_if(ends.begin(), ends.end(), agree) >= enough) return;
+            const int left = design_.optimiser.max_evaluations - outcome_.report.evaluations;
+            if (left < least) return;
+            narrate("evaluations are left: on from another random place");
+            seen.start = later_start_of_seed(problem_, options_.seed, k);
+            optimisers::OptimiserOptions again = settings();
+            again.max_evaluations = left;
+            const optimisers::OptimiserReport before = outcome_.report;
+            again.on_evaluation = [&, tell = again.on_evaluation](int number, const VectorX& p, const optimisers::Evaluation& e,
+                                                                  bool best) {
+                tell(before.evaluations + number, p, e, best && optimisers::is_better(e, before.best));
+            };
+            const optimisers::OptimiserReport next = optimisers::optimise(seen, optimiser, again);
+            ends.push_back(next.objective);
+            outcome_.report = optimisers::better_of(before, next);
+            if (outcome_.report.evaluations == before.evaluations) return;
+        }
     }
 
     optimisers::OptimiserOptions settings() {

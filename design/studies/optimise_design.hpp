@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
+#include "fettle/core/model/branch_of_joint.hpp"
 #include "fettle/design/gradient_audit/gradient_warnings.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/problem/design_problem.hpp"
@@ -33,7 +34,9 @@ struct OptimiseOptions {
 
 struct OptimiseOutcome {
     optimisers::OptimiserReport report;
-    VectorX start;                          ///< where it began
+    VectorX start;  ///< where it began
+    /// On which sides joints say that closed linkages are assembled: the same at the start and at the end.
+    std::vector<core::model::JointSide> sides;
     std::optional<double> objective_start;  ///< the design's own objective there, if it could be evaluated
     /// What the derivatives of the first design say that could be evaluated: narrated before the search goes on from it.
     gradient_audit::GradientWarnings at_start;
@@ -49,6 +52,10 @@ struct OptimiseOutcome {
     int replayed = 0;                      ///< evaluations that the history answered
 };
 
+/// From a random start (a seed other than 0) a design in which no contact is possible, whose simulations are cheap, is searched again
+/// from other random places (later_start_of_seed) for as long as `max_evaluations` leaves evaluations, and three searches have not ended
+/// with the same objective; the best search counts.
+/// The design on the sides that its joints say; those of the seed are problem_of_seed's (starting_sides.hpp).
 /// Deterministic: the same design and options give the same sequence of evaluations, bit for bit.
 /// Errors: the optimiser's name.
 Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, const OptimiseOptions& options = {});

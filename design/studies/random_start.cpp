@@ -2,6 +2,7 @@
 #include "fettle/design/studies/random_start.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "fettle/core/base/contract.hpp"
@@ -25,11 +26,23 @@ std::uint64_t next(std::uint64_t& state) {
 // In [0, 1), all 53 bits of a double's fraction.
 double next_fraction(std::uint64_t& state) { return static_cast<double>(next(state) >> 11) * 0x1p-53; }
 
-VectorX drawn(const description::Design& design, std::uint64_t& state) {
+bool goes_all_round(const description::Parameter& p) {
+    constexpr double nearly = 1 - 1e-9;
+    return p.unit.dimension == core::base::Dimension::angle && p.upper - p.lower >= nearly * 2 * std::acos(-1.0);
+}
+
+// @param share  of each range, about the parameter's value; 1: the bounds.
+VectorX drawn(const description::Design& design, double share, std::uint64_t& state) {
     VectorX sample(design.parameters.size());
     for (Eigen::Index k = 0; k < sample.size(); ++k) {
         const description::Parameter& p = design.parameters[k];
-        sample[k] = p.lower + next_fraction(state) * (p.upper - p.lower);
+        double lower = p.lower, upper = p.upper;
+        if (share < 1 && !goes_all_round(p)) {
+            const double width = share * (p.upper - p.lower);
+            lower = std::clamp(p.value - width / 2, p.lower, p.upper - width);
+            upper = std::min(p.upper, lower + width);
+        }
+        sample[k] = lower + next_fraction(state) * (upper - lower);
     }
     return sample;
 }
@@ -53,26 +66,37 @@ VectorX onto_relations(const problem::DesignProblem& problem, const VectorX& p) 
     return seen.representable(optimisers::project(p, cheap)).cwiseMax(seen.lower).cwiseMin(seen.upper);
 }
 
-}  // namespace
-
-VectorX sample_of_seed(const description::Design& design, std::uint64_t seed) {
-    std::uint64_t state = seed;
-    return seed == 0 ? description::values_of(design.parameters) : drawn(design, state);
-}
-
-VectorX start_of_seed(const problem::DesignProblem& problem, std::uint64_t seed) {
+// The first of the draws that follow from a state that meets the relations and can be made and assembled.
+VectorX made_start(const problem::DesignProblem& problem, double share, std::uint64_t state) {
     const description::Design& design = problem.design();
-    if (seed == 0) return description::values_of(design.parameters);
-    std::uint64_t state = seed;
     std::optional<VectorX> first, first_related;
     for (int draws = problem::has_costly_shapes(design) ? most_costly_draws : most_draws; draws > 0; --draws) {
-        const VectorX p = onto_relations(problem, drawn(design, state));
+        const VectorX p = onto_relations(problem, drawn(design, share, state));
         if (!first) first = p;
         if (!meets_relations(design, p)) continue;
         if (problem.obstacles(p).empty()) return p;
         if (!first_related) first_related = p;
     }
     return first_related ? *first_related : *first;
+}
+
+}  // namespace
+
+VectorX sample_of_seed(const description::Design& design, std::uint64_t seed) {
+    std::uint64_t state = seed;
+    return seed == 0 ? description::values_of(design.parameters) : drawn(design, 1, state);
+}
+
+VectorX start_of_seed(const problem::DesignProblem& problem, std::uint64_t seed) {
+    if (seed == 0) return description::values_of(problem.design().parameters);
+    return made_start(problem, 1, seed);
+}
+
+VectorX later_start_of_seed(const problem::DesignProblem& problem, std::uint64_t seed, int k) {
+    FETTLE_ASSERT(k >= 1, "start_of_seed is the first");
+    std::uint64_t state = seed;
+    constexpr double near = 0.25;
+    return made_start(problem, k % 2 == 1 ? near : 1, next(state) + static_cast<std::uint64_t>(k));
 }
 
 std::vector<std::uint64_t> seeds_of_list(std::uint64_t list, int n) {

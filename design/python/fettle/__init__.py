@@ -184,6 +184,7 @@ from .scene import (
     FrictionPair as FrictionPair,
     Inertial as Inertial,
     Joint as Joint,
+    JointSide as JointSide,
     Mechanism as Mechanism,
     Mesh as Mesh,
     MeshProgram as MeshProgram,

@@ -543,6 +543,7 @@ class OptimiserSettings(Record):
     name: str = "sqp"
     max_evaluations: int = 100
     tolerance: float = 1e-4
+    keep_sides: bool = False  #: random starts assemble closed linkages on the sides as written alone
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)

@@ -126,6 +126,8 @@ def _optimised(problem: _fettle.DesignProblem, job: Job) -> Result:
         outcome = _fettle.optimise(problem, seed=job.seed)
     result = {"status": outcome.report.status, "reason": outcome.report.message, "evaluations": outcome.report.evaluations}
     result["parameters"] = dict(zip(problem.parameter_names, map(float, outcome.report.point)))
+    if outcome.sides:
+        result["sides"] = {side.joint: side.assemble.side for side in outcome.sides}
     if outcome.final.usable:
         result.update(_measured(problem, outcome.final))
     return result

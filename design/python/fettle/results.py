@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from . import _fettle
 from ._record import COLUMNS, MOST_LINES, MOST_ROWS, Number, Record, Records, columns, did_you_mean, number
+from .scene import JointSide
 
 Array = NDArray[np.float64]
 Solids = Literal["unproven", "disjoint", "overlap", "not closed", "not verified"]  #: of the two bodies of a pair
@@ -450,6 +451,8 @@ class OptimiserReport(Record):
 class OptimiseOutcome(Record):
     report: OptimiserReport = dataclasses.field(default_factory=OptimiserReport)
     start: Array = dataclasses.field(default_factory=_empty)
+    #: On which sides joints say that closed linkages are assembled.
+    sides: List[JointSide] = dataclasses.field(default_factory=list)
     objective_start: Optional[float] = None
     final: DesignEvaluation = dataclasses.field(default_factory=DesignEvaluation)
     clearance: List[PairClearance] = dataclasses.field(default_factory=list)

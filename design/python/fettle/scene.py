@@ -250,6 +250,14 @@ class Assemble(Record):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
+class JointSide(Record):
+    """A joint's side of a closed linkage."""
+
+    joint: str = ""
+    assemble: Assemble = dataclasses.field(default_factory=Assemble)
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Joint(Record):
     name: str = ""
     where: str = ""

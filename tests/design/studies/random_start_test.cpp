@@ -78,6 +78,21 @@ TEST_CASE("a random start meets the relations and can be made and assembled, the
     CHECK(obstructed > 5);
 }
 
+TEST_CASE("later starts of a seed are other ones, every other near the values as written") {
+    const fettle::tests::design_support::DesignFolder folder;
+    const problem::DesignProblem problem = fettle::tests::design_support::problem_of(folder);
+    const std::vector<description::Parameter>& parameters = problem.design().parameters;
+    std::set<double> seen{start_of_seed(problem, 1001)[0]};
+    for (int k = 1; k <= 12; ++k) {
+        const VectorX start = later_start_of_seed(problem, 1001, k);
+        CHECK(start == later_start_of_seed(problem, 1001, k));
+        CHECK(seen.insert(start[0]).second);
+        for (size_t i = 0; k % 2 == 1 && i < parameters.size(); ++i)
+            CHECK(std::abs(start[static_cast<Eigen::Index>(i)] - parameters[i].value) <=
+                  0.25 * (parameters[i].upper - parameters[i].lower));
+    }
+}
+
 TEST_CASE("lists of seeds begin with the design's own start and share nothing else") {
     CHECK(seeds_of_list(7, 3) == std::vector<std::uint64_t>{0, 7001, 7002});
     CHECK(seeds_of_list(7, 1) == std::vector<std::uint64_t>{0});
