@@ -16,7 +16,7 @@ def main(program, folder=".", names=VIEWS):
         for when, file in (("before", f"{name}.scene.json"), ("after", "tuned.design.json")):
             out = pathlib.Path(folder) / f"examples/{name}/{when}.png"
             out.parent.mkdir(parents=True, exist_ok=True)
-            subprocess.run([program, "draw", f"examples/{name}/{file}", "--view", VIEWS[name], "--size", "520x340" if name == "lock_box" else "640x420", "--title", when, "--out", out],
+            subprocess.run([program, "draw", f"examples/{name}/{file}", "--view", VIEWS[name], "--size", "480x320" if name == "lock_box" else "640x420", "--title", when, "--out", out],
                            check=True, capture_output=True)
 
 
