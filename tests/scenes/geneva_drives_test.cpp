@@ -177,6 +177,35 @@ TEST_CASE("Geneva drives: rings of 3 to 8 slots follow the closed form to the pl
 
 TEST_CASE("Geneva drives: a wheel of six slots follows the closed form to its play") { check(6); }
 
+TEST_CASE("Geneva drives: a motor that outweighs contact does not close the gap of round surfaces altogether", "[slow]") {
+    for (const double facets : {0.02, 0.01, 0.005}) {
+        for (const double kappa : {1e5, 1e6}) {
+            INFO("facets to " << facets << " mm, " << kappa << " N/m");
+            const std::map<std::string, double> dimensions{{"centre_distance", 45}, {"pin_radius", 3}, {"clearance", 0.15}};
+            const auto shape = [&](const char* part) { return shape_text({part, dimensions, {{"slots", 6}}, facets}); };
+            const Run turned = run(formatted(R"({
+              "fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.4,
+              "contact": {"round": true, "dhat": 0.05, "kappa": %.17g},
+              "friction": {"eps_v": 0.5},
+              "bodies": [
+                {"name": "wheel", "density": 1240, "position": [0, 0, 0.4], "rotation": [0, 0, 30], "shape": %s},
+                {"name": "driver", "density": 1240, "position": [45, 0, 0], "rotation": [0, 0, 240], "shape": %s},
+                {"name": "table", "position": [0, 0, 6], "shape": {"part": "cylinder", "dimensions": {"radius": 15, "length": 4}},
+                 "inertial": {"mass": 2, "centre": [0, 0, 2], "inertia": [[0.005, 0, 0], [0, 0.005, 0], [0, 0, 0.01]]}}
+              ],
+              "joints": [
+                {"name": "bearing", "type": "revolute", "b": "table", "point": [0, 0, 0], "axis": [0, 0, 1], "friction": 0.15},
+                {"name": "hub", "type": "fixed", "a": "table", "b": "wheel", "point": [0, 0, 0]},
+                {"name": "driver_hinge", "type": "revolute", "b": "driver", "point": [45, 0, 0], "axis": [0, 0, 1]}
+              ],
+              "motors": [{"name": "servo", "joint": "driver_hinge", "angle": {"rate": -150}}]
+            })",
+                                             kappa, shape("geneva_wheel").c_str(), shape("geneva_driver").c_str()));
+            CHECK(part_mechanism::fault_of(turned) == "");
+        }
+    }
+}
+
 TEST_CASE("Geneva drives: wheels of 3 to 8 slots follow the closed form to their play", "[slow]") {
     for (const int slots : {3, 4, 5, 7, 8}) check(slots);
 }
