@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Plain description of a scene, SI units, meshes resolved: what a file said, before anything is computed from it.
 /// Readers: scene_files/scene_reader.hpp (*.scene.json), paper_scenes/fixture_reader.hpp (the source paper's files). Next stage:
-/// model/build_model.hpp.
+/// setup/build_model.hpp.
 #pragma once
 
 #include <array>

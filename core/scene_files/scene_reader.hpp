@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Reads scene files: our own (*.scene.json, described by scene.schema.json and README.md beside this file) and, detected by their keys,
 /// the source paper's (paper_scenes/fixture_reader.hpp). Everything in the returned Scene is SI. Whether the bodies can be simulated:
-/// model/build_model.hpp.
+/// setup/build_model.hpp.
 #pragma once
 
 #include <string>

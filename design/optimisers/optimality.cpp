@@ -205,7 +205,7 @@ const char* to_string(Held held) {
 
 double least_gain(const Evaluator& evaluator, const OptimiserOptions& options, double scaled_objective) {
     const Evaluation& start = evaluator.start_evaluation();
-    const double from = start.usable ? 1e-4 * std::abs(start.objective) * evaluator.objective_scale() : 0;
+    const double from = start.usable ? 1e-6 * std::abs(start.objective) * evaluator.objective_scale() : 0;
     return options.tolerance * std::max({std::abs(scaled_objective), from, 1e-12});
 }
 
