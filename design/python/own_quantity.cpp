@@ -321,7 +321,12 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
                                    .b = of_q.get<int>("b"),
                                    .motion = of_q.get<bool>("motion"),
                                    .window = of_q.get<int>("window"),
-                                   .windows = of_q.get<int>("windows")};
+                                   .windows = of_q.get<int>("windows"),
+                                   .from = of_q.get<std::optional<double>>("from_time"),
+                                   .to = of_q.get<std::optional<double>>("to_time"),
+                                   .ranges = of_q.get<bool>("ranges"),
+                                   .faces_a = of_q.get<std::vector<std::string>>("faces_a"),
+                                   .faces_b = of_q.get<std::vector<std::string>>("faces_b")};
         return std::make_shared<Clearance>(range, of_q.get<double>("minimum"));
     }
     if (is("Mass")) {
@@ -463,7 +468,8 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
     if (const auto* own = dynamic_cast<const PythonQuantity*>(quantity.get())) return own->object();
     if (const auto* q = dynamic_cast<const Clearance*>(quantity.get())) {
         const ClearanceRange& range = q->range();
-        return record_class("Clearance")(range.a, range.b, range.motion, range.window, range.windows, q->minimum());
+        return record_class("Clearance")(range.a, range.b, range.motion, range.window, range.windows, q->minimum(), range.from, range.to,
+                                         range.ranges, range.faces_a, range.faces_b);
     }
     if (const auto* q = dynamic_cast<const Mass*>(quantity.get())) {
         py::list of;

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/core/geometry/named_faces.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
 #include "fettle/design/quantities/body_turn.hpp"
-#include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/contact_force.hpp"
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/expression.hpp"
@@ -95,15 +95,27 @@ std::shared_ptr<const Quantity> read_marker_path(const JsonNode& node, const Rea
     return std::make_shared<quantities::MarkerPath>(*body, *point, targets, times, std::move(moved));
 }
 
-std::shared_ptr<const Quantity> read_clearance(const JsonNode& node, const ReadContext& context) {
-    const auto a = context.body(node.require("a")), b = context.body(node.require("b"));
-    const bool motion = node["motion"].boolean().value_or(false);
-    if (!a || !b) return nullptr;
-    if (*a == *b) {
-        node.fail(ErrorCode::inconsistent, "a clearance is between two bodies; `a` and `b` are the same");
-        return nullptr;
+std::vector<std::string> read_faces(const JsonNode& node, int body, const ReadContext& context) {
+    std::vector<std::string> names;
+    const core::geometry::Mesh& mesh = context.scene.bodies[body].mesh;
+    const std::vector<std::string> known = core::geometry::names_of_faces(mesh);
+    for (const JsonNode& entry : node.elements()) {
+        const auto name = entry.string();
+        if (!name) continue;
+        names.push_back(*name);
+        if (!core::geometry::triangles_of_face(mesh, *name).empty()) continue;
+        const std::string what = "body \"" + context.scene.bodies[body].name + "\" has no face " + entry.shown();
+        entry.fail(ErrorCode::unknown_key, known.empty() ? what + ": its mesh names none; faces have the names of a part's file"
+                                                         : what + "; " + core::files::did_you_mean(*name, {known.begin(), known.end()}));
     }
-    return std::make_shared<quantities::Clearance>(quantities::ClearanceRange{.a = *a, .b = *b, .motion = motion});
+    if (node.is_array() && names.empty()) node.fail(ErrorCode::out_of_range, "name a face, or leave this out for the whole body");
+    return names;
+}
+
+std::shared_ptr<const Quantity> read_clearance(const JsonNode& node, const ReadContext& context) {
+    const auto range = read_clearance_range(node, context);
+    if (!range) return nullptr;
+    return std::make_shared<quantities::Clearance>(*range);
 }
 
 std::shared_ptr<const Quantity> read_mass(const JsonNode& node, const ReadContext& context) {
@@ -343,10 +355,26 @@ std::string stroke_name(const JsonNode& node) { return "stroke " + text(node["bo
 std::string marker_name(const JsonNode& node) { return "marker_path " + text(node["body"]); }
 std::string marker_position_name(const JsonNode& node) { return "marker_position " + text(node["body"]); }
 std::string marker_speed_name(const JsonNode& node) { return "marker_speed " + text(node["body"]); }
-std::string play_name(const JsonNode& node) { return "play " + text(node["a"]) + ":" + text(node["b"]); }
+// "wheel", or "wheel slot+arc" of faces.
+std::string place_of_clearance(const JsonNode& node, std::string_view body, std::string_view faces) {
+    std::string name = text(node[body]);
+    if (!node[faces].is_array()) return name;
+    bool is_first = true;
+    for (const JsonNode& face : node[faces].elements()) {
+        name += (is_first ? " " : "+") + text(face);
+        is_first = false;
+    }
+    return name;
+}
 std::string clearance_name(const JsonNode& node) {
-    const bool motion = node["motion"].is_bool() && *node["motion"].boolean();
-    return "clearance " + text(node["a"]) + ":" + text(node["b"]) + (motion ? " over the motion" : "");
+    const auto says = [&](std::string_view key) { return node[key].is_bool() && *node[key].boolean(); };
+    return "clearance " + place_of_clearance(node, "a", "faces_a") + ":" + place_of_clearance(node, "b", "faces_b") +
+           (says("motion")   ? " over the motion"
+            : says("ranges") ? " over the ranges"
+                             : "");
+}
+std::string play_name(const JsonNode& node) {
+    return "play " + place_of_clearance(node, "a", "faces_a") + ":" + place_of_clearance(node, "b", "faces_b");
 }
 std::string mass_name(const JsonNode& node) {
     std::string name = "mass";
@@ -369,6 +397,31 @@ std::string expression_name(const JsonNode& node) { return text(node["expression
 
 }  // namespace
 
+std::optional<quantities::ClearanceRange> read_clearance_range(const JsonNode& node, const ReadContext& context) {
+    const auto a = context.body(node.require("a")), b = context.body(node.require("b"));
+    quantities::ClearanceRange range;
+    range.motion = node["motion"].boolean().value_or(false);
+    range.ranges = node["ranges"].boolean().value_or(false);
+    if (range.motion && range.ranges)
+        node["ranges"].fail(ErrorCode::inconsistent, "either over the motion, or over the ranges of the joints, whatever the motion");
+    const auto time = [&](std::string_view key) { return node[key].quantity(Dimension::time, 1, core::files::not_negative); };
+    range.from = time("from");
+    range.to = time("to");
+    for (const std::string_view key : {"from", "to"})
+        if (node[key].exists() && !range.motion)
+            node[key].fail(ErrorCode::inconsistent, "`" + std::string(key) + "` is about a part of the motion; set `motion` to true");
+    if (!a || !b) return std::nullopt;
+    if (*a == *b) {
+        node.fail(ErrorCode::inconsistent, "a clearance is between two bodies; `a` and `b` are the same");
+        return std::nullopt;
+    }
+    range.a = *a;
+    range.b = *b;
+    range.faces_a = read_faces(node["faces_a"], *a, context);
+    range.faces_b = read_faces(node["faces_b"], *b, context);
+    return range;
+}
+
 const std::vector<QuantityType>& quantity_table() {
     static const std::vector<QuantityType> table{
         {"stroke",
@@ -387,13 +440,18 @@ const std::vector<QuantityType>& quantity_table() {
          "where a point of a body is at the steps' ends: along an `axis`, else its distance, from an `origin`"},
         {"marker_speed", with_reduction({"body", "point", "axis"}), read_marker_speed, marker_speed_name, "m/s",
          "velocity of a point of a body at the steps' ends: along an `axis`, else its magnitude"},
-        {"play", {"a", "b"}, read_clearance, play_name, "m", "certified least distance of two bodies as assembled, wanted small"},
+        {"play",
+         {"a", "b", "faces_a", "faces_b"},
+         read_clearance,
+         play_name,
+         "m",
+         "certified least distance of two bodies, or of faces of theirs, as assembled, wanted small"},
         {"clearance",
-         {"a", "b", "motion"},
+         {"a", "b", "faces_a", "faces_b", "motion", "from", "to", "ranges"},
          read_clearance,
          clearance_name,
          "m",
-         "certified least distance of two bodies, as assembled or over the motion"},
+         "certified least distance of two bodies, or of faces of theirs: as assembled, over the motion or the ranges of the joints"},
         {"mass", {"bodies"}, read_mass, mass_name, "kg", "mass of bodies"},
         {"joint_force", with_reduction({"joint", "axis"}), read_joint_force, joint_force_name, "N",
          "force that a joint carries at the steps' ends: along an `axis`, else its magnitude"},

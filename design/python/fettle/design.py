@@ -193,7 +193,8 @@ class FunctionQuantity(Record, Quantity):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Clearance(Record, Measured):
-    """Certified least distance of two bodies [m]: as assembled, or over the motion, or a window of it."""
+    """Certified least distance of two bodies, or of faces of theirs [m]: as assembled, over the motion (or a part or window of it), or over all
+    positions of the joints."""
 
     a: Which
     b: Which
@@ -201,6 +202,11 @@ class Clearance(Record, Measured):
     window: int = 0
     windows: int = 1
     minimum: Number = number("length", 0.0)
+    from_time: Optional[Number] = number("time", None)  #: the part of the motion
+    to_time: Optional[Number] = number("time", None)
+    ranges: bool = False
+    faces_a: List[str] = dataclasses.field(default_factory=list)  #: names of faces that count alone; empty: the whole body
+    faces_b: List[str] = dataclasses.field(default_factory=list)
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
