@@ -63,15 +63,16 @@ Certified certified(double low, double high) {
 }  // namespace
 
 TEST_CASE("a clearance over ranges is least inside them where a corner passes, and settles there to rounding") {
-    const Certified at = certified(0.2, 2.8);
+    const Certified at = certified(-0.2, 2.8);
     // The corner farthest from the pivot points straight at the post.
     const double reach = std::hypot(length, half_width);
     CHECK(at.pair.upper == Approx(post_y - reach).margin(1e-12));
     ModelGradient bar = zero_model_gradient(at.model, 0);
     REQUIRE(range_clearance_adjoint(at.model, at.ranges, at.pair, 1, bar).empty());
     CHECK(bar.bodies[1].pose_start_bar.col(3).isApprox(Vector3(0, 1, 0), 1e-9));
-    CHECK(bar.bodies[0].pose_start_bar.col(3).norm() < 1e-7);  // it turns about the world's pivot
-    CHECK(bar.mechanism.frames[0].point.isApprox(Vector3(0, -1, 0), 1e-7));
+    const Vector3 to_corner = Vector3(length, half_width, 0) / reach;  // along which the arm is longer where it starts
+    CHECK(bar.bodies[0].pose_start_bar.col(3).isApprox(-to_corner, 1e-7));
+    CHECK(bar.mechanism.frames[0].point.isApprox(Vector3(0, -1, 0) + to_corner, 1e-7));
     for (const double limit : bar.mechanism.term_reference) CHECK(limit == 0);
     // Longer by dx: d(reach) = length / reach.
     double by_length = 0;
