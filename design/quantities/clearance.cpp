@@ -34,7 +34,7 @@ core::stepper::Trajectory part_of(const core::stepper::Trajectory& whole, int fi
     return part;
 }
 
-constexpr double of_a_step = 1e-6;  // by which times may miss a step's end, rounded as they are
+constexpr double share_of_step = 1e-6;  // by which times may miss a step's end, rounded as they are
 
 core::clearance::FacesOfBody faces_of(const core::model::Model& model, int body, const std::vector<std::string>& names) {
     core::clearance::FacesOfBody faces{body, {}};
@@ -86,8 +86,8 @@ std::pair<int, int> window_steps(int steps, int window, int windows) {
 std::pair<int, int> steps_of(const ClearanceRange& range, double timestep, int steps) {
     const double end = static_cast<double>(steps);
     const auto place = [&](double time) { return std::clamp(time / timestep, 0.0, end); };
-    const int first = range.from ? std::min(static_cast<int>(std::floor(place(*range.from) + of_a_step)), steps - 1) : 0;
-    const int last = range.to ? static_cast<int>(std::ceil(place(*range.to) - of_a_step)) : steps;
+    const int first = range.from ? std::min(static_cast<int>(std::floor(place(*range.from) + share_of_step)), steps - 1) : 0;
+    const int last = range.to ? static_cast<int>(std::ceil(place(*range.to) - share_of_step)) : steps;
     const auto [from, to] = window_steps(std::max(last - first, 1), range.window, range.windows);
     return {first + from, first + to};
 }
@@ -208,7 +208,7 @@ Errors Clearance::check(const core::model::Model& model, int steps) const {
     if (!range_.motion && (range_.from || range_.to))
         add(ErrorCode::inconsistent, "`from` and `to` are a part of the motion: the clearance is to be over the motion");
     if (!errors.empty()) return errors;
-    const double end = steps * model.timestep, room = of_a_step * model.timestep;
+    const double end = steps * model.timestep, room = share_of_step * model.timestep;
     for (const std::optional<double>& time : {range_.from, range_.to})
         if (time && !(*time >= 0 && *time <= end + room))
             add(ErrorCode::out_of_range, core::base::formatted("%.6g s is not within the motion, which ends at %.6g s", *time, end));

@@ -33,13 +33,15 @@ std::string text(const JsonNode& node) { return node.is_string() ? *node.string(
 std::shared_ptr<const Quantity> read_stroke(const JsonNode& node, const ReadContext& context) {
     const auto body = context.body(node.require("body"));
     const auto axis = context.axis(node.require("axis"));
+    const auto time = [&](std::string_view key) { return node[key].quantity(Dimension::time, 1, core::files::not_negative); };
+    const quantities::StrokeWindow window{time("from"), time("to")};
     if (auto target = context.formulas.followed(node["target"], Dimension::length, context.length_unit)) {
         if (!body || !axis) return nullptr;
-        return std::make_shared<quantities::Stroke>(*body, *axis, std::move(*target));
+        return std::make_shared<quantities::Stroke>(*body, *axis, std::move(*target), window);
     }
     const auto target = node["target"].length(context.length_unit, core::files::not_negative);
     if (!body || !axis) return nullptr;
-    return std::make_shared<quantities::Stroke>(*body, *axis, target);
+    return std::make_shared<quantities::Stroke>(*body, *axis, target, window);
 }
 
 // One that parameters move, at their values; its moved coordinates are added to those.
@@ -286,6 +288,38 @@ std::shared_ptr<const Quantity> read_energy(const JsonNode& node, const ReadCont
         static_cast<quantities::EnergyKind>(std::find(names.begin(), names.end(), *name) - names.begin()), reduction);
 }
 
+// What its table is over: `times`, or `positions` of the quantity that it is along.
+bool read_law_places(const JsonNode& node, const ReadContext& context, quantities::Law::Of& of) {
+    if (!node["along"].exists()) {
+        if (node["positions"].exists())
+            node["positions"].fail(ErrorCode::inconsistent,
+                                   "`positions` are of a law that is `along` a quantity; over the time it has `times`");
+        of.curve.times = node.require("times").numbers().value_or(std::vector<double>{});
+        return true;
+    }
+    if (node["times"].exists()) node["times"].fail(ErrorCode::inconsistent, "a law along a quantity has `positions` in place of `times`");
+    const auto name = node["along"].string();
+    if (!name) return false;
+    std::vector<std::string_view> known;
+    for (const quantities::NamedQuantity& each : context.quantities) {
+        known.push_back(each.name);
+        if (each.name == *name) of.along = std::dynamic_pointer_cast<const quantities::StepSeries>(each.quantity);
+    }
+    if (!of.along) {
+        const bool is_there = std::find(known.begin(), known.end(), *name) != known.end();
+        node["along"].fail(ErrorCode::out_of_range, is_there ? node["along"].shown() + " is no quantity that each step has a number of"
+                                                             : "there is no quantity " + node["along"].shown() +
+                                                                   " above this one in `quantities`" +
+                                                                   (known.empty() ? "" : "; " + core::files::did_you_mean(*name, known)));
+        return false;
+    }
+    const Dimension dimension = of.along->steps_dimension();
+    const double unit = context.unit(dimension);
+    for (const JsonNode& position : node.require("positions").elements())
+        of.curve.times.push_back(position.quantity(dimension, unit).value_or(0));
+    return true;
+}
+
 std::shared_ptr<const Quantity> read_law(const JsonNode& node, const ReadContext& context) {
     static const std::vector<std::string_view> profiles{"linear", "cubic", "trapezoid", "control_points"};
     static const std::vector<std::pair<std::string_view, Dimension>> dimensions{{"length", Dimension::length},
@@ -304,7 +338,7 @@ std::shared_ptr<const Quantity> read_law(const JsonNode& node, const ReadContext
     of.dimension = std::find_if(dimensions.begin(), dimensions.end(), [&](const auto& each) { return each.first == *name; })->second;
     const std::string profile = node["profile"].choice(profiles).value_or("linear");
     of.curve.kind = static_cast<core::scene::CurveKind>(std::find(profiles.begin(), profiles.end(), profile) - profiles.begin());
-    of.curve.times = node.require("times").numbers().value_or(std::vector<double>{});
+    if (!read_law_places(node, context, of)) return nullptr;
     const double unit = context.unit(of.dimension);
     for (const JsonNode& value : node.require("values").elements()) {
         auto formula = context.formulas.followed(value, of.dimension, unit);
@@ -425,7 +459,7 @@ std::optional<quantities::ClearanceRange> read_clearance_range(const JsonNode& n
 const std::vector<QuantityType>& quantity_table() {
     static const std::vector<QuantityType> table{
         {"stroke",
-         {"body", "axis", "target"},
+         {"body", "axis", "target", "from", "to"},
          read_stroke,
          stroke_name,
          "m",
@@ -468,8 +502,8 @@ const std::vector<QuantityType>& quantity_table() {
         {"contact_torque", with_reduction({"body", "of", "point", "axis"}), read_contact_torque, contact_torque_name, "N m",
          "its torque about a point of the body (what a motor that holds a massless one there has to give, with the other sign)"},
         {"energy", with_reduction({"of"}), read_energy, energy_name, "J", "kinetic, potential, spring or total energy at the steps' ends"},
-        {"law", with_reduction({"of", "times", "values", "profile"}), read_law, law_name, "by its dimension",
-         "a table over the time, for expressions over the steps: what a motion is to follow"},
+        {"law", with_reduction({"of", "times", "along", "positions", "values", "profile"}), read_law, law_name, "by its dimension",
+         "a table over the time, or along another quantity, for expressions over the steps: what a motion is to follow"},
         {"expression", with_reduction({"expression"}), read_expression, expression_name, "by its dimension",
          "a formula of the design's named `quantities` and parameters, such as `max_force / mass`; with `over`, of what they are at each "
          "step"}};
@@ -491,21 +525,26 @@ const QuantityType* find_quantity_type(std::string_view name) {
 
 std::vector<quantities::NamedQuantity> read_named_quantities(const JsonNode& node, const ReadContext& context) {
     std::vector<quantities::NamedQuantity> out;
+    const ReadContext so_far{context.scene, context.length_unit, context.end_time, context.formulas, out, context.scenarios};
     std::vector<std::string_view> types = quantity_names();
-    std::erase(types, expression_type);  // it is written where it is used
-    for (const auto& [name, entry] : node.members()) {
-        if (name.starts_with('#')) continue;
-        if (!core::expression::is_possible_name(name))
-            entry.fail(ErrorCode::out_of_range, "a quantity's name must not be empty or contain a single quote");
-        if (context.formulas.scope().find(name) != nullptr)
-            entry.fail(ErrorCode::inconsistent, "a parameter or variable is called `" + name + "` already");
-        const auto type_name = entry.require("type").choice(types);
-        if (!type_name) continue;
-        const QuantityType& type = *find_quantity_type(*type_name);
-        std::vector<std::string_view> keys{"type", "scenario"};
-        keys.insert(keys.end(), type.keys.begin(), type.keys.end());
-        entry.allow_keys(keys);
-        if (const auto quantity = type.read(entry, context)) out.push_back({name, in_named_scenario(entry, quantity, context.scenarios)});
+    std::erase(types, expression_type);          // it is written where it is used
+    for (const bool is_along : {false, true}) {  // what is along another one is read after it
+        for (const auto& [name, entry] : node.members()) {
+            if (entry["along"].exists() != is_along) continue;
+            if (name.starts_with('#')) continue;
+            if (!core::expression::is_possible_name(name))
+                entry.fail(ErrorCode::out_of_range, "a quantity's name must not be empty or contain a single quote");
+            if (context.formulas.scope().find(name) != nullptr)
+                entry.fail(ErrorCode::inconsistent, "a parameter or variable is called `" + name + "` already");
+            const auto type_name = entry.require("type").choice(types);
+            if (!type_name) continue;
+            const QuantityType& type = *find_quantity_type(*type_name);
+            std::vector<std::string_view> keys{"type", "scenario"};
+            keys.insert(keys.end(), type.keys.begin(), type.keys.end());
+            entry.allow_keys(keys);
+            if (const auto quantity = type.read(entry, so_far))
+                out.push_back({name, in_named_scenario(entry, quantity, context.scenarios)});
+        }
     }
     return out;
 }

@@ -223,6 +223,8 @@ class Stroke(Record, Measured):
     body: Which
     axis: Vector
     target: Optional[Number] = number("length", None)
+    from_time: Optional[Number] = number("time", None)  #: the part of the motion that counts
+    to_time: Optional[Number] = number("time", None)
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -322,13 +324,15 @@ class Energy(Series):
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Law(Series):
     """A table over the time that a motion is to follow, for a StepExpression: `lift - Law("length", [0, 1], [0, "3 mm"], "cubic")`. Its values
-    (SI, or with units of what it is of) may be formulas of parameters; outside its times it is constant."""
+    (SI, or with units of what it is of) may be formulas of parameters; outside its times it is constant. With `along`, another quantity of
+    the steps, `times` are numbers of that one (SI)."""
 
     of: str  #: "length", "angle", ...
     times: Sequence[Number] = number("time")
     values: Sequence[Number] = number("any")
     profile: str = "linear"  #: or "cubic", "trapezoid", "control_points", as Curve.kind
     over: str = "end"
+    along: Any = None  #: what the table is over, in place of the time
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -648,7 +652,7 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault], parameters
         return dataclasses.replace(record, formula=formula, parts=parts)
     if kind is Law:
         faults.extend(faults_of(record.values, record.of, "Law/values"))
-        return record
+        return record if record.along is None else dataclasses.replace(record, along=_numbered(record.along, names, faults, parameters))
     if kind is Worst:
         return Worst([_numbered(part, names, faults, parameters) for part in record.parts], record.greatest)
     if kind is InScenario:
