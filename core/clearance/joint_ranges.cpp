@@ -63,6 +63,7 @@ public:
             return base::Error{ErrorCode::missing_key, "joints",
                                "there is no joint, so there are no positions to look at: leave out --ranges"};
         out_.linkage.bodies.resize(model_.bodies.size());
+        out_.joint_of.assign(model_.bodies.size(), -1);
         check_joints();
         if (errors_.empty()) hang_bodies();
         if (errors_.empty()) couple();
@@ -172,6 +173,7 @@ private:
         link.parent = parent;
         hung_by_[body] = &joint;
         if (joint.kind == JointKind::fixed) return;
+        out_.joint_of[body] = static_cast<int>(&joint - model_.mechanism.joints.data());
         const measure::PlacedFrame& frame = frames_[joint.frame_a];
         const double sense = body == joint.b ? 1 : -1;  // the coordinate is of b against a
         Screw screw{0, frame.point, frame.axes.col(2), 0, 0};

@@ -21,6 +21,7 @@ namespace fettle::core::clearance {
 struct JointRanges {
     certificate::Linkage linkage;
     std::vector<std::string> held;  ///< bodies that could move, and stay where they start
+    std::vector<int> joint_of;      ///< [body]: what its screws are of, a place in the mechanism's joints; -1: it has no screws
 };
 
 /// Errors, each naming its joints: balls and planar joints (unsupported), loops (with the joints that close them), a coordinate without

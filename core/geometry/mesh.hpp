@@ -42,7 +42,10 @@ struct Mesh {
     std::vector<int> codimensional_points;  ///< vertices used by no edge
     std::vector<int> triangle_shell;        ///< per triangle: index of its edge-connected shell, 0-based, in order of first triangle
     std::vector<std::string> shell_names;   ///< one per shell
-    std::optional<Deviation> deviation;     ///< from the part that it was drawn for (core/parts); nothing: it is the part
+    /// Per triangle: index into `face_names`; empty: its faces have no names. Connectivity that is built anew leaves both as they are.
+    std::vector<int> triangle_face;
+    std::vector<std::string> face_names;  ///< the part's own: "bore", "rim end", "slot 2" (named_faces.hpp)
+    std::optional<Deviation> deviation;   ///< from the part that it was drawn for (core/parts); nothing: it is the part
 };
 
 /// Fills edges, codimensional_points, triangle_shell (and shell_names where it has the wrong length: "name/0", "name/1", ...)

@@ -122,11 +122,12 @@ SolidMaker SolidReader::extrude(const JsonNode& node, const std::string& name) {
     const ProfileMaker profile = profiles_.read(node["extrude"], name);
     const PartNumber from = numbers_.length(node["from"]), to = numbers_.length(node.require("to"));
     const Ends ends = read_ends(node);
+    const std::string own = node["extrude"].is_string() ? *node["extrude"].string() : "";
     return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
         const Result<Profile> made = profile(sheet);
         if (!made) return made.errors();
         if (const auto error = too_fine(*made, 4, sheet, where)) return *error;
-        return parts::extruded(sheet.drawing, *made, from.at(sheet), to.at(sheet), ends.lower(sheet), ends.upper(sheet));
+        return parts::stacked(sheet.drawing, {{*made, from.at(sheet), to.at(sheet), ends.lower(sheet), ends.upper(sheet), own}});
     };
 }
 

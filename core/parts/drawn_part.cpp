@@ -65,6 +65,17 @@ std::string features_of(const Solid& solid, int a, int b) {
     return name(a) == name(b) ? name(a) + " crosses itself" : name(a) + " and " + name(b) + " cross";
 }
 
+// Each name once, in the order of the surfaces; that of a face without one is empty.
+void name_faces(const Solid& solid, geometry::Mesh& mesh) {
+    std::vector<int> name_of_surface;
+    for (const Surface& surface : solid.surfaces) {
+        const auto known = std::find(mesh.face_names.begin(), mesh.face_names.end(), surface.feature);
+        name_of_surface.push_back(static_cast<int>(known - mesh.face_names.begin()));
+        if (known == mesh.face_names.end()) mesh.face_names.push_back(surface.feature);
+    }
+    for (const Facet& facet : solid.facets) mesh.triangle_face.push_back(name_of_surface[facet.surface]);
+}
+
 }  // namespace
 
 Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::string& name, const DrawnOptions& options) {
@@ -91,6 +102,7 @@ Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::s
     if (options.jacobian) part.jacobian = jacobian_of(drawing, solid);
     for (const Surface& surface : solid.surfaces) part.surfaces.push_back(drawn_surface(surface));
     part.facets = solid.facets;
+    name_faces(solid, part.mesh);
     part.deviation = solid.deviation;
     // Vertices are rounded, and the formulas that lead to them are some tens of operations long.
     const double rounding = usual_rounding(part.mesh.vertices.cwiseAbs().maxCoeff()) + solid.rounding;

@@ -96,7 +96,7 @@ void add_walls(const Level& low, const Level& high, const Rim& low_rim, const Ri
 
 Facet plane_facet(const Number& z, bool upwards, const std::string& feature, SolidBuilder& builder) {
     Surface plane;
-    plane.feature = feature;
+    plane.feature = end_of_feature(feature);
     plane.point = {0, 0, z};
     plane.axis = {0, 0, upwards ? 1 : -1};
     return {builder.add_surface(plane), Side::on};

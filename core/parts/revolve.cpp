@@ -202,7 +202,7 @@ Result<Solid> turned_solid(Drawing& drawing, const Profile& profile, const Numbe
         for (const bool last : {false, true}) {
             const Point2& d = (last ? turn.stations.back() : turn.stations.front()).direction;
             Surface plane;
-            plane.feature = name;
+            plane.feature = end_of_feature(name);
             plane.axis = last ? std::array<Number, 3>{-d.y, d.x, 0} : std::array<Number, 3>{d.y, -d.x, 0};
             const Facet facet{builder.add_surface(plane), Side::on};
             for (const auto& t : *triangles) {

@@ -26,13 +26,16 @@ const char* name_of(SurfaceKind kind);
 template <class T>
 struct SurfaceOf {
     SurfaceKind kind = SurfaceKind::plane;
-    std::string feature;                             ///< the designer's name of the curve that it comes from
+    std::string feature;  ///< the designer's name of the curve that it comes from; of an end, end_of_feature() of the outline's
     std::array<T, 3> point{0, 0, 0}, axis{0, 0, 1};  ///< axis: of length 1
     T radius = 0, slope = 0;
     bool hollow = false;  ///< the material is outside: a bore
 };
 using Surface = SurfaceOf<Number>;
 using DrawnSurface = SurfaceOf<double>;
+
+/// What an end of a solid is called whose outline is `feature`: "rim end".
+inline std::string end_of_feature(const std::string& feature) { return feature.empty() ? feature : feature + " end"; }
 
 /// Where the true surface is, seen from a facet that stands for it.
 enum class Side {

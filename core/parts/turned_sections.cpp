@@ -77,7 +77,7 @@ Result<Solid> turned_section(Drawing& drawing, const FacetedProfile& section, Se
     for (const bool last : {false, true}) {
         const Point2 d = direction(last ? angle : Number(0));
         Surface end;
-        end.feature = feature;
+        end.feature = end_of_feature(feature);
         const double sign = last == upwards ? 1 : -1;
         if (across) {
             end.point = {0, 0, last ? from + rise : from};

@@ -53,6 +53,8 @@ void without_infinities(Json& json) {
 
 }  // namespace
 
+std::string scenario_trajectory(const std::string& scenario) { return "trajectory." + scenario + ".json"; }
+
 Errors others_file(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored) || is_ours(file)) return {};
@@ -92,6 +94,12 @@ void replace_motion(core::files::FilesTogether& files, const std::string& folder
     replace_answer(files, folder);
     for (const char* name : {"motion.glb", "trajectory.start.json", "steps.csv", "contacts.csv", "drives.csv", "joints.csv"})
         files.take_away(std::filesystem::path(folder) / name);
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        const std::string name = entry.path().filename().string();
+        const bool is_of_scenario = name.starts_with("trajectory.") && name.ends_with(".json") && name != "trajectory.json";
+        if (is_of_scenario && core::records::is_trajectory_file(entry.path())) files.take_away(entry.path());
+    }
 }
 
 Errors add_animation(core::files::FilesTogether& files, const std::string& folder, const core::model::Model& model,

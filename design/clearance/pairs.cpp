@@ -335,7 +335,9 @@ private:
 BodyPairs design_pairs(const description::Design& design) {
     BodyPairs pairs;
     const std::function<void(const description::Quantity*)> add = [&](const description::Quantity* quantity) {
-        if (const auto* clearance = dynamic_cast<const quantities::Clearance*>(quantity))
+        const auto* clearance = dynamic_cast<const quantities::Clearance*>(quantity);
+        const bool is_of_bodies = clearance != nullptr && clearance->range().faces_a.empty() && clearance->range().faces_b.empty();
+        if (is_of_bodies)  // what else of two parts is nearer than their faces is not asked for
             pairs.emplace_back(std::minmax(clearance->range().a, clearance->range().b));
         if (const auto* expression = dynamic_cast<const quantities::Expression*>(quantity))
             for (const quantities::NamedQuantity& part : expression->parts()) add(part.quantity.get());

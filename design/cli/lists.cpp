@@ -9,6 +9,7 @@
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/core/geometry/named_faces.hpp"
 #include "fettle/core/scene/joint_kind.hpp"
 #include "fettle/core/setup/build_model.hpp"
 #include "fettle/design/cli/answers.hpp"
@@ -122,6 +123,16 @@ Entry part_entry(const core::part_files::PartFile& part, const std::string& text
     return entry;
 }
 
+/// What its faces are called, as clearances between faces name them.
+void add_faces(const std::string& name, Entry& entry) {
+    const auto part = shapes::FilePart::create(name);
+    const auto mesh = part ? description::drawn_mesh(**part) : Result<core::geometry::Mesh>(part.errors());
+    if (!mesh) return;  // at its defaults it cannot be drawn; --draw says why
+    const std::vector<std::string> names = core::geometry::names_of_faces(*mesh);
+    entry.facts["faces"] = names;
+    if (!names.empty()) entry.details += "  faces: " + core::base::joined(names) + "\n";
+}
+
 /// At its defaults, seen obliquely.
 Errors draw_shape(const std::string& name, const std::string& file) {
     const auto part = shapes::FilePart::create(name);
@@ -158,7 +169,12 @@ int run_shapes(const ShapesArguments& options, Console& console) {
         entries = {part_entry(*part, *text)};
         entries.front().name = options.name;
     }
-    const bool known = std::any_of(entries.begin(), entries.end(), [&](const Entry& entry) { return entry.name == options.name; });
+    bool known = false;
+    for (Entry& entry : entries) {
+        if (entry.name != options.name) continue;
+        known = true;
+        add_faces(options.name, entry);
+    }
     if (!options.draw.empty() && options.name.empty())
         return console.input_errors({{ErrorCode::missing_key, "--draw", "which shape? fettle shapes NAME --draw " + options.draw}});
     if (!options.draw.empty() && known) {

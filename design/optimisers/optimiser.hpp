@@ -26,7 +26,7 @@ inline void narrate(const OptimiserOptions& options, const std::string& line) {
     if (options.narrate) options.narrate(line);
 }
 
-/// The gain in the scaled objective that counts: tolerance |f|, and where f goes to nothing a ten thousandth of that at the start.
+/// The gain in the scaled objective that counts: tolerance |f|, and where f goes to nothing a millionth of that at the start.
 double least_gain(const Evaluator& evaluator, const OptimiserOptions& options, double scaled_objective);
 
 /// What a native optimiser says of itself, for people. Whether it calls its end a success decides nothing: the verdict is our own

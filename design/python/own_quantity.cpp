@@ -238,8 +238,9 @@ std::shared_ptr<const Quantity> stroke_from(py::handle q, const MembersOf& of_q)
     const auto body = of_q.get<int>("body");
     const auto axis = of_q.get<Vector3>("axis");
     const py::object target = q.attr("target");
-    if (is_followed(target)) return std::make_shared<quantities::Stroke>(body, axis, formula_from(target));
-    return std::make_shared<quantities::Stroke>(body, axis, of_q.get<std::optional<double>>("target"));
+    const quantities::StrokeWindow window{of_q.get<std::optional<double>>("from_time"), of_q.get<std::optional<double>>("to_time")};
+    if (is_followed(target)) return std::make_shared<quantities::Stroke>(body, axis, formula_from(target), window);
+    return std::make_shared<quantities::Stroke>(body, axis, of_q.get<std::optional<double>>("target"), window);
 }
 
 // Targets may have formulas at some of their coordinates; these are 0 in the points.
@@ -298,6 +299,10 @@ std::shared_ptr<const Quantity> law_from(py::handle q, const MembersOf& of_q, co
         if (follows) of.moved.push_back({count_of(numbers), formula_from(value)});
         numbers.append(follows ? py::object(py::float_(0.0)) : py::reinterpret_borrow<py::object>(value));
     }
+    if (const py::object along = q.attr("along"); !along.is_none()) {
+        of.along = std::dynamic_pointer_cast<const quantities::StepSeries>(quantity_from_python(along));
+        if (!of.along) refuse(ErrorCode::unsupported, "Law/along", "a law is along a quantity that each step has a number of");
+    }
     of.curve.values = of.moved.empty() ? of_q.get<std::vector<double>>("values") : numbers.cast<std::vector<double>>();
     return std::make_shared<quantities::Law>(std::move(of), reduction);
 }
@@ -321,7 +326,12 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
                                    .b = of_q.get<int>("b"),
                                    .motion = of_q.get<bool>("motion"),
                                    .window = of_q.get<int>("window"),
-                                   .windows = of_q.get<int>("windows")};
+                                   .windows = of_q.get<int>("windows"),
+                                   .from = of_q.get<std::optional<double>>("from_time"),
+                                   .to = of_q.get<std::optional<double>>("to_time"),
+                                   .ranges = of_q.get<bool>("ranges"),
+                                   .faces_a = of_q.get<std::vector<std::string>>("faces_a"),
+                                   .faces_b = of_q.get<std::vector<std::string>>("faces_b")};
         return std::make_shared<Clearance>(range, of_q.get<double>("minimum"));
     }
     if (is("Mass")) {
@@ -442,7 +452,8 @@ py::object series_to_python(const std::shared_ptr<const Quantity>& quantity, con
     else if (const auto* q = dynamic_cast<const Energy*>(quantity.get()))
         out = record_class("Energy")(q->kind(), q->over());
     else if (const auto* q = dynamic_cast<const Law*>(quantity.get()))
-        out = record_class("Law")(q->of().dimension, q->of().curve.times, law_values(*q), q->of().curve.kind, q->over());
+        out = record_class("Law")(q->of().dimension, q->of().curve.times, law_values(*q), q->of().curve.kind, q->over(),
+                                  q->of().along ? quantity_to_python(q->of().along) : py::object(py::none()));
     else if (const auto* q = dynamic_cast<const StepExpression*>(quantity.get()))
         out = record_class("StepExpression")(q->formula(), python_parts(q->parts()), q->over());
     else
@@ -463,7 +474,8 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
     if (const auto* own = dynamic_cast<const PythonQuantity*>(quantity.get())) return own->object();
     if (const auto* q = dynamic_cast<const Clearance*>(quantity.get())) {
         const ClearanceRange& range = q->range();
-        return record_class("Clearance")(range.a, range.b, range.motion, range.window, range.windows, q->minimum());
+        return record_class("Clearance")(range.a, range.b, range.motion, range.window, range.windows, q->minimum(), range.from, range.to,
+                                         range.ranges, range.faces_a, range.faces_b);
     }
     if (const auto* q = dynamic_cast<const Mass*>(quantity.get())) {
         py::list of;
@@ -472,7 +484,7 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
     }
     if (const auto* q = dynamic_cast<const Stroke*>(quantity.get())) {
         const py::object target = q->target() ? number_or_formula(*q->target()) : py::object(py::none());
-        return record_class("Stroke")(q->body(), q->axis(), target);
+        return record_class("Stroke")(q->body(), q->axis(), target, q->window().from, q->window().to);
     }
     if (const auto* q = dynamic_cast<const MarkerPath*>(quantity.get())) {
         const py::object targets = q->moved().empty() ? py::object(py::cast(q->targets())) : moved_targets(*q);

@@ -42,6 +42,14 @@ void check_indices(const Rows& rows, Eigen::Index vertices, const std::string& w
     }
 }
 
+void check_faces(const core::geometry::Mesh& mesh, const std::string& place) {
+    const std::size_t triangles = mesh.triangles.size(), faces = mesh.triangle_face.size();
+    if (faces != 0 && faces != triangles) refuse(ErrorCode::inconsistent, place + "/triangle_face", "one for each triangle, or none");
+    for (const int face : mesh.triangle_face)
+        if (face < 0 || face >= count_of(mesh.face_names))
+            refuse(ErrorCode::mesh_invalid, place + "/triangle_face", "a triangle has a face that is not there: " + std::to_string(face));
+}
+
 }  // namespace
 
 py::object mesh_to_python(core::geometry::Mesh mesh) {
@@ -50,6 +58,8 @@ py::object mesh_to_python(core::geometry::Mesh mesh) {
     members["triangles"] = index_rows<3>(mesh.triangles);
     members["loose_edges"] = index_rows<2>(loose_edges(mesh));
     members["shell_names"] = mesh.shell_names;
+    members["face_names"] = mesh.face_names;
+    members["triangle_face"] = mesh.triangle_face;
     members["vertices"] = rows_of(std::move(mesh.vertices));
     members["deviation"] = mesh.deviation;
     return record_class("Mesh")(**members);
@@ -62,6 +72,9 @@ core::geometry::Mesh mesh_from_python(py::handle source) {
     mesh.vertices = columns_of(source.attr("vertices"), place + "/vertices", "a mesh has vertices of shape (n, 3)");
     mesh.triangles = rows_from<3>(source.attr("triangles"), place + "/triangles", "a mesh has triangles of shape (m, 3)");
     mesh.shell_names = member_of<std::vector<std::string>>(source, "Mesh", "shell_names");
+    mesh.face_names = member_of<std::vector<std::string>>(source, "Mesh", "face_names");
+    mesh.triangle_face = member_of<std::vector<int>>(source, "Mesh", "triangle_face");
+    check_faces(mesh, place);
     mesh.deviation = member_of<std::optional<core::geometry::Deviation>>(source, "Mesh", "deviation");
     const auto edges = rows_from<2>(source.attr("loose_edges"), place + "/loose_edges", "a mesh has loose edges of shape (k, 2)");
     check_indices(mesh.triangles, mesh.vertices.cols(), place + "/triangles", "a triangle of a mesh");

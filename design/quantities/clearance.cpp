@@ -3,11 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fettle/adjoint/clearance/clearance_adjoint.hpp"
 #include "fettle/adjoint/clearance/distinct_witnesses.hpp"
+#include "fettle/adjoint/clearance/range_adjoint.hpp"
 #include "fettle/adjoint/clearance/tied_features.hpp"
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/clearance/range_clearance.hpp"
+#include "fettle/core/files/nearest_word.hpp"
 
 namespace fettle::design::quantities {
 
@@ -29,6 +34,37 @@ core::stepper::Trajectory part_of(const core::stepper::Trajectory& whole, int fi
     return part;
 }
 
+constexpr double share_of_step = 1e-6;  // by which times may miss a step's end, rounded as they are
+
+core::clearance::FacesOfBody faces_of(const core::model::Model& model, int body, const std::vector<std::string>& names) {
+    core::clearance::FacesOfBody faces{body, {}};
+    for (const std::string& name : names) {
+        const std::vector<int> more = core::geometry::triangles_of_face(model.bodies[body].mesh, name);
+        faces.triangles.insert(faces.triangles.end(), more.begin(), more.end());
+    }
+    std::sort(faces.triangles.begin(), faces.triangles.end());
+    faces.triangles.erase(std::unique(faces.triangles.begin(), faces.triangles.end()), faces.triangles.end());
+    return faces;
+}
+
+core::clearance::FacesAlone faces_alone(const core::model::Model& model, const ClearanceRange& range) {
+    return {model, faces_of(model, range.a, range.faces_a), faces_of(model, range.b, range.faces_b)};
+}
+
+Errors check_faces(const core::model::Model& model, int body, const std::vector<std::string>& names) {
+    Errors errors;
+    const core::model::Body& of = model.bodies[body];
+    const std::vector<std::string> known = core::geometry::names_of_faces(of.mesh);
+    for (const std::string& name : names) {
+        if (!core::geometry::triangles_of_face(of.mesh, name).empty()) continue;
+        const std::string what = "`" + of.name + "` has no face \"" + name + "\"";
+        errors.push_back({ErrorCode::unknown_key, "",
+                          known.empty() ? what + ": its mesh names none; faces have the names of a part's file"
+                                        : what + "; " + core::files::did_you_mean(name, {known.begin(), known.end()})});
+    }
+    return errors;
+}
+
 constexpr double window_accuracy = 1e-3;  // of the value, to which the nearest instants of the windows are found
 
 // Surfaces apart, solids not.
@@ -47,15 +83,50 @@ std::pair<int, int> window_steps(int steps, int window, int windows) {
     return {edge(window), std::max(edge(window + 1), edge(window) + 1)};
 }
 
+std::pair<int, int> steps_of(const ClearanceRange& range, double timestep, int steps) {
+    const double end = static_cast<double>(steps);
+    const auto place = [&](double time) { return std::clamp(time / timestep, 0.0, end); };
+    const int first = range.from ? std::min(static_cast<int>(std::floor(place(*range.from) + share_of_step)), steps - 1) : 0;
+    const int last = range.to ? static_cast<int>(std::ceil(place(*range.to) - share_of_step)) : steps;
+    const auto [from, to] = window_steps(std::max(last - first, 1), range.window, range.windows);
+    return {first + from, first + to};
+}
+
+PairClearance Clearance::certify_ranges(const core::model::Model& model, const core::clearance::ClearanceOptions& options) const {
+    const auto ranges = core::clearance::joint_ranges(model);
+    if (!ranges) {  // of the scene as written there were some: check()
+        PairClearance none;
+        none.a = range_.a;
+        none.b = range_.b;
+        none.is_bounded = false;
+        none.upper = std::numeric_limits<double>::infinity();
+        none.reason = ranges.errors().front().where + ": " + ranges.errors().front().message;
+        return none;
+    }
+    return adjoint::clearance::settled_witness(
+        model, *ranges, core::clearance::certify_ranges(model, *ranges, {{range_.a, range_.b, minimum_}}, options).front());
+}
+
 PairClearance Clearance::certify(const Simulated& s) const {
+    if (has_faces()) {
+        const core::clearance::FacesAlone faces = faces_alone(s.model, range_);
+        ClearanceRange whole = range_;
+        whole.faces_a.clear();
+        whole.faces_b.clear();
+        Simulated alone{faces.model(), s.trajectory, s.clearance_tolerance};
+        return faces.in_whole(Clearance(whole, minimum_).certify(alone));
+    }
     core::clearance::ClearanceOptions options;
     options.tolerance = s.clearance_tolerance;
     options.sample_nodes = false;
     options.measure_overlap = false;
     options.motion = range_.motion;
+    if (range_.ranges) return certify_ranges(s.model, options);
     const std::vector<core::clearance::PairRequest> request{{range_.a, range_.b, minimum_}};
-    if (!range_.motion || range_.windows <= 1) return core::clearance::certify_clearance(s.model, s.trajectory, request, options).front();
-    const auto [first, last] = window_steps(count_of(s.trajectory.steps), range_.window, range_.windows);
+    if (!range_.motion) return core::clearance::certify_clearance(s.model, s.trajectory, request, options).front();
+    const auto steps = count_of(s.trajectory.steps);
+    const auto [first, last] = steps_of(range_, s.trajectory.timestep, steps);
+    if (first == 0 && last == steps) return core::clearance::certify_clearance(s.model, s.trajectory, request, options).front();
     PairClearance pair = core::clearance::certify_clearance(s.model, part_of(s.trajectory, first, last), request, options).front();
     if (pair.witness.step >= 0) pair.witness.step += first;
     return pair;
@@ -77,19 +148,31 @@ Measurement Clearance::value(const Simulated& s) const {
 
 void Clearance::add_seeds(const Simulated& s, const Measurement& measured, double scale, description::Seeds& seeds) const {
     const double sign = one_lies_inside(*measured.clearance) ? -1 : 1;
+    if (range_.ranges) {
+        const auto ranges = core::clearance::joint_ranges(s.model);
+        const std::string refusal =
+            ranges ? adjoint::clearance::range_clearance_adjoint(s.model, *ranges, *measured.clearance, sign * scale, seeds.model_bar)
+                   : ranges.errors().front().message;
+        if (seeds.refusal.empty()) seeds.refusal = refusal;
+        return;
+    }
     add_clearance_seeds(s, *measured.clearance, sign * scale, seeds);
 }
 
 // Those at most `room` farther apart than the witness is.
 std::vector<Witness> Clearance::other_witnesses(const Simulated& s, const PairClearance& pair, double room) const {
-    std::vector<Witness> near = adjoint::clearance::tied_features(s.model, s.trajectory, pair.a, pair.b, pair.witness, room);
+    const std::optional<core::clearance::FacesAlone> faces = has_faces() ? std::optional(faces_alone(s.model, range_)) : std::nullopt;
+    const core::model::Model& model = faces ? faces->model() : s.model;
+    std::vector<Witness> near = adjoint::clearance::tied_features(model, s.trajectory, pair.a, pair.b, pair.witness, room);
     if (range_.motion) {
-        const auto [first, last] = window_steps(count_of(s.trajectory.steps), range_.window, range_.windows);
+        const auto [first, last] = steps_of(range_, s.trajectory.timestep, count_of(s.trajectory.steps));
         const std::vector<Witness> later =
-            core::clearance::nearest_by_window(s.model, s.trajectory, {pair.a, pair.b}, {first, last, branch_windows},
+            core::clearance::nearest_by_window(model, s.trajectory, {pair.a, pair.b}, {first, last, branch_windows},
                                                pair.witness.distance + room, std::min(window_accuracy * pair.upper, room));
         near.insert(near.end(), later.begin(), later.end());
     }
+    if (faces)
+        for (Witness& witness : near) witness = faces->in_whole(witness);
     const auto has_none = [&](const Witness& w) {
         return !adjoint::clearance::no_derivative_at(s.model, s.trajectory, pair.a, pair.b, w).empty();
     };
@@ -101,7 +184,7 @@ std::vector<Witness> Clearance::other_witnesses(const Simulated& s, const PairCl
 std::vector<Branch> Clearance::branches(const Simulated& s, const Measurement& measured, double limit) const {
     std::vector<Branch> branches{{measured.value, [&](double scale, description::Seeds& seeds) { add_seeds(s, measured, scale, seeds); }}};
     const PairClearance& pair = *measured.clearance;
-    if (pair.is_clash() || !(pair.witness.distance > 0) || !(limit >= measured.value)) return branches;
+    if (range_.ranges || pair.is_clash() || !(pair.witness.distance > 0) || !(limit >= measured.value)) return branches;
     const double rounding = pair.upper - pair.witness.distance;  // that the certificate adds to the witness's
     for (const Witness& witness : other_witnesses(s, pair, limit - measured.value)) {
         PairClearance other = pair;
@@ -115,10 +198,28 @@ std::vector<Branch> Clearance::branches(const Simulated& s, const Measurement& m
 Errors Clearance::check(const core::model::Model& model, int steps) const {
     Errors errors = description::check_body(model, range_.a);
     for (const Error& error : description::check_body(model, range_.b)) errors.push_back(error);
-    if (range_.a == range_.b) errors.push_back({ErrorCode::inconsistent, "", "a clearance is between two bodies; both are the same"});
-    if (range_.motion && steps < 1) errors.push_back({ErrorCode::out_of_range, "", "a clearance over the motion needs a step"});
+    const auto add = [&](ErrorCode code, const std::string& message) { errors.push_back({code, "", message}); };
+    if (range_.a == range_.b) add(ErrorCode::inconsistent, "a clearance is between two bodies; both are the same");
+    if (range_.motion && steps < 1) add(ErrorCode::out_of_range, "a clearance over the motion needs a step");
+    if (range_.motion && range_.ranges)
+        add(ErrorCode::inconsistent, "a clearance is over the motion, or over the ranges of the joints, whatever the motion; not both");
     if (range_.windows < 1 || range_.window < 0 || range_.window >= range_.windows)
-        errors.push_back({ErrorCode::out_of_range, "", "the windows of a motion are counted from 0, and are at least 1"});
+        add(ErrorCode::out_of_range, "the windows of a motion are counted from 0, and are at least 1");
+    if (!range_.motion && (range_.from || range_.to))
+        add(ErrorCode::inconsistent, "`from` and `to` are a part of the motion: the clearance is to be over the motion");
+    if (!errors.empty()) return errors;
+    const double end = steps * model.timestep, room = share_of_step * model.timestep;
+    for (const std::optional<double>& time : {range_.from, range_.to})
+        if (time && !(*time >= 0 && *time <= end + room))
+            add(ErrorCode::out_of_range, core::base::formatted("%.6g s is not within the motion, which ends at %.6g s", *time, end));
+    if (range_.from && range_.to && !(*range_.from < *range_.to))
+        add(ErrorCode::inconsistent, core::base::formatted("a part of the motion begins before it ends; this one is from %.6g s to %.6g s",
+                                                           *range_.from, *range_.to));
+    for (const Errors& faults : {check_faces(model, range_.a, range_.faces_a), check_faces(model, range_.b, range_.faces_b)})
+        errors.insert(errors.end(), faults.begin(), faults.end());
+    if (!range_.ranges) return errors;
+    if (const auto ranges = core::clearance::joint_ranges(model); !ranges)
+        for (const Error& error : ranges.errors()) add(error.code, error.where + ": " + error.message);
     return errors;
 }
 

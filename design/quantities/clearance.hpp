@@ -1,23 +1,34 @@
 // SPDX-License-Identifier: MIT
-/// Certified clearance of two bodies [m], as assembled or over the motion (or a window of it: the least distance over a long motion jumps
-/// between times that are far apart, and is not smooth there; as one quantity per window each follows its own). As assembled, for a pin in
-/// a bore drawn concentric, it is the play of the fit (half the diametral one), as long as the fit is where the two are closest.
+/// Certified clearance of two bodies [m], as assembled, over the motion (or a part of it: the least distance over a long motion jumps
+/// between times that are far apart, and is not smooth there; as one quantity per window each follows its own), or over all positions of
+/// the joints within their limits, whatever the motion. As assembled, for a pin in a bore drawn concentric, it is the play of the fit (half
+/// the diametral one), as long as the fit is where the two are closest.
 ///
-/// It is the clearance of solids: where they are found to pass through each other no bound is met; where one lies wholly inside the other's
-/// material (PairClearance::solids) it is minus the distance of the surfaces, and no bound is met either. For bodies that are not closed,
-/// which have no inside, it is the distance of the surfaces.
+/// Between faces that the parts name (core/geometry/named_faces.hpp) it is the least distance of these faces, whatever else is nearer: of a
+/// pin and a slot. Faces have no inside: that the solids do not overlap is what the clearance of the whole pair says.
+///
+/// Else it is the clearance of solids: where they are found to pass through each other no bound is met; where one lies wholly inside the
+/// other's material (PairClearance::solids) it is minus the distance of the surfaces, and no bound is met either. For bodies that are not
+/// closed, which have no inside, it is the distance of the surfaces.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "fettle/core/clearance/faces_alone.hpp"
 #include "fettle/design/description/quantity.hpp"
 
 namespace fettle::design::quantities {
 
 struct ClearanceRange {
-    int a = 0, b = 0;             ///< bodies
-    bool motion = false;          ///< over the trajectory; false: as assembled
-    int window = 0, windows = 1;  ///< which of how many equal parts of the motion
+    int a = 0, b = 0;                               ///< bodies
+    bool motion = false;                            ///< over the trajectory; false: as assembled, or over the ranges
+    int window = 0, windows = 1;                    ///< which of how many equal parts of the motion, or of what `from` and `to` leave of it
+    std::optional<double> from{}, to{};             ///< the part of the motion [s]: all steps of which some of the time lies within
+    bool ranges = false;                            ///< over all positions of the joints (core/clearance/joint_ranges.hpp)
+    std::vector<std::string> faces_a{}, faces_b{};  ///< names of faces that count alone; empty: the whole body
 };
 
 class Clearance : public description::Quantity {
@@ -32,7 +43,7 @@ public:
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
     /// The witness, then the most distinct (adjoint/clearance/distinct_witnesses.hpp) of the features that come as near at its instant, and
-    /// of the nearest instants in each of `branch_windows` equal parts of the range's time.
+    /// of the nearest instants in each of `branch_windows` equal parts of the range's time. Over the ranges of joints: the witness alone.
     std::vector<description::Branch> branches(const description::Simulated& simulated, const description::Measurement& measured,
                                               double limit) const override;
     bool is_at_rest() const override { return !range_.motion; }
@@ -42,13 +53,18 @@ public:
     static constexpr int most_branches = 6, most_branches_at_rest = 12, branch_windows = 8;
 
 private:
+    bool has_faces() const { return !range_.faces_a.empty() || !range_.faces_b.empty(); }
     std::vector<core::clearance::Witness> other_witnesses(const description::Simulated& simulated,
                                                           const core::clearance::PairClearance& pair, double room) const;
     core::clearance::PairClearance certify(const description::Simulated& simulated) const;
+    core::clearance::PairClearance certify_ranges(const core::model::Model& model, const core::clearance::ClearanceOptions& options) const;
 
     ClearanceRange range_;
     double minimum_;
 };
+
+/// The steps [first, last) that a range is over, of so many of `timestep` [s].
+std::pair<int, int> steps_of(const ClearanceRange& range, double timestep, int steps);
 
 /// Steps [first, last) of window w of n: [floor(w steps / n), floor((w + 1) steps / n)), and one step where that is empty (n > steps).
 std::pair<int, int> window_steps(int steps, int window, int windows);

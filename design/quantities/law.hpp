@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// A law that a motion is to follow: a table over the time (core/scene/curve.hpp, as a motor's) at each step's end, whose values may follow
-/// from parameters,
-///   y_t = sum_k w_k(time_t) v_k(p)
+/// A law that a motion is to follow: a table (core/scene/curve.hpp, as a motor's) at each step's end, over the time or along what another
+/// quantity is at that step, such as the angle of a cam; its values may follow from parameters,
+///   y_t = sum_k w_k(x_t) v_k(p),   x_t = time_t, or the other's number;   dy_t = sum_k w_k dv_k + y'(x_t) dx_t
 /// In an expression over the steps (step_expression.hpp) it is what a lift or a turn deviates from.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "fettle/core/expression/formula.hpp"
@@ -25,13 +26,14 @@ public:
         core::scene::Curve curve;                 ///< SI
         Dimension dimension = Dimension::length;  ///< of its values
         std::vector<MovedValue> moved{};          ///< in place of those of `curve`
+        std::shared_ptr<const StepSeries> along;  ///< what the table is over, in place of the time; null: the time
     };
     Law(Of of, const Reduction& reduction) : StepSeries(reduction), of_(std::move(of)) {}
 
     const Of& of() const { return of_; }
     Dimension step_dimension() const override { return of_.dimension; }
     std::vector<std::string> parameters() const override;
-    /// A table that is none: no value for each time, times that do not increase.
+    /// A table that is none: no value for each time, times that do not increase. What it is along is not plain (Reduction::is_plain).
     Errors check(const core::model::Model& model, int steps) const override;
 
 protected:
@@ -40,6 +42,9 @@ protected:
                           description::Seeds& seeds) const override;
 
 private:
+    core::scene::Curve curve_of(const description::Simulated& simulated) const;
+    std::vector<double> places(const description::Simulated& simulated) const;
+
     Of of_;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/text.hpp"
 #include "fettle/design/quantities/own_formula.hpp"
 
 namespace fettle::design::quantities {
@@ -25,10 +26,17 @@ Extreme smooth_maximum(const std::vector<double>& y) {
     return {y[i] + b * s + a * s * s, static_cast<int>(i) - 1, {s * (s - 1) / 2, 1 - s * s, s * (s + 1) / 2}};
 }
 
+std::pair<int, int> Stroke::configurations(double timestep, int steps) const {
+    constexpr double of_a_step = 1e-6;  // by which times may miss a step's end, rounded as they are
+    const int first = window_.from ? static_cast<int>(std::ceil(*window_.from / timestep - of_a_step)) : 0;
+    const int last = window_.to ? static_cast<int>(std::floor(*window_.to / timestep + of_a_step)) : steps;
+    return {first, std::min(last, steps) + 1};
+}
+
 std::vector<double> Stroke::coordinates(const Simulated& simulated, double sign) const {
+    const auto [first, last] = configurations(simulated.trajectory.timestep, count_of(simulated.trajectory.steps));
     std::vector<double> y;
-    y.reserve(simulated.trajectory.poses.size());
-    for (const auto& poses : simulated.trajectory.poses) y.push_back(sign * axis_.dot(poses[body_].position));
+    for (int t = first; t < last; ++t) y.push_back(sign * axis_.dot(simulated.trajectory.poses[t][body_].position));
     return y;
 }
 
@@ -52,11 +60,12 @@ VectorX Stroke::deviations(const Simulated& simulated) const {
 }
 
 void Stroke::add_deviation_seeds(const Simulated& simulated, int, double scale, Seeds& seeds) const {
+    const int begin = configurations(simulated.trajectory.timestep, count_of(simulated.trajectory.steps)).first;
     for (const double sign : {1.0, -1.0}) {
         const Extreme extreme = smooth_maximum(coordinates(simulated, sign));
         for (size_t k = 0; k < 3; ++k) {
             if (extreme.weights[k] == 0) continue;
-            seeds.trajectory_bar.pose_bar[static_cast<size_t>(extreme.first) + k][body_].col(3) +=
+            seeds.trajectory_bar.pose_bar[static_cast<size_t>(begin + extreme.first) + k][body_].col(3) +=
                 scale * extreme.weights[k] * sign * axis_;
         }
     }
@@ -65,9 +74,14 @@ void Stroke::add_deviation_seeds(const Simulated& simulated, int, double scale, 
 
 std::vector<std::string> Stroke::parameters() const { return target_ ? target_->inputs : std::vector<std::string>(); }
 
-Errors Stroke::check(const core::model::Model& model, int) const {
+Errors Stroke::check(const core::model::Model& model, int steps) const {
     Errors errors = description::check_body(model, body_);
     if (!(std::abs(axis_.norm() - 1) < 1e-6)) errors.push_back({ErrorCode::out_of_range, "", "the axis of a stroke is a unit vector"});
+    const auto [first, last] = configurations(model.timestep, steps);
+    if (window_.from.value_or(0) < 0 || !(first < last))
+        errors.push_back({ErrorCode::out_of_range, "",
+                          "no configuration of the motion is within `from` and `to`; it ends at " +
+                              core::base::formatted("%.6g s", steps * model.timestep)});
     return errors;
 }
 

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/expression/formula.hpp"
@@ -26,19 +27,27 @@ struct Extreme {
 /// Largest value of the sequence in the sense above. Contract: not empty. The earliest of equal ones.
 Extreme smooth_maximum(const std::vector<double>& y);
 
+/// A part of the motion: the configurations at times within it, the start included [s]. Default: all of it.
+struct StrokeWindow {
+    std::optional<double> from{}, to{};
+};
+
 class Stroke : public description::Quantity {
 public:
     /// @param axis    Unit vector, world.
     /// @param target  If given, the value is (stroke - target)^2 [m^2], else the stroke [m].
-    Stroke(int body, const Vector3& axis, std::optional<double> target) : body_(body), axis_(axis) {
+    Stroke(int body, const Vector3& axis, std::optional<double> target, StrokeWindow window = {})
+        : body_(body), axis_(axis), window_(window) {
         if (target) target_ = core::expression::constant_formula(*target, core::expression::powers_of(Dimension::length));
     }
     /// @param target  A formula of the design's parameters [m].
-    Stroke(int body, const Vector3& axis, core::expression::Formula target) : body_(body), axis_(axis), target_(std::move(target)) {}
+    Stroke(int body, const Vector3& axis, core::expression::Formula target, StrokeWindow window = {})
+        : body_(body), axis_(axis), target_(std::move(target)), window_(window) {}
 
     int body() const { return body_; }
     const Vector3& axis() const { return axis_; }
     const std::optional<core::expression::Formula>& target() const { return target_; }
+    const StrokeWindow& window() const { return window_; }
     Dimension dimension() const override { return target_ ? Dimension::area : Dimension::length; }
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
@@ -49,6 +58,7 @@ public:
     Errors check(const core::model::Model& model, int steps) const override;
 
 private:
+    std::pair<int, int> configurations(double timestep, int steps) const;  // [first, second) that are in the window
     std::vector<double> coordinates(const description::Simulated& simulated, double sign) const;
     double stroke(const description::Simulated& simulated) const;
     double deviation(const description::Simulated& simulated) const;  // from the target; without one the stroke
@@ -56,6 +66,7 @@ private:
     int body_;
     Vector3 axis_;
     std::optional<core::expression::Formula> target_;
+    StrokeWindow window_;
 };
 
 }  // namespace fettle::design::quantities

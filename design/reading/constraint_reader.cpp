@@ -7,7 +7,6 @@
 #include <set>
 
 #include "fettle/core/expression/parse_formula.hpp"
-#include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
 #include "fettle/design/reading/relation_reader.hpp"
@@ -81,8 +80,9 @@ private:
 
     // `minimum` instead of bounds, and several constraints where the motion is divided.
     void read_clearance(const JsonNode& node, std::vector<Constraint>& out) {
-        node.allow_keys({"type", "name", "scenario", "a", "b", "minimum", "margin", "motion", "windows"});
-        const auto a = context_.body(node.require("a")), b = context_.body(node.require("b"));
+        node.allow_keys(
+            {"type", "name", "scenario", "a", "b", "faces_a", "faces_b", "minimum", "margin", "motion", "from", "to", "windows", "ranges"});
+        std::optional<quantities::ClearanceRange> range = read_clearance_range(node, context_);
         Bounds bounds;
         bounds.unit = context_.length_unit;
         const auto minimum = moving(node["minimum"], Dimension::length);
@@ -90,17 +90,17 @@ private:
             node["minimum"].fail(ErrorCode::out_of_range, "at the parameters' values this is not greater than 0");
         bounds.lower = minimum ? 0 : node.require("minimum").length(context_.length_unit, core::files::positive).value_or(0);
         bounds.margin = node["margin"].length(context_.length_unit, core::files::not_negative).value_or(clearance_margin_);
-        const bool motion = node["motion"].boolean().value_or(false);
         const int windows = node["windows"].integer(1, 1000).value_or(1);
-        if (windows > 1 && !motion) node["windows"].fail(ErrorCode::inconsistent, "`windows` divide the motion; set `motion` to true");
-        if (!a || !b) return;
-        if (*a == *b) node.fail(ErrorCode::inconsistent, "a clearance is between two bodies; `a` and `b` are the same");
+        if (!range) return;
+        if (windows > 1 && !range->motion)
+            node["windows"].fail(ErrorCode::inconsistent, "`windows` divide the motion; set `motion` to true");
+        range->windows = windows;
         const std::string measured = find_quantity_type("clearance")->default_name(node);
         const std::string name = name_of(node, minimum ? less(measured, *minimum) : measured);
         for (int w = 0; w < windows; ++w) {
             const std::string part = windows > 1 ? name + " window " + std::to_string(w + 1) : name;
-            const quantities::ClearanceRange range{*a, *b, motion, w, windows};
-            std::shared_ptr<const description::Quantity> quantity = std::make_shared<quantities::Clearance>(range, bounds.lower);
+            range->window = w;
+            std::shared_ptr<const description::Quantity> quantity = std::make_shared<quantities::Clearance>(*range, bounds.lower);
             if (minimum) quantity = beyond(std::move(quantity), *minimum, measured);
             out.push_back({part, bounds, std::move(quantity)});
         }

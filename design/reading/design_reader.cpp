@@ -75,6 +75,7 @@ public:
         design_.constraints = read_constraints(root["constraints"], context, margin);
         design_.relations = read_relations(root["constraints"], context, design_.parameters, design_.constraints);
         check_use(root["parameters"]);
+        file_.quantities = named;
         file_.output = root["output"].string().value_or("");
         if (const std::string fault = core::base::name_fault(file_.output); !file_.output.empty() && !fault.empty())
             root["output"].fail(ErrorCode::out_of_range, "the folder's name " + fault);
@@ -157,39 +158,70 @@ private:
         return out;
     }
 
-    // Each is the scene read again, with its own settings in place of the design's.
     ScenarioNames read_scenarios(const JsonNode& node, const JsonNode& set, const DesignFormulas& formulas) {
         ScenarioNames names;
         if (node.exists() && node.is_array() && node.elements().empty())
             node.fail(ErrorCode::out_of_range, "a design with `scenarios` has one");
         for (const JsonNode& entry : node.elements()) {
-            entry.allow_keys({"name", "description", "set", "steps"});
+            entry.allow_keys({"name", "description", "set", "steps", "play", "along", "press"});
             entry["description"].string();
             const std::string name = entry.require("name").string().value_or("");
-            const bool taken = std::find(names.names.begin(), names.names.end(), name) != names.names.end();
             const std::string fault = core::base::name_fault(name);
             if (name.empty() && entry["name"].exists()) entry["name"].fail(ErrorCode::out_of_range, "a scenario has a name");
             if (!fault.empty()) entry["name"].fail(ErrorCode::out_of_range, "a scenario's name " + fault);
-            if (taken || is_scenario_word(name))
-                entry["name"].fail(ErrorCode::inconsistent,
-                                   taken ? "another scenario has this name" : "\"" + name + "\" means several scenarios");
-            Result<JsonDocument> scene = JsonDocument::read(file_.scene_path);
-            if (!scene) {
-                scene_errors_ = scene.errors();
-                return names;
+            const std::optional<Vector3> press = read_play(entry);
+            if (!press) {
+                if (!add_scenario(entry, name, Vector3::Zero(), set, formulas, names)) return names;
+                continue;
             }
-            std::optional<Setting> setting = read_setting(*scene, {set, entry["set"]}, formulas);
-            if (!setting) return names;
-            check_same_things(setting->scene, entry);
-            const auto& end_time = setting->scene.end_time;
-            const int steps = entry["steps"].integer(1).value_or(
-                end_time == design_.scene.end_time && setting->scene.timestep == design_.scene.timestep ? design_.steps
-                                                                                                        : steps_of(setting->scene));
-            for (const auto& [pointer, value] : entry["set"].members()) names.parts_differ = names.parts_differ || !leaves_parts(pointer);
-            names.names.push_back(name);
-            design_.scenarios.push_back({name, std::move(setting->scene), std::move(setting->shapes), std::move(setting->numbers), steps});
+            if (!add_scenario(entry, name + " forwards", *press, set, formulas, names)) return names;
+            if (!add_scenario(entry, name + " backwards", -*press, set, formulas, names)) return names;
         }
         return names;
+    }
+
+    // What presses all bodies to one side of their play [m/s^2]; nothing: the entry is one scenario, as it stands.
+    std::optional<Vector3> read_play(const JsonNode& entry) const {
+        const bool is_both = entry["play"].choice({"both"}).has_value();
+        for (const std::string_view key : {"along", "press"})
+            if (entry[key].exists() && !entry["play"].exists())
+                entry[key].fail(ErrorCode::inconsistent, "`" + std::string(key) + "` goes with \"play\": \"both\"");
+        if (!is_both) return std::nullopt;
+        const auto along = entry.require("along").vector3();
+        const double press = entry["press"].quantity(Dimension::acceleration, 1, core::files::positive).value_or(9.81);
+        if (!along) return std::nullopt;
+        if (along->norm() > 0) return press * along->normalized();
+        entry["along"].fail(ErrorCode::out_of_range, "a direction is not of length 0");
+        return std::nullopt;
+    }
+
+    // The scene read again, with its own settings in place of the design's. False: a fault that ends the reading.
+    bool add_scenario(const JsonNode& entry, const std::string& name, const Vector3& press, const JsonNode& set,
+                      const DesignFormulas& formulas, ScenarioNames& names) {
+        const bool taken = std::find(names.names.begin(), names.names.end(), name) != names.names.end();
+        if (taken || is_scenario_word(name))
+            entry["name"].fail(ErrorCode::inconsistent,
+                               taken ? "another scenario has this name" : "\"" + name + "\" means several scenarios");
+        Result<JsonDocument> scene = JsonDocument::read(file_.scene_path);
+        if (!scene) {
+            scene_errors_ = scene.errors();
+            return false;
+        }
+        std::optional<Setting> setting = read_setting(*scene, {set, entry["set"]}, formulas);
+        if (!setting) return false;
+        check_same_things(setting->scene, entry);
+        const auto is_gravity = [](const core::scene::BoundNumber& number) { return number.place.starts_with("/gravity"); };
+        if (press != Vector3::Zero() && std::any_of(setting->numbers.begin(), setting->numbers.end(), is_gravity))
+            entry["play"].fail(ErrorCode::unsupported, "the scene's gravity follows from parameters, so nothing can be added to it");
+        setting->scene.gravity += press;
+        const auto& end_time = setting->scene.end_time;
+        const int steps = entry["steps"].integer(1).value_or(
+            end_time == design_.scene.end_time && setting->scene.timestep == design_.scene.timestep ? design_.steps
+                                                                                                    : steps_of(setting->scene));
+        for (const auto& [pointer, value] : entry["set"].members()) names.parts_differ = names.parts_differ || !leaves_parts(pointer);
+        names.names.push_back(name);
+        design_.scenarios.push_back({name, std::move(setting->scene), std::move(setting->shapes), std::move(setting->numbers), steps});
+        return true;
     }
 
     // Settings of these change nothing of the parts, nor where they are at the start.

@@ -9,6 +9,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/design/description/design.hpp"
+#include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 
 namespace fettle::design::reading {
@@ -21,6 +22,7 @@ struct DesignFile {
     Unit length_unit;    ///< of the file
     std::string output;  ///< folder, absolute or relative to the working directory; empty: not said
     std::vector<std::string> warnings;
+    std::vector<quantities::NamedQuantity> quantities = {};  ///< of its `quantities`
 };
 
 /// How many times as fine as the files say. Contract: both at least 1.

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/core/geometry/named_faces.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
 #include "fettle/design/quantities/body_turn.hpp"
-#include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/contact_force.hpp"
 #include "fettle/design/quantities/energy.hpp"
 #include "fettle/design/quantities/expression.hpp"
@@ -33,13 +33,15 @@ std::string text(const JsonNode& node) { return node.is_string() ? *node.string(
 std::shared_ptr<const Quantity> read_stroke(const JsonNode& node, const ReadContext& context) {
     const auto body = context.body(node.require("body"));
     const auto axis = context.axis(node.require("axis"));
+    const auto time = [&](std::string_view key) { return node[key].quantity(Dimension::time, 1, core::files::not_negative); };
+    const quantities::StrokeWindow window{time("from"), time("to")};
     if (auto target = context.formulas.followed(node["target"], Dimension::length, context.length_unit)) {
         if (!body || !axis) return nullptr;
-        return std::make_shared<quantities::Stroke>(*body, *axis, std::move(*target));
+        return std::make_shared<quantities::Stroke>(*body, *axis, std::move(*target), window);
     }
     const auto target = node["target"].length(context.length_unit, core::files::not_negative);
     if (!body || !axis) return nullptr;
-    return std::make_shared<quantities::Stroke>(*body, *axis, target);
+    return std::make_shared<quantities::Stroke>(*body, *axis, target, window);
 }
 
 // One that parameters move, at their values; its moved coordinates are added to those.
@@ -95,15 +97,27 @@ std::shared_ptr<const Quantity> read_marker_path(const JsonNode& node, const Rea
     return std::make_shared<quantities::MarkerPath>(*body, *point, targets, times, std::move(moved));
 }
 
-std::shared_ptr<const Quantity> read_clearance(const JsonNode& node, const ReadContext& context) {
-    const auto a = context.body(node.require("a")), b = context.body(node.require("b"));
-    const bool motion = node["motion"].boolean().value_or(false);
-    if (!a || !b) return nullptr;
-    if (*a == *b) {
-        node.fail(ErrorCode::inconsistent, "a clearance is between two bodies; `a` and `b` are the same");
-        return nullptr;
+std::vector<std::string> read_faces(const JsonNode& node, int body, const ReadContext& context) {
+    std::vector<std::string> names;
+    const core::geometry::Mesh& mesh = context.scene.bodies[body].mesh;
+    const std::vector<std::string> known = core::geometry::names_of_faces(mesh);
+    for (const JsonNode& entry : node.elements()) {
+        const auto name = entry.string();
+        if (!name) continue;
+        names.push_back(*name);
+        if (!core::geometry::triangles_of_face(mesh, *name).empty()) continue;
+        const std::string what = "body \"" + context.scene.bodies[body].name + "\" has no face " + entry.shown();
+        entry.fail(ErrorCode::unknown_key, known.empty() ? what + ": its mesh names none; faces have the names of a part's file"
+                                                         : what + "; " + core::files::did_you_mean(*name, {known.begin(), known.end()}));
     }
-    return std::make_shared<quantities::Clearance>(quantities::ClearanceRange{.a = *a, .b = *b, .motion = motion});
+    if (node.is_array() && names.empty()) node.fail(ErrorCode::out_of_range, "name a face, or leave this out for the whole body");
+    return names;
+}
+
+std::shared_ptr<const Quantity> read_clearance(const JsonNode& node, const ReadContext& context) {
+    const auto range = read_clearance_range(node, context);
+    if (!range) return nullptr;
+    return std::make_shared<quantities::Clearance>(*range);
 }
 
 std::shared_ptr<const Quantity> read_mass(const JsonNode& node, const ReadContext& context) {
@@ -274,6 +288,38 @@ std::shared_ptr<const Quantity> read_energy(const JsonNode& node, const ReadCont
         static_cast<quantities::EnergyKind>(std::find(names.begin(), names.end(), *name) - names.begin()), reduction);
 }
 
+// What its table is over: `times`, or `positions` of the quantity that it is along.
+bool read_law_places(const JsonNode& node, const ReadContext& context, quantities::Law::Of& of) {
+    if (!node["along"].exists()) {
+        if (node["positions"].exists())
+            node["positions"].fail(ErrorCode::inconsistent,
+                                   "`positions` are of a law that is `along` a quantity; over the time it has `times`");
+        of.curve.times = node.require("times").numbers().value_or(std::vector<double>{});
+        return true;
+    }
+    if (node["times"].exists()) node["times"].fail(ErrorCode::inconsistent, "a law along a quantity has `positions` in place of `times`");
+    const auto name = node["along"].string();
+    if (!name) return false;
+    std::vector<std::string_view> known;
+    for (const quantities::NamedQuantity& each : context.quantities) {
+        known.push_back(each.name);
+        if (each.name == *name) of.along = std::dynamic_pointer_cast<const quantities::StepSeries>(each.quantity);
+    }
+    if (!of.along) {
+        const bool is_there = std::find(known.begin(), known.end(), *name) != known.end();
+        node["along"].fail(ErrorCode::out_of_range, is_there ? node["along"].shown() + " is no quantity that each step has a number of"
+                                                             : "there is no quantity " + node["along"].shown() +
+                                                                   " above this one in `quantities`" +
+                                                                   (known.empty() ? "" : "; " + core::files::did_you_mean(*name, known)));
+        return false;
+    }
+    const Dimension dimension = of.along->steps_dimension();
+    const double unit = context.unit(dimension);
+    for (const JsonNode& position : node.require("positions").elements())
+        of.curve.times.push_back(position.quantity(dimension, unit).value_or(0));
+    return true;
+}
+
 std::shared_ptr<const Quantity> read_law(const JsonNode& node, const ReadContext& context) {
     static const std::vector<std::string_view> profiles{"linear", "cubic", "trapezoid", "control_points"};
     static const std::vector<std::pair<std::string_view, Dimension>> dimensions{{"length", Dimension::length},
@@ -292,7 +338,7 @@ std::shared_ptr<const Quantity> read_law(const JsonNode& node, const ReadContext
     of.dimension = std::find_if(dimensions.begin(), dimensions.end(), [&](const auto& each) { return each.first == *name; })->second;
     const std::string profile = node["profile"].choice(profiles).value_or("linear");
     of.curve.kind = static_cast<core::scene::CurveKind>(std::find(profiles.begin(), profiles.end(), profile) - profiles.begin());
-    of.curve.times = node.require("times").numbers().value_or(std::vector<double>{});
+    if (!read_law_places(node, context, of)) return nullptr;
     const double unit = context.unit(of.dimension);
     for (const JsonNode& value : node.require("values").elements()) {
         auto formula = context.formulas.followed(value, of.dimension, unit);
@@ -343,10 +389,26 @@ std::string stroke_name(const JsonNode& node) { return "stroke " + text(node["bo
 std::string marker_name(const JsonNode& node) { return "marker_path " + text(node["body"]); }
 std::string marker_position_name(const JsonNode& node) { return "marker_position " + text(node["body"]); }
 std::string marker_speed_name(const JsonNode& node) { return "marker_speed " + text(node["body"]); }
-std::string play_name(const JsonNode& node) { return "play " + text(node["a"]) + ":" + text(node["b"]); }
+// "wheel", or "wheel slot+arc" of faces.
+std::string place_of_clearance(const JsonNode& node, std::string_view body, std::string_view faces) {
+    std::string name = text(node[body]);
+    if (!node[faces].is_array()) return name;
+    bool is_first = true;
+    for (const JsonNode& face : node[faces].elements()) {
+        name += (is_first ? " " : "+") + text(face);
+        is_first = false;
+    }
+    return name;
+}
 std::string clearance_name(const JsonNode& node) {
-    const bool motion = node["motion"].is_bool() && *node["motion"].boolean();
-    return "clearance " + text(node["a"]) + ":" + text(node["b"]) + (motion ? " over the motion" : "");
+    const auto says = [&](std::string_view key) { return node[key].is_bool() && *node[key].boolean(); };
+    return "clearance " + place_of_clearance(node, "a", "faces_a") + ":" + place_of_clearance(node, "b", "faces_b") +
+           (says("motion")   ? " over the motion"
+            : says("ranges") ? " over the ranges"
+                             : "");
+}
+std::string play_name(const JsonNode& node) {
+    return "play " + place_of_clearance(node, "a", "faces_a") + ":" + place_of_clearance(node, "b", "faces_b");
 }
 std::string mass_name(const JsonNode& node) {
     std::string name = "mass";
@@ -369,10 +431,35 @@ std::string expression_name(const JsonNode& node) { return text(node["expression
 
 }  // namespace
 
+std::optional<quantities::ClearanceRange> read_clearance_range(const JsonNode& node, const ReadContext& context) {
+    const auto a = context.body(node.require("a")), b = context.body(node.require("b"));
+    quantities::ClearanceRange range;
+    range.motion = node["motion"].boolean().value_or(false);
+    range.ranges = node["ranges"].boolean().value_or(false);
+    if (range.motion && range.ranges)
+        node["ranges"].fail(ErrorCode::inconsistent, "either over the motion, or over the ranges of the joints, whatever the motion");
+    const auto time = [&](std::string_view key) { return node[key].quantity(Dimension::time, 1, core::files::not_negative); };
+    range.from = time("from");
+    range.to = time("to");
+    for (const std::string_view key : {"from", "to"})
+        if (node[key].exists() && !range.motion)
+            node[key].fail(ErrorCode::inconsistent, "`" + std::string(key) + "` is about a part of the motion; set `motion` to true");
+    if (!a || !b) return std::nullopt;
+    if (*a == *b) {
+        node.fail(ErrorCode::inconsistent, "a clearance is between two bodies; `a` and `b` are the same");
+        return std::nullopt;
+    }
+    range.a = *a;
+    range.b = *b;
+    range.faces_a = read_faces(node["faces_a"], *a, context);
+    range.faces_b = read_faces(node["faces_b"], *b, context);
+    return range;
+}
+
 const std::vector<QuantityType>& quantity_table() {
     static const std::vector<QuantityType> table{
         {"stroke",
-         {"body", "axis", "target"},
+         {"body", "axis", "target", "from", "to"},
          read_stroke,
          stroke_name,
          "m",
@@ -387,13 +474,18 @@ const std::vector<QuantityType>& quantity_table() {
          "where a point of a body is at the steps' ends: along an `axis`, else its distance, from an `origin`"},
         {"marker_speed", with_reduction({"body", "point", "axis"}), read_marker_speed, marker_speed_name, "m/s",
          "velocity of a point of a body at the steps' ends: along an `axis`, else its magnitude"},
-        {"play", {"a", "b"}, read_clearance, play_name, "m", "certified least distance of two bodies as assembled, wanted small"},
+        {"play",
+         {"a", "b", "faces_a", "faces_b"},
+         read_clearance,
+         play_name,
+         "m",
+         "certified least distance of two bodies, or of faces of theirs, as assembled, wanted small"},
         {"clearance",
-         {"a", "b", "motion"},
+         {"a", "b", "faces_a", "faces_b", "motion", "from", "to", "ranges"},
          read_clearance,
          clearance_name,
          "m",
-         "certified least distance of two bodies, as assembled or over the motion"},
+         "certified least distance of two bodies, or of faces of theirs: as assembled, over the motion or the ranges of the joints"},
         {"mass", {"bodies"}, read_mass, mass_name, "kg", "mass of bodies"},
         {"joint_force", with_reduction({"joint", "axis"}), read_joint_force, joint_force_name, "N",
          "force that a joint carries at the steps' ends: along an `axis`, else its magnitude"},
@@ -410,8 +502,8 @@ const std::vector<QuantityType>& quantity_table() {
         {"contact_torque", with_reduction({"body", "of", "point", "axis"}), read_contact_torque, contact_torque_name, "N m",
          "its torque about a point of the body (what a motor that holds a massless one there has to give, with the other sign)"},
         {"energy", with_reduction({"of"}), read_energy, energy_name, "J", "kinetic, potential, spring or total energy at the steps' ends"},
-        {"law", with_reduction({"of", "times", "values", "profile"}), read_law, law_name, "by its dimension",
-         "a table over the time, for expressions over the steps: what a motion is to follow"},
+        {"law", with_reduction({"of", "times", "along", "positions", "values", "profile"}), read_law, law_name, "by its dimension",
+         "a table over the time, or along another quantity, for expressions over the steps: what a motion is to follow"},
         {"expression", with_reduction({"expression"}), read_expression, expression_name, "by its dimension",
          "a formula of the design's named `quantities` and parameters, such as `max_force / mass`; with `over`, of what they are at each "
          "step"}};
@@ -433,21 +525,26 @@ const QuantityType* find_quantity_type(std::string_view name) {
 
 std::vector<quantities::NamedQuantity> read_named_quantities(const JsonNode& node, const ReadContext& context) {
     std::vector<quantities::NamedQuantity> out;
+    const ReadContext so_far{context.scene, context.length_unit, context.end_time, context.formulas, out, context.scenarios};
     std::vector<std::string_view> types = quantity_names();
-    std::erase(types, expression_type);  // it is written where it is used
-    for (const auto& [name, entry] : node.members()) {
-        if (name.starts_with('#')) continue;
-        if (!core::expression::is_possible_name(name))
-            entry.fail(ErrorCode::out_of_range, "a quantity's name must not be empty or contain a single quote");
-        if (context.formulas.scope().find(name) != nullptr)
-            entry.fail(ErrorCode::inconsistent, "a parameter or variable is called `" + name + "` already");
-        const auto type_name = entry.require("type").choice(types);
-        if (!type_name) continue;
-        const QuantityType& type = *find_quantity_type(*type_name);
-        std::vector<std::string_view> keys{"type", "scenario"};
-        keys.insert(keys.end(), type.keys.begin(), type.keys.end());
-        entry.allow_keys(keys);
-        if (const auto quantity = type.read(entry, context)) out.push_back({name, in_named_scenario(entry, quantity, context.scenarios)});
+    std::erase(types, expression_type);          // it is written where it is used
+    for (const bool is_along : {false, true}) {  // what is along another one is read after it
+        for (const auto& [name, entry] : node.members()) {
+            if (entry["along"].exists() != is_along) continue;
+            if (name.starts_with('#')) continue;
+            if (!core::expression::is_possible_name(name))
+                entry.fail(ErrorCode::out_of_range, "a quantity's name must not be empty or contain a single quote");
+            if (context.formulas.scope().find(name) != nullptr)
+                entry.fail(ErrorCode::inconsistent, "a parameter or variable is called `" + name + "` already");
+            const auto type_name = entry.require("type").choice(types);
+            if (!type_name) continue;
+            const QuantityType& type = *find_quantity_type(*type_name);
+            std::vector<std::string_view> keys{"type", "scenario"};
+            keys.insert(keys.end(), type.keys.begin(), type.keys.end());
+            entry.allow_keys(keys);
+            if (const auto quantity = type.read(entry, so_far))
+                out.push_back({name, in_named_scenario(entry, quantity, context.scenarios)});
+        }
     }
     return out;
 }

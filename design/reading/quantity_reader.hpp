@@ -4,12 +4,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/design/description/quantity.hpp"
+#include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/reading/read_context.hpp"
 
 namespace fettle::design::reading {
@@ -28,6 +30,9 @@ std::vector<std::string_view> quantity_names();
 const QuantityType* find_quantity_type(std::string_view name);
 
 inline constexpr std::string_view expression_type = "expression";
+
+/// What a clearance is between, and over what: all keys of the quantity.
+std::optional<quantities::ClearanceRange> read_clearance_range(const core::files::JsonNode& node, const ReadContext& context);
 
 /// The `quantities` of a design file, which expressions name:
 ///     "quantities": { "force": { "type": "joint_force", "joint": "pin", "over": "largest" }, "arm": { "type": "mass", "bodies": ["arm"] }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/report/report_data.hpp"
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/design_rows.hpp"
 #include "fettle/design/report/moving_parts.hpp"
 #include "fettle/design/report/pair_rows.hpp"
+#include "fettle/design/report/quantity_curves.hpp"
 #include "fettle/design/report/search_curves.hpp"
 
 namespace fettle::design::report {
@@ -61,7 +63,9 @@ void add_optimisation(Json& data, const ReportSource& source) {
     data["optimality"] = optimality.is_object() ? Json{{"worth", member(optimality, "worth")}} : Json();
 }
 
-// Of what steps of the motion an answer's pairs are.
+bool is_of_faces(const quantities::ClearanceRange& range) { return !range.faces_a.empty() || !range.faces_b.empty(); }
+
+// Of what steps of the motion an answer's pairs are; none of those whose margin over the motion is not that of the two bodies.
 std::vector<StepRange> steps_of(const ReportSource& source, std::size_t pairs) {
     const auto all = count_of(source.motion->trajectory.steps);
     if (source.kind == ReportKind::clearance) return std::vector<StepRange>(pairs, {0, member(source.result, "motion") == true ? all : 0});
@@ -70,10 +74,34 @@ std::vector<StepRange> steps_of(const ReportSource& source, std::size_t pairs) {
         const auto* clearance = dynamic_cast<const quantities::Clearance*>(constraint.quantity.get());
         if (clearance == nullptr) continue;
         const quantities::ClearanceRange& range = clearance->range();
-        const auto [first, last] = quantities::window_steps(all, range.window, range.windows);
-        steps.push_back(range.motion ? StepRange{first, last} : StepRange{});
+        if (!range.motion || is_of_faces(range)) {
+            steps.emplace_back();
+            continue;
+        }
+        const auto [first, last] = quantities::steps_of(range, source.motion->trajectory.timestep, all);
+        steps.push_back({first, last});
     }
     return steps;
+}
+
+// What a design's rows are about that are not about two whole bodies on the path that is shown.
+void note_ranges(const description::Design& design, Json& rows) {
+    std::size_t k = 0;
+    for (const description::Constraint& constraint : design.constraints) {
+        const auto* clearance = dynamic_cast<const quantities::Clearance*>(constraint.quantity.get());
+        if (clearance == nullptr || k >= rows.size()) continue;
+        Json& row = rows[k++];
+        const quantities::ClearanceRange& range = clearance->range();
+        if (range.ranges) row["point_a"] = row["point_b"] = Json();  // elsewhere than on the path
+        if (!range.ranges && !is_of_faces(range)) continue;
+        const auto faces = [](const std::string& body, const std::vector<std::string>& names) {
+            return names.empty() ? body : body + " " + core::base::joined(names);
+        };
+        const std::string pair = faces(row["a"], range.faces_a) + " and " + faces(row["b"], range.faces_b);
+        const std::string note = (is_of_faces(range) ? "between " + pair + " alone" : std::string()) +
+                                 (range.ranges ? std::string(is_of_faces(range) ? ", " : "") + "over all positions of the joints" : "");
+        row["note"] = row["note"].is_string() ? row["note"].get<std::string>() + "; " + note : note;
+    }
 }
 
 Json pairs_of(const ReportSource& source, const std::function<bool()>& should_stop) {
@@ -84,7 +112,21 @@ Json pairs_of(const ReportSource& source, const std::function<bool()>& should_st
     }
     const Json& result = source.result;
     const Json pairs = member(source.kind == ReportKind::clearance ? result : member(result, "clearance"), "pairs");
-    return pairs.is_array() ? told_pairs(pairs, source.motion->model, steps_of(source, pairs.size())) : Json::array();
+    if (!pairs.is_array()) return Json::array();
+    Json rows = told_pairs(pairs, source.motion->model, steps_of(source, pairs.size()));
+    if (source.kind == ReportKind::optimise && source.design) note_ranges(*source.design, rows);
+    return rows;
+}
+
+Json scenario_data(const ReportSource& source, const Json& name, const std::string& view, const Motion& motion, const StepTables& tables) {
+    std::set<std::string> fixed;
+    for (const core::model::Body& body : motion.model.bodies)
+        if (body.type == core::scene::BodyType::static_body) fixed.insert(body.name);
+    Json curves = Json::array();
+    if (source.design)
+        curves = quantity_curves(source.quantities, {motion.model, motion.trajectory, source.design->clearance_tolerance,
+                                                     description::names_of(source.design->parameters), source.values});
+    return {{"name", name}, {"view", view}, {"quantities", curves}, {"series", step_curves(tables, fixed, source.linear)}};
 }
 
 void add_motion(Json& data, const ReportSource& source, const std::function<bool()>& should_stop) {
@@ -103,10 +145,14 @@ void add_motion(Json& data, const ReportSource& source, const std::function<bool
     data["pair_count"] = all.is_array() ? all.size() : data["pairs"].size();
     data["margins"] = should_stop() ? Json() : margin_curves(data["pairs"], source.motion->model, trajectory, should_stop);
     leave_out_distances(data["pairs"]);
-    std::set<std::string> fixed;
-    for (const core::model::Body& body : source.motion->model.bodies)
-        if (body.type == core::scene::BodyType::static_body) fixed.insert(body.name);
-    data["series"] = step_curves(source.tables, fixed, source.linear);
+    data["scenarios"] = Json::array();
+    const Json name = source.scenario.empty() ? Json() : Json(source.scenario);
+    data["scenarios"].push_back(scenario_data(source, name, "after", *source.motion, source.tables));
+    for (const ScenarioMotion& other : source.others) {
+        const std::string view = "scenario " + other.name;
+        add_view(data, view, other.motion.model, other.motion.trajectory);
+        data["scenarios"].push_back(scenario_data(source, other.name, view, other.motion, other.tables));
+    }
 }
 
 }  // namespace
@@ -128,7 +174,7 @@ Json report_data(const ReportSource& source, const std::function<bool()>& should
     data["motion"] = false;
     data["steps"] = 0;
     data["step"] = data["duration"] = 0.0;
-    data["meshes"] = data["views"] = data["pairs"] = data["series"] = Json::array();
+    data["meshes"] = data["views"] = data["pairs"] = data["scenarios"] = Json::array();
     data["pair_count"] = 0;
     data["margins"] = data["history"] = data["series_note"] = Json();
     data["requirements"] = source.design ? requirement_rows(*source.design, source.result) : Json::array();

@@ -5,11 +5,19 @@
 ///   command         that made the results; null if not known
 ///   kind            "optimise", "simulate", "clearance"
 ///   name, folder, description (null: the files have none), up: the direction against gravity
-///   status, message; why_not_optimal, evaluations, failed, violation, optimality {worth}, repair, objective {start, end} of an
-///   optimisation motion, step [s], steps, duration [s], least: proven over the path [mm], null if there is none meshes, views
-///   moving_parts.hpp; "before" (of an optimisation) and "after" pairs, pair_count: of how many the rows are the worst, margins:
-///   pair_rows.hpp ranges          is a clearance over all positions of the joints? requirements, parameters, starts: design_rows.hpp;
-///   limits: texts history         search_curves.hpp; null if there is none series          step_curves.hpp; series_note notices texts
+///   status, message
+///   why_not_optimal, evaluations, failed, violation, optimality {worth}, repair, objective {start, end}: of an optimisation
+///   motion, step [s], steps, duration [s]
+///   least           proven over the path [mm]; null if there is none
+///   meshes, views   moving_parts.hpp: "before" (of an optimisation) and "after", then those of other scenarios
+///   pairs, pair_count: of how many the rows are the worst, margins: pair_rows.hpp
+///   scenarios       list of {name: null of a design without, view: the name of its view, quantities: quantity_curves.hpp, series:
+///                   step_curves.hpp}: first that of `motion`, whose view is "after"
+///   ranges          is a clearance over all positions of the joints?
+///   requirements, parameters, starts: design_rows.hpp
+///   limits          texts
+///   history         search_curves.hpp; null if there is none
+///   series_note, notices: texts
 ///   files           names in the page's folder that it offers
 #pragma once
 
@@ -22,6 +30,7 @@
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 #include "fettle/design/description/design.hpp"
+#include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/report/step_curves.hpp"
 
 namespace fettle::design::report {
@@ -31,6 +40,13 @@ struct Motion {
     core::model::Model model;  ///< geometry and names
     core::stepper::Trajectory trajectory;
     std::string scene_path = {};  ///< of the scene's file; empty: not known
+};
+
+/// A scenario of a design beside the first, at its end.
+struct ScenarioMotion {
+    std::string name;
+    Motion motion;
+    StepTables tables;
 };
 
 enum class ReportKind { optimise, simulate, clearance };
@@ -46,6 +62,10 @@ struct ReportSource {
     std::string history;
     StepTables tables;
     LinearMotors linear;
+    std::string scenario;                               ///< whose motion it is; empty: the design has none
+    std::vector<ScenarioMotion> others;                 ///< the design's other scenarios, in their order
+    std::vector<quantities::NamedQuantity> quantities;  ///< that have curves
+    VectorX values;                                     ///< of the design's parameters
     std::vector<std::string> notices;
     std::vector<std::string> files;  ///< that the page offers, as they are called in its folder
 };

@@ -14,6 +14,7 @@
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 #include "fettle/design/report/answer_values.hpp"
+#include "fettle/design/report/quantity_curves.hpp"
 #include "fettle/design/report/report_page.hpp"
 #include "fettle/design/studies/history.hpp"
 
@@ -193,6 +194,8 @@ private:
         if (Errors errors = read_history(); !errors.empty()) return errors;
         source_.design = file.design;
         for (Eigen::Index k = 0; k < values.size(); ++k) source_.design->parameters[k].value = values[k];
+        source_.values = values;
+        source_.quantities = quantities_with_curves(file.quantities, file.design);
         if (!source_.motion) return {};
         std::optional<problem::DesignProblem> made;
         if (known == nullptr) {
@@ -201,11 +204,9 @@ private:
             made = std::move(problem).value();
         }
         const problem::DesignProblem& problem = known != nullptr ? *known : *made;
-        if (const auto& scenarios = problem.design().scenarios; scenarios.size() > 1)
-            source_.notices.push_back("The motion shown is that of the scenario \"" + scenarios.front().name + "\", the first of " +
-                                      std::to_string(scenarios.size()) + "; fettle simulate --scenario \"" + scenarios[1].name +
-                                      "\" --out FOLDER shows another.");
+        if (!problem.design().scenarios.empty()) source_.scenario = problem.design().scenarios.front().name;
         if (Errors errors = take_tables(problem, values); !errors.empty()) return errors;
+        if (Errors errors = take_scenarios(problem, values, file.scene_path); !errors.empty()) return errors;
         return take_before(problem, file.scene_path);
     }
 
@@ -237,6 +238,25 @@ private:
         }
         source_.tables = tables_of(simulation, *model);
         return add_tables(files_, folder_, source_.tables);
+    }
+
+    // The motions and forces of the design's other scenarios, simulated once more; their trajectories stay in the folder.
+    Errors take_scenarios(const problem::DesignProblem& problem, const VectorX& values, const std::string& scene_path) {
+        if (source_.tables.steps.empty()) return {};  // what would be simulated is not what was
+        for (int s = 1; s < problem.scenario_count() && !options_.should_stop(); ++s) {
+            const std::string& name = problem.design().scenarios[s].name;
+            const Result<Model> model = problem.model_at(values, s);
+            if (!model) return model.errors();
+            Simulation simulation = simulated(*model, problem.steps(s), true, options_.should_stop);
+            if (options_.should_stop()) return {};
+            const fs::path file = folder_ / answers::scenario_trajectory(name);
+            if (Errors errors = answers::others_file(file); !errors.empty()) return errors;
+            if (Errors errors = core::records::add_trajectory(files_, file, simulation.trajectory, *model, scene_path); !errors.empty())
+                return errors;
+            const StepTables tables = tables_of(simulation, *model);
+            source_.others.push_back({name, Motion{*model, std::move(simulation.trajectory), scene_path}, tables});
+        }
+        return {};
     }
 
     Errors take_before(const problem::DesignProblem& problem, const std::string& scene_path) {

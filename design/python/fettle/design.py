@@ -193,7 +193,8 @@ class FunctionQuantity(Record, Quantity):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Clearance(Record, Measured):
-    """Certified least distance of two bodies [m]: as assembled, or over the motion, or a window of it."""
+    """Certified least distance of two bodies, or of faces of theirs [m]: as assembled, over the motion (or a part or window of it), or over all
+    positions of the joints."""
 
     a: Which
     b: Which
@@ -201,6 +202,11 @@ class Clearance(Record, Measured):
     window: int = 0
     windows: int = 1
     minimum: Number = number("length", 0.0)
+    from_time: Optional[Number] = number("time", None)  #: the part of the motion
+    to_time: Optional[Number] = number("time", None)
+    ranges: bool = False
+    faces_a: List[str] = dataclasses.field(default_factory=list)  #: names of faces that count alone; empty: the whole body
+    faces_b: List[str] = dataclasses.field(default_factory=list)
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -217,6 +223,8 @@ class Stroke(Record, Measured):
     body: Which
     axis: Vector
     target: Optional[Number] = number("length", None)
+    from_time: Optional[Number] = number("time", None)  #: the part of the motion that counts
+    to_time: Optional[Number] = number("time", None)
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -316,13 +324,15 @@ class Energy(Series):
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Law(Series):
     """A table over the time that a motion is to follow, for a StepExpression: `lift - Law("length", [0, 1], [0, "3 mm"], "cubic")`. Its values
-    (SI, or with units of what it is of) may be formulas of parameters; outside its times it is constant."""
+    (SI, or with units of what it is of) may be formulas of parameters; outside its times it is constant. With `along`, another quantity of
+    the steps, `times` are numbers of that one (SI)."""
 
     of: str  #: "length", "angle", ...
     times: Sequence[Number] = number("time")
     values: Sequence[Number] = number("any")
     profile: str = "linear"  #: or "cubic", "trapezoid", "control_points", as Curve.kind
     over: str = "end"
+    along: Any = None  #: what the table is over, in place of the time
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -643,7 +653,7 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault], parameters
         return dataclasses.replace(record, formula=formula, parts=parts)
     if kind is Law:
         faults.extend(faults_of(record.values, record.of, "Law/values"))
-        return record
+        return record if record.along is None else dataclasses.replace(record, along=_numbered(record.along, names, faults, parameters))
     if kind is Worst:
         return Worst([_numbered(part, names, faults, parameters) for part in record.parts], record.greatest)
     if kind is InScenario:

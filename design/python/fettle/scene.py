@@ -48,6 +48,8 @@ class Mesh(Record):
     triangles: NDArray[np.int32] = dataclasses.field(default_factory=_indices(3))  #: (m, 3)
     loose_edges: NDArray[np.int32] = dataclasses.field(default_factory=_indices(2))  #: (k, 2), of no triangle
     shell_names: List[str] = dataclasses.field(default_factory=list)  #: one per shell; empty: "name/0", ...
+    face_names: List[str] = dataclasses.field(default_factory=list)  #: of a part that was drawn: "bore", "rim end"
+    triangle_face: List[int] = dataclasses.field(default_factory=list)  #: per triangle, into face_names; empty: faces have no names
     deviation: Optional[Deviation] = None  #: of a part that was drawn; None: the mesh stands for nothing but itself
 
 

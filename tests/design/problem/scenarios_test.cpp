@@ -229,6 +229,36 @@ TEST_CASE("scenarios: what no scenario changes is measured once") {
     CHECK(problem.rest_rows(start_of(problem))->values.size() == static_cast<Eigen::Index>(problem.rest_constraints().size()));
 }
 
+TEST_CASE("scenarios: the play taken up one way and the other is gravity with a press along an axis, and against it") {
+    json design = plain();
+    design["scenarios"] = {{{"name", "as it lies"}}, {{"name", "pressed"}, {"play", "both"}, {"along", {3, 0, 4}}, {"press", 5}}};
+    const DesignProblem all = problem_of(design);
+    const auto& scenarios = all.design().scenarios;
+    REQUIRE(scenarios.size() == 3);
+    CHECK(scenarios[1].name == "pressed forwards");
+    CHECK(scenarios[2].name == "pressed backwards");
+    const Vector3 own = scenarios[0].scene.gravity;
+    CHECK((scenarios[1].scene.gravity - own - Vector3(3, 0, 4)).norm() < 1e-14);
+    CHECK((scenarios[2].scene.gravity - own + Vector3(3, 0, 4)).norm() < 1e-14);
+    const VectorX p = start_of(all);
+    const DesignEvaluation at = all.evaluate(p);
+    REQUIRE(at.usable);
+    const DesignEvaluation same = problem_of(alone({{"/gravity", {own.x() + 3, own.y(), own.z() + 4}}})).evaluate(p);
+    REQUIRE(same.usable);
+    const auto& poses = at.runs[1].simulation.trajectory.poses.back();
+    for (std::size_t body = 0; body < poses.size(); ++body)
+        CHECK(poses[body].position == same.runs[0].simulation.trajectory.poses.back()[body].position);
+
+    design["scenarios"] = {{{"name", "pressed"}, {"play", "both"}}};
+    CHECK(is_told(design, "/scenarios/0", "along"));
+    design["scenarios"] = {{{"name", "pressed"}, {"play", "both"}, {"along", {0, 0, 0}}}};
+    CHECK(is_told(design, "/scenarios/0/along", "length 0"));
+    design["scenarios"] = {{{"name", "pressed"}, {"along", {1, 0, 0}}}};
+    CHECK(is_told(design, "/scenarios/0/along", "goes with"));
+    design["scenarios"] = {{{"name", "pressed forwards"}}, {{"name", "pressed"}, {"play", "both"}, {"along", {1, 0, 0}}}};
+    CHECK(is_told(design, "/scenarios/1/name", "another scenario"));
+}
+
 TEST_CASE("scenarios: faults have their place") {
     json design = with_scenarios();
     design["scenarios"][1]["name"] = "quick";

@@ -158,6 +158,56 @@ TEST_CASE("step_expression: a law's table, whose values may follow from paramete
     check_gradient(problem, 1e-6);
 }
 
+TEST_CASE("step_expression: a law along another quantity, and a stroke in a part of the motion") {
+    const auto problem = problem_of(gears, R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+        "parameters": [{"name": "height", "value": 24, "lower": 10, "upper": 50}, {"name": "out", "value": 30, "lower": 5, "upper": 50},
+                       {"name": "swing", "unit": "deg", "value": 90, "lower": 45, "upper": 120}],
+        "set": {"/motors/push/travel/values/1": "= out", "/motors/one/angle/values/1": "= swing"},
+        "quantities": {"lift": {"type": "joint_position", "joint": "rail"}, "turn": {"type": "turn", "body": "input", "axis": [0, 0, 1]},
+                       "cam": {"type": "law", "of": "length", "along": "turn", "positions": [0, "45 deg", 90], "values": [0, "= height", 0], "profile": "cubic"}},
+        "constraints": [{"type": "expression", "expression": "lift - cam", "at": 0.25, "upper": 100},
+                        {"type": "expression", "expression": "lift - cam", "over": "rms", "upper": 100},
+                        {"type": "stroke", "body": "sledge", "axis": [0, 1, 0], "from": 0.25, "to": 0.75, "upper": 100},
+                        {"type": "stroke", "body": "sledge", "axis": [0, 1, 0], "upper": 100}]})");
+    const auto at = problem.evaluate(description::values_of(problem.design().parameters));
+    INFO(at.reason);
+    REQUIRE(at.usable);
+    // At a quarter of the swing, half-way to the law's middle, it is at half of its height, and rises by 1.5 times the mean.
+    CHECK(at.constraints[0].value == Approx(7.5e-3 - 12e-3).epsilon(1e-6));
+    CHECK(at.jacobian(0, 0) == Approx(-0.5).epsilon(1e-6));
+    CHECK(at.jacobian(0, 1) == Approx(0.25).epsilon(1e-6));
+    CHECK(at.jacobian(0, 2) == Approx(-1.5 * 24e-3 / (45 * degree) * 0.25).epsilon(1e-6));
+    CHECK(at.constraints[2].value == Approx(15e-3).epsilon(1e-6));
+    CHECK(at.jacobian(2, 1) == Approx(0.5).epsilon(1e-6));
+    CHECK(at.constraints[3].value == Approx(30e-3).epsilon(1e-6));
+    check_gradient(problem, 1e-5);
+}
+
+TEST_CASE("step_expression: a law along what is not there, or not at each step, is refused") {
+    const tests::support::TemporaryFolder folder;
+    folder.write("small.scene.json", gears);
+    const auto refusal = [&](const std::string& law) {
+        const auto file = reading::parse_design(R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+            "parameters": [{"name": "out", "value": 30, "lower": 5, "upper": 50}], "set": {"/motors/push/travel/values/1": "= out"},
+            "quantities": {"peak": {"type": "turn", "body": "input", "axis": [0, 0, 1], "over": "peak"},
+                           "turn": {"type": "turn", "body": "input", "axis": [0, 0, 1]},
+                           "stroke": {"type": "stroke", "body": "sledge", "axis": [0, 1, 0]},
+                           "law": {"type": "law", "of": "length", "values": [0, 1], )" +
+                                                    law + R"(}},
+            "objective": [{"type": "expression", "expression": "law", "over": "rms"}]})",
+                                                folder.file("small.design.json"));
+        if (!file) return file.errors().front().message;
+        const auto problem = design::problem::DesignProblem::create(file->design);
+        return problem ? std::string() : problem.errors().front().message;
+    };
+    CHECK(refusal(R"("along": "turn", "positions": [0, 90])").empty());
+    CHECK(refusal(R"("along": "tern", "positions": [0, 90])").find("did you mean \"turn\"?") != std::string::npos);
+    CHECK(refusal(R"("along": "stroke", "positions": [0, 90])").find("is no quantity that each step has a number of") != std::string::npos);
+    CHECK(refusal(R"("along": "peak", "positions": [0, 90])").find("leave out what is taken") != std::string::npos);
+    CHECK(refusal(R"("along": "turn", "times": [0, 1], "positions": [0, 90])").find("in place of `times`") != std::string::npos);
+    CHECK(refusal(R"("times": [0, 1], "positions": [0, 90])").find("are of a law that is `along`") != std::string::npos);
+}
+
 TEST_CASE("step_expression: a parameter that is called `time` is no fault where it is not named") {
     const tests::support::TemporaryFolder folder;
     folder.write("small.scene.json", gears);

@@ -10,6 +10,7 @@
 #include <functional>
 #include <iterator>
 
+#include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/setup/build_model.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/design/exports/palette.hpp"
@@ -536,7 +537,7 @@ TEST_CASE("report: an optimisation's has the design before and after, and the fo
     CHECK(data["pairs"][0]["motion"] == true);
     CHECK(data["pairs"][0]["lower"].get<double>() == Approx(1e3 * answer.json().at("clearance").at("pairs")[0].at("lower").get<double>()));
     CHECK(data["history"]["objective"].size() == answer.json().at("evaluations").get<size_t>());
-    CHECK_FALSE(data["series"].empty());
+    CHECK_FALSE(data["scenarios"][0]["series"].empty());
     CHECK(data["margins"]["pairs"].size() >= 1);
     CHECK(data["files"] == Json({"motion.glb", "design.final.json", "trajectory.json", "result.json"}));
     CHECK(run("report " + out).code == 0);
@@ -545,6 +546,44 @@ TEST_CASE("report: an optimisation's has the design before and after, and the fo
     CHECK(contents(out + "/motion.glb") == contents(folder.file("run.glb")));
     const Json notices = data["notices"];
     CHECK(notices.dump().find("has changed since") == std::string::npos);
+}
+
+TEST_CASE("report: an optimisation's has the curves of its own quantities, and the motions of all scenarios, which stay in the folder") {
+    Json design = Json::parse(tests::design_support::small_design);
+    design["scenarios"] =
+        Json::parse(R"([{"name": "as drawn"}, {"name": "the same"}, {"name": "tilted", "set": {"/gravity": [1, 0, -9.81]}}])");
+    design["quantities"] = Json::parse(R"({"spot": {"type": "marker_position", "body": "cube", "point": [0, 0, 0], "axis": [1, 0, 0]},
+                                           "falling": {"type": "marker_speed", "body": "cube", "point": [0, 0, 0], "axis": [0, 0, 1]}})");
+    design["optimiser"]["max_evaluations"] = 2;
+    const DesignFolder folder(design.dump());
+    const std::string out = folder.file("opt");
+    REQUIRE(run("optimise " + folder.design() + " --out " + out + " --json").code <= 2);
+    const Json data = data_of(contents(out + "/report.html"));
+    REQUIRE(data["scenarios"].size() == 3);
+    CHECK(data["views"].size() == 4);
+    const auto curve = [&](std::size_t scenario, const std::string& name) {
+        for (const Json& chart : data["scenarios"][scenario]["quantities"])
+            for (const Json& line : chart["lines"])
+                if (line["name"] == name) return unpacked<double>(line["values"], "f64");
+        return std::vector<double>();
+    };
+    for (std::size_t s = 0; s < 3; ++s) {
+        const std::string file = s == 0 ? "/trajectory.json" : "/trajectory." + data["scenarios"][s]["name"].get<std::string>() + ".json";
+        const auto stored = core::records::read_trajectory(out + file);
+        REQUIRE(stored);
+        const std::vector<double> spot = curve(s, "spot");
+        const auto& poses = stored->trajectory.poses;
+        REQUIRE(spot.size() + 1 == poses.size());
+        CHECK(curve(s, "falling").size() == spot.size());
+        CHECK_FALSE(data["scenarios"][s]["series"].empty());
+    }
+    CHECK(curve(0, "spot") == curve(1, "spot"));
+    CHECK(curve(0, "spot") != curve(2, "spot"));
+    // Another run without scenarios leaves none of these.
+    design.erase("scenarios");
+    const DesignFolder plain(design.dump());
+    REQUIRE(run("optimise " + plain.design() + " --out " + out + " --json").code <= 2);
+    CHECK_FALSE(std::filesystem::exists(out + "/trajectory.tilted.json"));
 }
 
 TEST_CASE("report: of an optimisation, an interference is what is one, not what cannot be verified") {

@@ -84,8 +84,9 @@ export function searchPlots(parent, data) {
   });
 }
 
-export function forcePlots(parent, data, pick) {
-  for (const chart of data.series) {
+// Curves over the motion's time, of charts as the program gives them.
+export function motionPlots(parent, charts, pick) {
+  for (const chart of charts) {
     const shown = chart.lines.map((line) => ({ name: line.name, values: asList(line.values) }));
     new Plot(parent, asList(chart.time), {
       title: chart.title, note: chart.note, unit: chart.unit, quantity: chart.quantity, x: { label: "time [s]", time: true }, lines: shown, onPick: pick,

@@ -4,7 +4,7 @@ import "./style.css";
 import { readData } from "./data.js";
 import { repaintCharts } from "./chart.js";
 import { announce, byId, element } from "./dom.js";
-import { forcePlots, marginPlot, searchPlots } from "./curves.js";
+import { motionPlots, marginPlot, searchPlots } from "./curves.js";
 import { showExploration } from "./explore.js";
 import { startMotion } from "./motion.js";
 import { made as plots, repaintPlots, setPlotTime } from "./plots.js";
@@ -84,14 +84,24 @@ function fillSections(data, motion) {
     section("How it got there", null, box);
     searchPlots(box, data);
   }
-  if (data.series.length) {
-    const box = figures();
-    section("Forces", data.series_note, box);
-    forcePlots(box, data, pick);
-  }
+  scenarioSection("Quantities", "What the design names, wants and requires at each step of the motion, before a peak or another number is taken of it.", data, motion, (scenario) => scenario.quantities, pick);
+  scenarioSection("Forces", data.series_note, data, motion, (scenario) => scenario.series, pick);
 }
 
-const data = { pairs: [], series: [], ...readData() };
+// One box of figures for each scenario, of which that of the motion in the picture is shown.
+function scenarioSection(title, intro, data, motion, chartsOf, pick) {
+  const all = data.scenarios ?? [];
+  if (!all.some((scenario) => chartsOf(scenario).length)) return;
+  const made = section(title, intro);
+  const boxes = all.map((scenario) => element("div", { class: "figures" }));
+  made.append(...boxes);
+  all.forEach((scenario, k) => motionPlots(boxes[k], chartsOf(scenario), pick));
+  const show = (shown) => boxes.forEach((box, k) => (box.hidden = k !== shown));
+  show(0);
+  motion?.onScenario(show);
+}
+
+const data = { pairs: [], scenarios: [], ...readData() };
 fillVerdict(data);
 let motion = null;
 if (data.views.length) {

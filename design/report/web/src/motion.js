@@ -26,12 +26,15 @@ class Motion {
     const all = data.views.map((view) => view.times);
     this.start = Math.min(...all.map((times) => times[0]));
     this.end = Math.max(...all.map((times) => times[times.length - 1]));
-    this.times = all[all.length - 1];
+    this.times = (data.views.find((view) => view.name === this.viewer.mode) ?? data.views[0]).times;
+    this.scenario = 0;
+    this.scenarioShown = [];
     this.time = this.start;
     this.speed = this.firstSpeed();
     this.chosen = null;
     this.fillTransport();
     this.fillCompare();
+    this.fillScenarios();
     this.fillParts();
     this.fillSection();
     this.listen();
@@ -145,14 +148,44 @@ class Motion {
     });
   }
 
+  // The motions of the design's scenarios; those before and after are of the first.
+  fillScenarios() {
+    const { scenarios } = this.data;
+    if (!scenarios || scenarios.length < 2) return;
+    byId("scenario").hidden = false;
+    byId("scenario").append(...scenarios.map(({ name }, k) => element("label", {},
+      element("input", { type: "radio", name: "scenario", value: k, checked: k === 0, onchange: () => this.setScenario(k) }), element("span", {}, name))));
+  }
+
+  // Calls `show` with the scenario's number whenever another one is shown.
+  onScenario(show) {
+    this.scenarioShown.push(show);
+  }
+
+  setScenario(k) {
+    if (k === this.scenario) return;
+    this.scenario = k;
+    const { name, view } = this.data.scenarios[k], compares = this.data.views.some((each) => each.name === "before");
+    for (const input of byId("scenario").querySelectorAll("input")) input.checked = Number(input.value) === k;
+    byId("compare").hidden = k > 0 || !compares;
+    if (k === 0) this.setMode("after");
+    else this.setMode(view);
+    this.times = this.data.views.find((each) => each.name === view).times;
+    this.seek(this.time);
+    this.scenarioShown.forEach((show) => show(k));
+    announce(`Shown: the scenario ${name}`);
+  }
+
   setMode(mode) {
+    if (names[mode]) this.setScenario(0);
+    this.viewer.marked = names[mode] ? this.viewer.marked : null;
     this.viewer.mode = mode;
     for (const input of byId("compare").querySelectorAll("input")) input.checked = input.value === mode;
     byId("fade-field").hidden = mode !== "fade";
     byId("corner-left").hidden = byId("corner-right").hidden = byId("divider").hidden = mode !== "side";
     byId("corner-left").textContent = "before";
     byId("corner-right").textContent = "after";
-    announce(`Shown: ${names[mode]}`);
+    if (names[mode]) announce(`Shown: ${names[mode]}`);
     this.viewer.refit();
   }
 

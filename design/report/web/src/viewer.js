@@ -41,7 +41,7 @@ export class Viewer {
     this.views = new Map(data.views.map((view) => [view.name, view]));
     this.mechanisms = new Map();
     this.overlaps = new Overlaps(this.renderer, shared.plane, interfering(data));
-    this.look(this.mode === "after" ? [...this.views.keys()] : [this.mode]);
+    this.look(this.mode === "after" ? [...this.views.keys()].filter((name) => name === "before" || name === "after") : [this.mode]);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.draw());
     this.controls.rotateSpeed = 0.8;
