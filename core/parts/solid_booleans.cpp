@@ -19,9 +19,14 @@ using geometry::Mesh;
 using Kind = VertexOrigin::Kind;
 using Corners = std::array<Vector3, 3>;
 
+// Its first feature that is not the flat end of another.
 std::string name_of(const Solid& solid) {
+    const auto is_end = [&](const std::string& feature) {
+        return std::any_of(solid.surfaces.begin(), solid.surfaces.end(),
+                           [&](const Surface& other) { return !other.feature.empty() && end_of_feature(other.feature) == feature; });
+    };
     for (const Surface& surface : solid.surfaces)
-        if (!surface.feature.empty()) return "`" + surface.feature + "`";
+        if (!surface.feature.empty() && !is_end(surface.feature)) return "`" + surface.feature + "`";
     return "a solid";
 }
 

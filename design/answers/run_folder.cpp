@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_keys.hpp"
@@ -44,6 +45,8 @@ bool is_ours(const std::filesystem::path& file) {
     return text.find(mark_of(name)) != std::string::npos;
 }
 
+constexpr std::string_view scenario_prefix = "trajectory.scenario.";
+
 // As JSON is written.
 void without_infinities(Json& json) {
     if (json.is_number_float() && !std::isfinite(json.get<double>())) json = nullptr;
@@ -53,7 +56,15 @@ void without_infinities(Json& json) {
 
 }  // namespace
 
-std::string scenario_trajectory(const std::string& scenario) { return "trajectory." + scenario + ".json"; }
+std::string scenario_trajectory(const std::string& scenario) {
+    std::string name;
+    for (const char c : scenario) {
+        constexpr std::string_view no_part_of_a_name = "/\\:*?\"<>|%";
+        const bool fits = static_cast<unsigned char>(c) >= 0x20 && no_part_of_a_name.find(c) == std::string_view::npos;
+        name += fits ? std::string(1, c) : core::base::formatted("%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    }
+    return std::string(scenario_prefix) + name + ".json";
+}
 
 Errors others_file(const std::filesystem::path& file) {
     std::error_code ignored;
@@ -97,8 +108,8 @@ void replace_motion(core::files::FilesTogether& files, const std::string& folder
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
         const std::string name = entry.path().filename().string();
-        const bool is_of_scenario = name.starts_with("trajectory.") && name.ends_with(".json") && name != "trajectory.json";
-        if (is_of_scenario && core::records::is_trajectory_file(entry.path())) files.take_away(entry.path());
+        if (name.starts_with(scenario_prefix) && name.ends_with(".json") && core::records::is_trajectory_file(entry.path()))
+            files.take_away(entry.path());
     }
 }
 

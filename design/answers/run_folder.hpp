@@ -26,7 +26,8 @@ nlohmann::ordered_json result_json(nlohmann::ordered_json answer, const std::str
 /// Takes away what an earlier run left in FOLDER of its answer: report.html, and result.json if no other is added.
 void replace_answer(core::files::FilesTogether& files, const std::string& folder);
 
-/// The name of the file with the trajectory of a scenario that is not the first: trajectory.NAME.json.
+/// The name of the file with the trajectory of a scenario that is not the first: trajectory.scenario.NAME.json, where %2F and the like
+/// stand for what no file's name may have.
 std::string scenario_trajectory(const std::string& scenario);
 
 /// The same of its motion, where another one takes its place: also motion.glb, trajectory.start.json, trajectories of scenarios, and the

@@ -30,6 +30,7 @@ py::dict defaults() {
     add_default<fettle::core::energy::ContactForce>(all);
     add_default<fettle::core::geometry::Deviation>(all);
     add_default<fettle::core::kinematics::Pose>(all);
+    add_default<fettle::core::model::JointSide>(all);
     add_default<fettle::core::scene::Attachment>(all);
     add_default<fettle::core::scene::Body>(all);
     add_default<fettle::core::scene::CoordinateForces>(all);

@@ -568,7 +568,8 @@ TEST_CASE("report: an optimisation's has the curves of its own quantities, and t
         return std::vector<double>();
     };
     for (std::size_t s = 0; s < 3; ++s) {
-        const std::string file = s == 0 ? "/trajectory.json" : "/trajectory." + data["scenarios"][s]["name"].get<std::string>() + ".json";
+        const std::string file =
+            s == 0 ? "/trajectory.json" : "/trajectory.scenario." + data["scenarios"][s]["name"].get<std::string>() + ".json";
         const auto stored = core::records::read_trajectory(out + file);
         REQUIRE(stored);
         const std::vector<double> spot = curve(s, "spot");
@@ -583,7 +584,7 @@ TEST_CASE("report: an optimisation's has the curves of its own quantities, and t
     design.erase("scenarios");
     const DesignFolder plain(design.dump());
     REQUIRE(run("optimise " + plain.design() + " --out " + out + " --json").code <= 2);
-    CHECK_FALSE(std::filesystem::exists(out + "/trajectory.tilted.json"));
+    CHECK_FALSE(std::filesystem::exists(out + "/trajectory.scenario.tilted.json"));
 }
 
 TEST_CASE("report: of an optimisation, an interference is what is one, not what cannot be verified") {
