@@ -166,7 +166,7 @@ void check_ring(int slots) {
     CHECK(part_mechanism::fault_of(turned) == "");
     CHECK(fault_of_ring(turned, slots, t) == "");
     CHECK(fault_of_ring(turned, slots + 1, t) != "");
-    CHECK(fault_of_ring(turned, slots, t - 2 * degrees) != "");
+    CHECK(fault_of_ring(turned, slots, t - 3 * degrees) != "");
 }
 
 }  // namespace
