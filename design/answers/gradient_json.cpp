@@ -51,6 +51,8 @@ Json not_evaluated_json(const DesignEvaluation& evaluation) {
 
 namespace {
 
+Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
 void add_tie(const Design& design, const problem::Tie* tie, Json& entry) {
     if (tie == nullptr) return;
     entry["ties"] = {{"witnesses", tie->branches},
@@ -81,6 +83,8 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
         entry["value"] = measured.value;
         entry["proven"] = measured.is_proven;
         entry["certified_lower"] = measured.is_proven ? Json(measured.lower) : Json();
+        entry["lower"] = finite_or_null(constraint.bounds.lower);
+        entry["upper"] = finite_or_null(constraint.bounds.upper);
         entry["met"] = description::violation(constraint.bounds, measured) <= 0;
         if (!measured.fault.empty()) entry["fault"] = measured.fault;
         entry["gradient"] = gradient_json(design, evaluation.jacobian.row(i).transpose());
@@ -98,8 +102,6 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
 }
 
 namespace {
-
-Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 Json direction_json(const Design& design, const VectorX& direction) {
     Json json = Json::object();

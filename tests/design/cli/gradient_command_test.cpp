@@ -148,6 +148,8 @@ TEST_CASE("gradient: warns of energy from nowhere as simulate does, and calls co
     CHECK(told.at("warnings")[0].get<std::string>().find(words) == 0);
     CHECK(told.at("constraints")[0].at("proven") == false);
     CHECK(told.at("constraints")[0].at("certified_lower").is_null());
+    CHECK(told.at("constraints")[0].at("lower") == Approx(7.98e-3));
+    CHECK(told.at("constraints")[0].at("upper") == Approx(8.02e-3));
 }
 
 TEST_CASE("gradient, simulate: a linkage that goes over to its other side is a warning") {
