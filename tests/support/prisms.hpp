@@ -2,17 +2,14 @@
 /// Bodies extruded along z, for tests of contact between round surfaces.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
-#include <memory>
 #include <numbers>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "fettle/core/geometry/round_surfaces.hpp"
+#include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/model/model.hpp"
+#include "fettle/core/setup/round_contact.hpp"
 
 namespace fettle::tests::support {
 
@@ -90,15 +87,7 @@ inline core::geometry::Mesh plate_with_hole(const Outline& hole, double wall, do
     return core::geometry::make_mesh("plate", v, triangles);
 }
 
-/// What build_model fills in for `"contact": {"round": true}`. Call it again after moving vertices.
-inline void set_round(core::model::Model& model) {
-    double height = 0;
-    for (core::model::Body& body : model.bodies) {
-        auto round = std::make_shared<const core::geometry::RoundSurfaces>(core::geometry::round_surfaces(body.mesh));
-        if (round->any()) height = std::max(height, round->largest_height);
-        body.round = std::move(round);
-    }
-    model.round_reach = 2 * height;
-}
+/// Round contact between all sides, however little room they have. Call it again after moving vertices.
+inline void set_round(core::model::Model& model) { core::setup::add_round_contact(true, std::vector<core::model::FacetSides>{}, model); }
 
 }  // namespace fettle::tests::support
