@@ -29,9 +29,7 @@ public:
     StepEnd end() const { return {{problem_, problem_.poses_t0, none_, core::contact::HessianKind::exact}, nullptr}; }
 
     core::energy::CouplingDerivatives derivatives() const {
-        core::energy::CouplingDerivatives d;
-        d.gradient.resize(poses().size());
-        d.hessian.diagonal.assign(poses().size(), Matrix6::Zero());
+        core::energy::CouplingDerivatives d(poses().size());
         core::energy::measure_terms.add_derivatives(end(), d);
         return d;
     }

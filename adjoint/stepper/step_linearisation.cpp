@@ -71,9 +71,9 @@ void add_rows(StepSolver& solver, LinearisedStep& step) {
     add_transposed(step.rows, step.multipliers, step.derivatives.gradient);
 }
 
-// Per body: the sizes of the forces of every contact and of every term of a measure, each by itself. Of a body that a spring presses
-// against a stop or a ball between two walls their sum is next to nothing. Damping counts with the contacts that it acts at.
-std::vector<double> coupling_magnitudes(const LinearisedStep& step) {
+// Per body: the sizes of the forces of every contact, each by itself. Of a ball between two walls their sum is next to nothing. Damping
+// counts with the contacts that it acts at.
+std::vector<double> contact_magnitudes(const LinearisedStep& step) {
     const core::energy::StepProblem& problem = step.problem;
     const core::model::Model& model = *problem.model;
     std::vector<double> out(model.bodies.size(), 0.0);
@@ -89,23 +89,6 @@ std::vector<double> coupling_magnitudes(const LinearisedStep& step) {
             out[list.first] += force;
             out[list.second] += force;
         }
-    const core::measure::MeasureSet& set = model.mechanism.set;
-    const std::vector<core::measure::PlacedFrame> frames = placed(set.frames, step.poses);
-    for (const core::model::MeasureTerm& term : model.mechanism.terms) {
-        const core::measure::Measure& m = set.measures[term.measure];
-        const double force =
-            std::abs(measure_law(problem, term, core::constraint::value_at(set, term.measure, frames, problem.mechanism.angles)).first);
-        const core::measure::PoseGradients g = pose_gradients(m, vector_function(m, frames), frames);
-        const auto add = [&](int frame, const core::kinematics::PoseGradient& of_body) {
-            const int body = set.frames[frame].body;
-            if (body == core::measure::world) return;
-            const Vector6 along = tangent_gradient(of_body);
-            const double arm = std::max(model.bodies[body].radius, model.dhat);
-            out[body] += force * (along.head<3>().norm() + along.tail<3>().norm() / arm);
-        };
-        add(m.a, g.a);
-        add(m.b, g.b);
-    }
     return out;
 }
 
@@ -117,7 +100,7 @@ StepSolver::StepSolver(const core::model::Model& model) : system_(free_dofs(mode
 
 Errors StepSolver::check_balance(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) const {
     const core::model::Model& model = *step.problem.model;
-    std::vector<double> magnitude = step.derivatives.force_magnitude, coupling;
+    std::vector<double> magnitude = step.derivatives.force_magnitude, contacts;
     for (int row = 0; row < step.rows.count(); ++row)
         for (int k = step.rows.first[row]; k < step.rows.first[row + 1]; ++k) {
             const core::linear::RowGradient& e = step.rows.entries[k];
@@ -133,9 +116,9 @@ Errors StepSolver::check_balance(const core::stepper::Trajectory& trajectory, in
         const double mass = body.moments(3, 3), places = mass * rounding_of_places * model.diagonal;
         double size = magnitude[i] + mass * model.velocity_tolerance * model.timestep;
         if (g.norm() <= balanced * size + places) continue;
-        // `force_magnitude` has the sum of what couples bodies, in which forces against one another cancel.
-        if (coupling.empty()) coupling = coupling_magnitudes(step);
-        size += coupling[i];
+        // `force_magnitude` has the sum of the contacts' forces, in which forces against one another cancel.
+        if (contacts.empty()) contacts = contact_magnitudes(step);
+        size += contacts[i];
         if (g.norm() <= balanced * size + places) continue;
         std::ostringstream message;
         message << "the step at t = " << trajectory.time_start + t * trajectory.timestep << " s has no derivative: '" << body.name

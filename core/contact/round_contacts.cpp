@@ -72,6 +72,9 @@ struct Placed {
     bool is_round(int corner) const { return kind(corner) == CornerKind::convex_round || kind(corner) == CornerKind::concave_round; }
     bool is_convex(int corner) const { return kind(corner) == CornerKind::convex_round || kind(corner) == CornerKind::convex_edge; }
     bool is_hollow(int corner) const { return kind(corner) == CornerKind::concave_round; }
+    // An edge at the foot of a wall. Above a wall lower than the activation distance there is something to meet it.
+    bool is_foot(int corner) const { return kind(corner) == CornerKind::concave_edge && has_before(corner) && has_after(corner); }
+    bool is_outer(int corner) const { return is_convex(corner) || is_foot(corner); }
 };
 
 double cross(const Vector2& a, const Vector2& b) { return a[0] * b[1] - a[1] * b[0]; }
@@ -84,10 +87,15 @@ Within within(double margin, double size) {
 }
 
 // Is this direction one of those that a corner's arc, or edge, faces? Those between the normals of the rectangles beside it, which turn to
-// the left round a convex corner; at a side's end up to a right angle from the only one.
+// the left round a convex corner; at a side's end up to a right angle from the only one. The edge at the foot of a wall faces what has left
+// one of its rectangles, and is not over the other one's beginning: beyond the wall's top.
 // @param direction  unit, outward from the material
 Within faces(const Placed& p, int corner, const Vector3& direction) {
     const Vector2 w = p.across(direction);
+    if (p.is_foot(corner)) {
+        const Vector2 &before = p.surface.normals[p.before(corner)], &after = p.surface.normals[corner];
+        return within(std::max(std::min(cross(before, w), before.dot(w)), std::min(cross(w, after), after.dot(w))), 1);
+    }
     const double turn = p.is_convex(corner) ? 1 : -1;
     double margin = 1;
     if (p.has_before(corner)) margin = std::min(margin, turn * cross(p.surface.normals[p.before(corner)], w));
@@ -239,6 +247,16 @@ private:
         return e == 0 ? beyond >= 0 : beyond <= 0;
     }
 
+    // The same of the end of an arc's centre line and a plane's border, both seen along the border, where neither distance changes.
+    bool ends_within_border(const Placed& arc, int corner, const Placed& plane, int rectangle, const Vector3& from_plane, int e) const {
+        const Vector3 border = (plane.rim_point(plane.next(rectangle), e) - plane.rim_point(rectangle, e)).normalized();
+        const auto seen = [&](const Vector3& v) { return Vector3(v - v.dot(border) * border); };
+        const Vector3 along = seen(arc.centre(corner, 1) - arc.centre(corner, 0)).normalized() +
+                              seen(plane.rim_point(rectangle, 1) - plane.rim_point(rectangle, 0)).normalized();
+        const double beyond = along.dot(seen(from_plane));
+        return e == 0 ? beyond >= 0 : beyond <= 0;
+    }
+
     // Two corners' centre lines where a contact at this end would be: the end of one that lies within the other, and that one's line.
     struct Lines {
         bool at_b;       // the end is b's
@@ -281,7 +299,7 @@ private:
     // @param known  whether the two face each other, where that is known already
     void arcs(const Placed& a, int i, const Placed& b, int j, int e, std::optional<Within> known = {}) {
         const bool hollow_a = a.is_hollow(i), hollow_b = b.is_hollow(j), inside = hollow_a || hollow_b;
-        if ((hollow_a && hollow_b) || (!a.is_convex(i) && !hollow_a) || (!b.is_convex(j) && !hollow_b)) return;
+        if (!(a.is_convex(i) && (b.is_outer(j) || hollow_b)) && !(b.is_convex(j) && (a.is_outer(i) || hollow_a))) return;
         const int sign_a = hollow_a || !inside ? 1 : -1, sign_b = hollow_b || !inside ? 1 : -1;
         const int side = inside ? -1 : 1;
         const double radius = sign_a * a.radius(i, e) + sign_b * b.radius(j, e) + side * cover_;
@@ -311,9 +329,9 @@ private:
         add(point, std::move(pair), distance, facing);
     }
 
-    // A convex arc and what the arcs beside it leave plane of a rectangle.
+    // A convex arc, or an edge, and what the arcs beside it leave plane of a rectangle.
     void arc_and_plane(const Placed& arc, int corner, const Placed& plane, int rectangle, int e) {
-        if (!arc.is_convex(corner)) return;
+        if (!arc.is_outer(corner)) return;
         const double length = plane.surface.lengths[rectangle];
         const double flat = length - plane.surface.tangents[rectangle] - plane.surface.tangents[plane.next(rectangle)];
         if (flat < same_place * length) return;  // the arcs meet
@@ -323,7 +341,7 @@ private:
         Within facing = faces(arc, corner, -outward);
         if (facing == Within::no && faces_as_end(arc, corner, -outward, activation_)) facing = Within::yes;
         if (facing == Within::no) return;
-        if (ends_within(arc.centre(corner, e), plane.rim_point(rectangle, e), e))
+        if (ends_within_border(arc, corner, plane, rectangle, from_plane, e))
             end_on_plane(arc, corner, plane, rectangle, e, facing);
         else
             border_on_line(arc, corner, plane, rectangle, e, facing);

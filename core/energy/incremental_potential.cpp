@@ -50,11 +50,13 @@ struct CouplingSums {
         if (usable) return;
         d.gradient.resize(bodies);
         d.hessian.diagonal.resize(bodies);
+        d.magnitude.resize(bodies);
         base::parallel_for(static_cast<int>(bodies), bodies_to_clear, [&](int i) { clear(static_cast<std::size_t>(i)); });
     }
     void clear(std::size_t body) {
         d.gradient[body] = {};
         d.hessian.diagonal[body].setZero();
+        d.magnitude[body] = 0;
     }
 };
 
@@ -90,7 +92,11 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
     CouplingDerivatives& d = sums.d;
     const DerivativesAt at{problem, poses, contacts, kind};
     sums.begin(poses.size());
-    for (const CouplingTerm* term : coupling_terms()) term->add_derivatives(at, d);
+    for (const CouplingTerm* term : coupling_terms()) {
+        if (term == &measure_terms)  // whose forces count one by one
+            for (std::size_t i = 0; i < poses.size(); ++i) d.magnitude[i] += d.gradient[i].force.norm();
+        term->add_derivatives(at, d);
+    }
     ChartDerivatives out;
     const std::size_t n = poses.size();
     out.gradient.resize(n);
@@ -102,7 +108,7 @@ ChartDerivatives chart_derivatives(const StepProblem& problem, const std::vector
         for (const BodyTerm* term : body_terms()) term->add_derivatives(at, static_cast<std::size_t>(i), own);
         const Vector3& theta = points[i].rotation_vector;
         jacobian[i] = kinematics::left_jacobian(theta);
-        out.force_magnitude[i] = d.gradient[i].force.norm() + own.magnitude;
+        out.force_magnitude[i] = d.magnitude[i] + own.magnitude;
         const kinematics::PoseGradient gradient{d.gradient[i].force + own.gradient.force, d.gradient[i].arm + own.gradient.arm};
         const Matrix6 coupled = d.hessian.diagonal[i];
         sums.clear(static_cast<std::size_t>(i));

@@ -25,7 +25,8 @@ double incremental_potential(const StepProblem& problem, const std::vector<kinem
 struct ChartDerivatives {
     std::vector<Vector6> gradient;  ///< per body
     kinematics::BlockHessian hessian;
-    /// Per body: the magnitude of the sum of what couples it to others, and of each part of its own forces, in gradient units per metre.
+    /// Per body: the magnitudes of the sum of its contacts' forces, of each spring, stop, load and joint friction (what a spring that
+    /// presses a part on its stop leaves of their sum is rounding), and of each part of its own forces, in gradient units per metre.
     std::vector<double> force_magnitude;
 };
 /// @param kind  projected: terms that couple bodies per pair, and each body's own 6 x 6 block with the curvature of its rotation, made

@@ -102,11 +102,13 @@ TermGradient derivatives_of(const DerivativesAt& at, const model::MeasureTerm& t
     return out;
 }
 
-void add_side(int body, const kinematics::PoseGradient& gradient, const Eigen::Ref<const Matrix6>& hessian, CouplingDerivatives& d) {
+void add_side(const model::Model& model, int body, const kinematics::PoseGradient& gradient, const Eigen::Ref<const Matrix6>& hessian,
+              CouplingDerivatives& d) {
     if (body == measure::world) return;
     const auto i = static_cast<std::size_t>(body);
     d.gradient[i].force += gradient.force;
     d.gradient[i].arm += gradient.arm;
+    d.magnitude[i] += std::max(gradient.force.norm(), gradient.arm.norm() / std::max(model.bodies[i].radius, model.dhat));
     d.hessian.diagonal[i] += hessian;
 }
 
@@ -117,8 +119,8 @@ void add_measures_derivatives(const DerivativesAt& at, CouplingDerivatives& d) {
     std::vector<kinematics::OffDiagonalBlock> blocks;
     for (const model::MeasureTerm& term : mechanism.terms) {
         const TermGradient t = derivatives_of(at, term, frames);
-        add_side(t.a, t.gradient.a, t.hessian.topLeftCorner<6, 6>(), d);
-        add_side(t.b, t.gradient.b, t.hessian.bottomRightCorner<6, 6>(), d);
+        add_side(*at.problem.model, t.a, t.gradient.a, t.hessian.topLeftCorner<6, 6>(), d);
+        add_side(*at.problem.model, t.b, t.gradient.b, t.hessian.bottomRightCorner<6, 6>(), d);
         if (t.a == measure::world || t.b == measure::world) continue;
         if (t.a < t.b)
             blocks.push_back({t.a, t.b, t.hessian.topRightCorner<6, 6>()});

@@ -31,9 +31,7 @@ std::vector<Vector6> start_loads(const model::Model& model) {
     }
     if (model.mechanism.terms.empty()) return loads;
     const StepProblem problem = start_problem(model);
-    CouplingDerivatives d;
-    d.gradient.resize(loads.size());
-    d.hessian.diagonal.assign(loads.size(), Matrix6::Zero());
+    CouplingDerivatives d(loads.size());
     const contact::ContactSet none;
     measure_terms.add_derivatives({problem, problem.poses_t0, none, contact::HessianKind::exact}, d);
     for (std::size_t i = 0; i < loads.size(); ++i) loads[i] -= tangent_gradient(d.gradient[i]);

@@ -69,8 +69,13 @@ struct BodyDerivatives {
     double magnitude = 0;                      ///< of the forces' parts, in gradient units per metre
 };
 struct CouplingDerivatives {
+    CouplingDerivatives() = default;
+    explicit CouplingDerivatives(std::size_t bodies) : gradient(bodies), magnitude(bodies, 0.0) {
+        hessian.diagonal.assign(bodies, Matrix6::Zero());
+    }
     std::vector<kinematics::PoseGradient> gradient;  ///< [body]
     kinematics::BlockHessian hessian;                ///< off-diagonal blocks are inserted as needed and stay sorted
+    std::vector<double> magnitude;  ///< [body] of the contacts' sum and of each term of a measure, as BodyDerivatives has it
 };
 
 /// A step that is solved.

@@ -56,9 +56,6 @@ public:
         : scene_(scene), model_(model), out_(model.mechanism), radii_(scales.radii) {
         for (std::size_t i = 0; i < model.bodies.size(); ++i) body_of_name_[model.bodies[i].name] = static_cast<int>(i);
         for (std::size_t i = radii_.size(); i < model.bodies.size(); ++i) radii_.push_back(model.bodies[i].radius);
-        Model plain = model;
-        plain.area_weighted = false;
-        stop_stiffness_ = scales.stop_stiffness ? *scales.stop_stiffness : model.area_weighted ? choose_kappa(plain) : model.kappa;
     }
 
     Errors build() {
@@ -251,8 +248,8 @@ private:
         if (from.damping > 0) out_.terms.push_back({LawKind::damper, measure, from.damping, 0, 1, length, {}, name, origin_});
         if (from.friction > 0) out_.terms.push_back({LawKind::friction, measure, from.friction, 0, 1, length, {}, name, origin_});
         if (!from.limits) return;
-        out_.terms.push_back({LawKind::stop, measure, stop_stiffness_, (*from.limits)[0], 1, length, {}, name, origin_});
-        out_.terms.push_back({LawKind::stop, measure, stop_stiffness_, (*from.limits)[1], -1, length, {}, name, origin_});
+        out_.terms.push_back({LawKind::stop, measure, 0, (*from.limits)[0], 1, length, {}, name, origin_});
+        out_.terms.push_back({LawKind::stop, measure, 0, (*from.limits)[1], -1, length, {}, name, origin_});
     }
 
     // A joint by name, with a coordinate.
@@ -358,7 +355,6 @@ private:
     Model& model_;
     Mechanism& out_;
     std::vector<double> radii_;
-    double stop_stiffness_ = 0;
     Origin origin_;  // of what is being added
     std::map<std::string, int> body_of_name_, joint_of_name_;
     Errors errors_;
@@ -373,6 +369,12 @@ Errors build_mechanism(const scene::Scene& scene, Model& model, const TermScales
         return {{ErrorCode::unsupported, scene.path + "#/integrator",
                  "`newmark` lets joints oscillate; `implicit_euler`, `bdf2` and `quasi_static` can have them"}};
     return settle_start(scene, model);
+}
+
+void stiffen_stops(Model& model, const TermScales& scales) {
+    const double stiffness = scales.stop_stiffness ? *scales.stop_stiffness : choose_stop_stiffness(model);
+    for (MeasureTerm& term : model.mechanism.terms)
+        if (term.kind == LawKind::stop) term.coefficient = stiffness;
 }
 
 }  // namespace fettle::core::model

@@ -15,16 +15,20 @@ namespace fettle::core::model {
 /// What terms take of the bodies besides their frames. A design's trials have those of the design as written, so that they are no hidden
 /// function of its parameters.
 struct TermScales {
-    std::optional<double> stop_stiffness;  ///< [N/m]; else kappa, of an area-weighted barrier what kappa would be without areas
+    std::optional<double> stop_stiffness;  ///< [N/m]; else choose_stop_stiffness's
     std::vector<double> radii;             ///< per body [m]: the lever of angles in stops and friction; empty: the bodies' own
 };
 
 /// Adds Model::mechanism; moves pose_start and velocity_start of dynamic bodies as little as their masses allow, with a warning of each
 /// body that had to. Rows that follow from others are left out, with a warning.
-/// Contract: bodies, masses, dhat, kappa and diagonal of the model are set.
-/// Errors: names that are not there, branches that cannot be said so (branch_of_joint.hpp) or on which a loop does not close, joints of a
-/// body with itself, axes of length 0, motors that turn by half a turn in a time step (inconsistent, out_of_range); loops that cannot be
-/// closed, with the joints and the gaps that remain; joints that contradict one another; Newmark, which has no rows (unsupported).
+/// Contract: bodies, masses, dhat and diagonal of the model are set. Stops have no stiffness yet: kappa, which they take it from, depends
+/// on the springs (choose_kappa.hpp). Errors: names that are not there, branches that cannot be said so (branch_of_joint.hpp) or on which a
+/// loop does not close, joints of a body with itself, axes of length 0, motors that turn by half a turn in a time step (inconsistent,
+/// out_of_range); loops that cannot be closed, with the joints and the gaps that remain; joints that contradict one another; Newmark, which
+/// has no rows (unsupported).
 base::Errors build_mechanism(const scene::Scene& scene, Model& model, const TermScales& scales = {});
+
+/// Contract: kappa of the model is set.
+void stiffen_stops(Model& model, const TermScales& scales = {});
 
 }  // namespace fettle::core::model

@@ -198,7 +198,6 @@ base::Result<Model> build(const scene::Scene& scene, const BuildOptions& options
     model.contact_damping_time = scene.contact_damping_time;
     model.adaptive_kappa = !options.kappa && !scene.kappa;
     if (errors = check_areas(model); !errors.empty()) return errors;
-    model.kappa = options.kappa ? *options.kappa : scene.kappa ? *scene.kappa : choose_kappa(model);
     model.warnings = std::move(check.warnings);
     add_round_contact(scene.round_contact, options.facet_sides, model);
     if (model.integrator == scene::Integrator::quasi_static) {
@@ -206,6 +205,8 @@ base::Result<Model> build(const scene::Scene& scene, const BuildOptions& options
         warn_of_unused_rates(model);
     }
     if (errors = build_mechanism(scene, model, options.term_scales); !errors.empty()) return errors;
+    model.kappa = options.kappa ? *options.kappa : scene.kappa ? *scene.kappa : choose_kappa(model);
+    stiffen_stops(model, options.term_scales);
     if (options.check_start) {
         model::StartReport start = model::report_start(model);
         errors = std::move(start.errors);

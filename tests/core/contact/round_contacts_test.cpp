@@ -202,6 +202,25 @@ Slide slide(const Scene& scene, const std::function<Poses(double)>& at, double f
     return out;
 }
 
+// The largest sudden change of the energy along a way, over the energy there: the interval in which it bends most, again and again. What is
+// continuous has none left in a millionth of a millionth of the way.
+double sudden_change(const Scene& scene, const std::function<Poses(double)>& at, double from, double to) {
+    constexpr int pieces = 100, levels = 7;
+    double largest = 0;
+    for (int level = 0; level < levels; ++level) {
+        std::vector<double> values;
+        for (int k = 0; k <= pieces; ++k)
+            values.push_back(barrier_potential(contacts_of(scene, at(from + (to - from) * k / pieces)), scene.parameters()));
+        int most = 1;
+        const auto bend = [&](int k) { return std::abs(values[k + 1] - 2 * values[k] + values[k - 1]); };
+        for (int k = 1; k < pieces; ++k)
+            if (bend(k) > bend(most)) most = k;
+        largest = std::abs(values[most + 1] - values[most - 1]) / *std::max_element(values.begin(), values.end());
+        std::tie(from, to) = std::pair(from + (to - from) * (most - 1) / pieces, from + (to - from) * (most + 1) / pieces);
+    }
+    return largest;
+}
+
 }  // namespace
 
 TEST_CASE("a roller on an outline has one contact at each end, as far away as its section", "[round_contacts]") {
@@ -414,6 +433,32 @@ TEST_CASE("where ends are flush, round contacts go on from one body's to the oth
         const auto along = [tilt](double z) { return placed(make_pose({0, tilt, 0}, {2.5e-2 + 5e-5 + 4e-3 * tilt, 0, z}), some_frame); };
         CAPTURE(tilt);
         CHECK(slide(scene, along, -3e-4, 3e-4, 600).jump < 1e-3);
+    }
+}
+
+// Turned against the wall both ways: the wall's border is across neither the roller nor the way from it.
+TEST_CASE("where a tilted roller's end passes a wall's, nothing jumps", "[round_contacts]") {
+    const Scene scene(pin(4e-3), box_mesh({-1e-2, -8e-3, -4e-3}, {1e-2, 8e-3, 4e-3}), 1e-4);
+    for (const Vector3& tilt : {Vector3(0.002, 0.003, 0.1), Vector3(-0.01, 0.008, 0), Vector3(0.006, -0.007, 0.3)}) {
+        const double gap = 5e-5 + 4e-3 * std::abs(tilt.y());
+        const auto along = [&](double z) { return placed(make_pose(tilt, {1.5e-2 + gap, 3e-3, z}), some_frame); };
+        CAPTURE(tilt.transpose());
+        CHECK(contacts_of(scene, along(0)).count > 0);
+        CHECK(sudden_change(scene, along, -3e-4, 3e-4) < 1e-8);
+    }
+}
+
+// A step lower than the contact is wide: what is over its foot is over its top too.
+TEST_CASE("over the foot of a low step round contacts do not end at once", "[round_contacts]") {
+    for (const double height : {1e-7, 5e-6, 3e-5}) {
+        const Outline stepped{{1e-2, -8e-3}, {1e-2, 0}, {1e-2 + height, 0}, {1e-2 + height, 8e-3}, {-1e-2, 8e-3}, {-1e-2, -8e-3}};
+        const Scene roller(pin(4e-3), prism(stepped, -3e-3, 3e-3), 1e-4),
+            corner(prism({{0, 0}, {5e-3, -4e-3}, {5e-3, 4e-3}}, -4e-3, 4e-3), prism(stepped, -3e-3, 3e-3), 1e-4);
+        const auto rolled = [&](double y) { return placed(make_pose({0.002, 0.001, 0.1}, {1.5e-2 + 6e-5, y, 0}), some_frame); };
+        const auto dragged = [&](double y) { return placed(make_pose({0.002, 0.001, 0.1}, {1e-2 + 6e-5, y, 0}), some_frame); };
+        CAPTURE(height);
+        CHECK(sudden_change(roller, rolled, -2e-4, 3e-4) < 1e-8);
+        CHECK(sudden_change(corner, dragged, -2e-4, 3e-4) < 1e-8);
     }
 }
 

@@ -132,9 +132,7 @@ TEST_CASE("each term's gradient is that of its value, and held bodies have none 
             const auto points = points_at(d);
             return term->value({problem, points, poses_of(problem, points), {}});
         };
-        CouplingDerivatives d;
-        d.gradient.resize(2);
-        d.hessian.diagonal.assign(2, Matrix6::Zero());
+        CouplingDerivatives d(2);
         term->add_derivatives(here, d);
         check(term->name, value, tangent_gradient(d.gradient[0]), Vector3::Zero());
     }
