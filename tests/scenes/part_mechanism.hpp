@@ -98,13 +98,13 @@ struct Run {
     }
 };
 
-inline Run run(const std::string& scene_text) {
+inline Run run(const std::string& scene_text, const core::stepper::SimulationOptions& options = {}) {
     const auto scene = core::scene_files::parse_scene(scene_text, "part_mechanism.scene.json", design::reading::scene_read_options());
     for (const Error& error : scene.errors()) FAIL(error.where << ": " << error.message);
     auto model = core::setup::build_model(*scene);
     for (const Error& error : model.errors()) FAIL(error.where << ": " << error.message);
     Run out{std::move(*model), {}};
-    out.simulation = core::stepper::simulate(out.model);
+    out.simulation = core::stepper::simulate(out.model, options);
     return out;
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What a user gets: scenes without a word about the solver, over a decade of time steps, against motions that are integrated here by
 // Runge's and Kutta's method. Orders 1, 2, 2 of implicit Euler, BDF2 and Newmark, and what is conserved. The solver's own error must not
-// show.
+// show. A single pendulum: tests/scenes/pendulum_test.cpp.
 #include <functional>
 #include <numbers>
 
 #include "fettle/tests/core/stepper/physics_models.hpp"
+#include "fettle/tests/support/integrated.hpp"
 #include "fettle/tests/support/mechanisms.hpp"
 
 namespace fettle::core::stepper::default_accuracy_test {
@@ -15,6 +16,9 @@ using mechanisms::bar;
 using mechanisms::joint;
 using scene::Integrator;
 using scene::JointKind;
+using support::integrated;
+using support::Rates;
+using support::State;
 
 namespace {
 
@@ -31,25 +35,6 @@ scene::Scene default_scene(std::vector<scene::Body> bodies, Integrator integrato
 
 Simulation run_for(const model::Model& model, double time) {
     return mechanisms::run(model, static_cast<int>(std::lround(time / model.timestep)));
-}
-
-using State = std::vector<double>;
-using Rates = std::function<State(const State&)>;
-
-// Classical fourth order; the step is short enough for 1e-10.
-State integrated(State y, const Rates& rates, double time) {
-    constexpr int steps = 40000;
-    const double h = time / steps;
-    const auto on = [](const State& from, double factor, const State& along) {
-        State out = from;
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] += factor * along[i];
-        return out;
-    };
-    for (int t = 0; t < steps; ++t) {
-        const State a = rates(y), b = rates(on(y, h / 2, a)), c = rates(on(y, h / 2, b)), d = rates(on(y, h, c));
-        for (std::size_t i = 0; i < y.size(); ++i) y[i] += h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]);
-    }
-    return y;
 }
 
 const std::vector<Integrator> all{Integrator::implicit_euler, Integrator::bdf2, Integrator::newmark};
@@ -115,25 +100,6 @@ TEST_CASE("A free body keeps its energy and its angular momentum") {
         CHECK(last.kinetic_energy / first.kinetic_energy == Approx(1).margin(allowed));
         CHECK((last.angular_momentum - first.angular_momentum).norm() <= allowed * first.angular_momentum.norm());
     }
-}
-
-TEST_CASE("A pendulum swings with the integrator's order") {
-    const double length = 0.2, time = 0.5, amplitude = pi / 3;
-    // A bar of square section 2 half: its inertia about the hinge is m (L^2 + half^2) / 3.
-    const double half = 0.01;
-    const Rates rates = [&](const State& y) {
-        return State{y[1], -0.5 * mechanisms::gravity * length / ((length * length + half * half) / 3) * std::sin(y[0])};
-    };
-    const double expected = integrated({amplitude, 0}, rates, time)[0];
-    check_order(with_joints, 4e-3, [&](Integrator integrator, double h) {
-        scene::Scene scene = default_scene({bar("bar", length, Vector3::Zero(), Vector3(0, pi / 2 - amplitude, 0))}, integrator, h);
-        scene.gravity = Vector3(0, 0, -mechanisms::gravity);
-        scene.mechanism.joints = {joint("hinge", JointKind::revolute, {"", Vector3::Zero(), y_axis}, {"bar", Vector3::Zero(), y_axis})};
-        const model::Model model = mechanisms::built(scene);
-        const Simulation out = run_for(model, time);
-        const Vector3 tip = mechanisms::place(model, out, count_of(out.trajectory.steps), 0, Vector3(length, 0, 0));
-        return std::abs(std::atan2(tip.x(), -tip.z()) - expected);
-    });
 }
 
 TEST_CASE("A double pendulum swings with the integrator's order") {
