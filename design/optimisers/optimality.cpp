@@ -19,6 +19,7 @@ constexpr int most_probes = 5;
 constexpr double near = 0.3;  // evaluations within this distance tell of the curvature
 constexpr double exact_penalty = 1e3;
 constexpr int most_looks_aside = 2, most_steps_aside = 3;
+constexpr double least_margin = 0.05, most_margin = 0.25;  // shares that the verdict keeps to; the second where the first was missed
 constexpr int noise_values = 7;
 constexpr double noise_spacing = 1e-3;
 constexpr double telling_share = 0.1;  // of a gain, below which a variable is not named; of a gradient, below which a constraint is not
@@ -68,6 +69,7 @@ public:
             }
         } catch (const StopOptimisation&) {  // what was found so far stands, as not judged
         }
+        if (moved) evaluator_.keep_margin(margin_);
         tell();
         return result_;
     }
@@ -93,6 +95,7 @@ private:
             const Evaluation& seen = evaluator_.at(point_ + now_.solution.step);
             result_.refused = seen.usable ? std::string() : seen.reason;
             if (!seen.usable) refused = now_;
+            if (seen.usable && seen.violation > 0) margin_ = most_margin;
             if (evaluator_.best_point() != before && at_.objective - evaluator_.best_scaled_evaluation().objective > 0.5 * worth_)
                 return true;
             if (evaluator_.best_point() != before) {  // hardly better: judged from there all the same
@@ -107,6 +110,7 @@ private:
         worth_ = least_gain(evaluator_, options_, at_.objective);
         now_.radius = radius;
         at_ = with_telling_derivatives(evaluator_, point_, evaluator_.best_scaled_evaluation());
+        evaluator_.keep_margin(margin_, at_.constraints);
         const VectorX none = VectorX::Zero(evaluator_.constraints());
         const VectorX y = now_.solution.multipliers.size() == none.size() ? smooth_multipliers(now_.solution) : none;
         RestCurvature rest = curvature_near(evaluator_, point_, at_, y);
@@ -249,6 +253,7 @@ private:
     Evaluation at_;
     Look now_;
     double worth_ = 0;
+    double margin_ = least_margin;
     Optimality result_;
 };
 
