@@ -36,17 +36,10 @@ PairClearance with_witness(PairClearance pair, const Witness& witness) {
     return pair;
 }
 
-// The pair's own witness first, then what is near there and at the others, which are places of the trajectory.
-std::vector<Witness> features_near(const Model& model, const Trajectory& trajectory, const PairClearance& pair,
-                                   const std::vector<Witness>& others, const LocalWitnessLimits& limits) {
-    std::vector<Witness> near = tied_features(model, trajectory, pair.a, pair.b, pair.witness, limits.room);  // itself first
-    for (const Witness& at : others) {
-        const std::vector<Witness> there = tied_features(model, trajectory, pair.a, pair.b, at, farthest(pair, limits) - at.distance);
-        near.insert(near.end(), there.begin(), there.end());
-    }
-    const auto has_none = [&](const Witness& w) { return !no_derivative_at(model, trajectory, pair.a, pair.b, w).empty(); };
-    near.erase(std::remove_if(near.begin() + 1, near.end(), has_none), near.end());
-    return near;
+// What is within the room of the pair's own witness, at another place.
+std::vector<Witness> features_at(const Model& model, const Trajectory& trajectory, const PairClearance& pair, const Witness& at,
+                                 const LocalWitnessLimits& limits) {
+    return tied_features(model, trajectory, pair.a, pair.b, at, farthest(pair, limits) - at.distance);
 }
 
 bool is_same_place(const JointRanges& ranges, const PairClearance& one, const PairClearance& other) {
@@ -122,7 +115,10 @@ std::vector<PairClearance> local_witnesses(const Model& model, const Trajectory&
     if (steps)
         nearest = core::clearance::nearest_by_window(model, trajectory, {pair.a, pair.b}, {steps->first, steps->last, limits.parts},
                                                      farthest(pair, limits), accuracy(pair, limits));
-    const std::vector<Witness> near = features_near(model, trajectory, pair, nearest, limits);
+    std::vector<Witness> near = features_at(model, trajectory, pair, pair.witness, limits);  // itself first
+    near.insert(near.end(), nearest.begin(), nearest.end());
+    const auto has_none = [&](const Witness& w) { return !no_derivative_at(model, trajectory, pair.a, pair.b, w).empty(); };
+    near.erase(std::remove_if(near.begin() + 1, near.end(), has_none), near.end());
     std::vector<PairClearance> chosen;
     for (const Witness& w : distinct_witnesses(model, trajectory, {pair.a, pair.b}, near, limits.most))
         chosen.push_back(with_witness(pair, w));
@@ -136,11 +132,15 @@ std::vector<PairClearance> local_witnesses(const Model& model, const JointRanges
     StandingMotion found(model, ranges);
     PairClearance own = pair;
     own.witness = found.add(pair);
-    std::vector<Witness> others;
+    std::vector<Witness> places{own.witness};
     for (const PairClearance& part :
          core::clearance::nearest_by_part(model, ranges, bodies, limits.parts, farthest(pair, limits), accuracy(pair, limits)))
-        others.push_back(found.add(part));
-    const std::vector<Witness> near = features_near(model, found.trajectory(), own, others, limits);
+        places.push_back(found.add(part));
+    std::vector<Witness> near;
+    for (const Witness& place : places) {
+        const std::vector<Witness> there = features_at(model, found.trajectory(), pair, place, limits);
+        near.insert(near.end(), there.begin(), there.end());
+    }
     StandingMotion settled(model, ranges);
     std::vector<Witness> minima{settled.add(pair)};
     for (const Witness& w : distinct_witnesses(model, found.trajectory(), bodies, near, most_settled, Places::positions))

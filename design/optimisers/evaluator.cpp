@@ -132,6 +132,7 @@ void Evaluator::fix_scaling() {
 
 void Evaluator::keep_margin(double share) {
     FETTLE_ASSERT(0 <= share && share <= 1, "a share of the margin");
+    margin_share_ = share;
     const VectorX nearer = (1 - share) * margin_;
     scaled_constraint_lower_ = (joined(problem_.constraint_lower, problem_.relation_lower) - nearer).cwiseProduct(constraint_scale_);
     scaled_constraint_upper_ = (joined(problem_.constraint_upper, problem_.relation_upper) + nearer).cwiseProduct(constraint_scale_);

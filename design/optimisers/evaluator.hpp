@@ -75,6 +75,7 @@ public:
     /// constraint of this value (scaled) that is nearer to its bound where it is. Contract: 0 <= share <= 1.
     void keep_margin(double share);
     void keep_margin(double share, const VectorX& scaled_constraints);
+    double margin_share() const { return margin_share_; }
 
     const VectorX& scaled_start() const { return scaled_start_; }
     /// What is aimed at, relations too.
@@ -125,6 +126,7 @@ private:
     EvaluatorOptions options_;
     VectorX range_, scaled_start_, constraint_scale_, scaled_constraint_lower_, scaled_constraint_upper_;
     VectorX margin_;  ///< of constraints and relations, not scaled
+    double margin_share_ = 1;
     double objective_scale_ = 1;
     Evaluation start_evaluation_;
     std::deque<Record> records_;        ///< references into it stay valid

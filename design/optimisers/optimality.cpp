@@ -56,20 +56,20 @@ VectorX inward(const VectorX& point) {
 class Judgement {
 public:
     Judgement(Evaluator& evaluator, const OptimiserOptions& options)
-        : evaluator_(evaluator), options_(options), point_(evaluator.best_scaled_point()), at_(evaluator.best_scaled_evaluation()) {}
+        : evaluator_(evaluator),
+          options_(options),
+          point_(evaluator.best_scaled_point()),
+          at_(evaluator.best_scaled_evaluation()),
+          margin_(evaluator.margin_share() < 1 ? least_margin : 1) {}
 
     Optimality judge(bool& moved) {
         moved = false;
         try {
-            moved = probe();
+            moved = gains();
             result_.judged = !moved && now_.solution.solved && measure_noise();
-            if (result_.judged && now_.gain <= worth_ && leaves_saddle()) {
-                moved = true;
-                result_.judged = false;
-            }
         } catch (const StopOptimisation&) {  // what was found so far stands, as not judged
         }
-        if (moved) evaluator_.keep_margin(margin_);
+        if (moved) evaluator_.keep_margin(margin_, evaluator_.best_scaled_evaluation().constraints);
         tell();
         return result_;
     }
@@ -79,6 +79,20 @@ private:
         QuadraticSolution solution;
         double radius = 0, gain = 0;
     };
+
+    // With the margin that the search has kept, as long as it helps on the way; then within it.
+    // @return whether a better point was found.
+    bool gains() {
+        if (margin_ == 1) {
+            if (probe()) return true;
+            if (!is_settled()) return false;
+            if (leaves_saddle()) return true;
+            margin_ = least_margin;
+        }
+        return probe();
+    }
+
+    bool is_settled() const { return now_.solution.solved && now_.gain <= worth_ && result_.refused.empty(); }
 
     // @return whether a probe became the best point.
     bool probe() {
@@ -95,7 +109,7 @@ private:
             const Evaluation& seen = evaluator_.at(point_ + now_.solution.step);
             result_.refused = seen.usable ? std::string() : seen.reason;
             if (!seen.usable) refused = now_;
-            if (seen.usable && seen.violation > 0) margin_ = most_margin;
+            if (seen.usable && seen.violation > 0) margin_ = std::max(margin_, most_margin);
             if (evaluator_.best_point() != before && at_.objective - evaluator_.best_scaled_evaluation().objective > 0.5 * worth_)
                 return true;
             if (evaluator_.best_point() != before) {  // hardly better: judged from there all the same
@@ -253,7 +267,7 @@ private:
     Evaluation at_;
     Look now_;
     double worth_ = 0;
-    double margin_ = least_margin;
+    double margin_;  // share that is kept
     Optimality result_;
 };
 
