@@ -5,8 +5,9 @@
 ///   clearance(p) <= d_i(p),   and to first order   clearance(p + dp) = min_i (d_i + d_i' dp).
 /// Neighbours of one minimum say nearly the same. Two witnesses differ by the wrench with which they act on the bodies' relative position,
 ///   w = (n, (m - o) x n / L),   n the unit direction from b to a, m the midpoint, o and L of the smaller body: reference point, radius,
-/// by |w_i - w_j|, and by 1 more if they are of different instants. Chosen is the one that differs most from all chosen so far (farthest
-/// first), or rather the nearest of those like it; until none differs by 0.2.
+/// by |w_i - w_j|, and by how much their places differ: by 1 if they are of different instants; positions of joints by how far both bodies
+/// have turned and moved, |R_i - R_j| + |q_i - q_j| / L each, at most 1. Chosen is the one that differs most from all chosen so far
+/// (farthest first), or rather the nearest of those like it; until none differs by 0.2.
 #pragma once
 
 #include <vector>
@@ -15,12 +16,22 @@
 
 namespace fettle::adjoint::clearance {
 
-/// @param first       The least one; not among the answers.
-/// @param candidates  Of the same pair, with their points; `first` may be one of them.
+/// What the steps of a trajectory are.
+enum class Places {
+    instants,  ///< of a motion
+    positions  ///< of joints: the trajectory stands still at each for a step
+};
+
+/// @param candidates  Of the same pair, with their points; the first is the least one, and not among the answers.
 /// @param most        At most so many are chosen. O(most * candidates).
 /// @return            In the order of choice: the first few are as spread out as can be.
 std::vector<core::clearance::Witness> distinct_witnesses(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
-                                                         const core::clearance::PairRequest& pair, const core::clearance::Witness& first,
-                                                         const std::vector<core::clearance::Witness>& candidates, int most);
+                                                         const core::clearance::PairRequest& pair,
+                                                         const std::vector<core::clearance::Witness>& candidates, int most,
+                                                         Places places = Places::instants);
+
+/// Whether two witnesses of a pair, at one place, differ so little that one of them stands for both: by less than 0.4.
+bool are_alike(const core::model::Model& model, const core::stepper::Trajectory& trajectory, const core::clearance::PairRequest& pair,
+               const core::clearance::Witness& one, const core::clearance::Witness& other);
 
 }  // namespace fettle::adjoint::clearance

@@ -36,6 +36,35 @@ Witness range_witness(const ScrewedPair& pair, const RangeEncounter& nearest) {
     return w;
 }
 
+// Rounding hides no more than a thousandth of the bodies' size.
+bool has_small_slack(const ScrewedPair& pair) { return pair.slack <= 1e-3 * (pair.a.radius() + pair.b.radius()); }
+
+void take_nearest(const ScrewedPair& pair, const RangeSearchResult& found, PairClearance& out) {
+    for (std::size_t k = 0; k < out.at.size(); ++k) out.at[k] = found.nearest.at[k];
+    out.witness = range_witness(pair, found.nearest);
+    out.witnesses = {out.witness};
+}
+
+// Equal boxes, about so many, at least two along each coordinate.
+std::vector<CoordinateBox> parts_of(const CoordinateBox& ranges, int coordinates, int about) {
+    const int along = std::max(2, static_cast<int>(std::lround(std::pow(about, 1.0 / coordinates))));
+    std::vector<CoordinateBox> parts{ranges};
+    for (int k = 0; k < coordinates; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        const double low = ranges.low[i], width = ranges.high[i] - low;
+        if (!(width > 0)) continue;
+        std::vector<CoordinateBox> finer;
+        for (CoordinateBox part : parts)
+            for (int j = 0; j < along; ++j) {
+                part.low[i] = low + width * j / along;
+                part.high[i] = j + 1 == along ? ranges.high[i] : low + width * (j + 1) / along;
+                finer.push_back(part);
+            }
+        parts = std::move(finer);
+    }
+    return parts;
+}
+
 class RangeCertification {
 public:
     RangeCertification(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
@@ -105,7 +134,7 @@ private:
         const ScrewedPair pair = screwed_pair(*shape_a.tree, *shape_b.tree, ranges_.linkage, linked, start(out.a), start(out.b));
         const double size = pair.a.radius() + pair.b.radius();
         out.tolerance = pair.count > 2 && options_.coarse > 0 ? std::max(options_.tolerance, options_.coarse * size) : options_.tolerance;
-        if (!(pair.slack <= 1e-3 * size)) {
+        if (!has_small_slack(pair)) {
             out.reason = "its numbers are so large that rounding hides the distance";
             return;
         }
@@ -120,10 +149,7 @@ private:
         out.complete = found.complete;
         out.intersecting = found.intersecting;
         out.bounds = found.bounds;
-        if (found.nearest.element_a >= 0) {
-            for (std::size_t k = 0; k < out.at.size(); ++k) out.at[k] = found.nearest.at[k];
-            out.witness = out.witnesses.front() = range_witness(pair, found.nearest);
-        }
+        if (found.nearest.element_a >= 0) take_nearest(pair, found, out);
         if (certificate_ != nullptr) record(pair, found, search, out, certificate_->pairs[index]);
         decide_solids(out);
         if (certificate_ != nullptr) certificate_->pairs[index].solids = out.is_clash() ? Solids::unproven : out.solids;
@@ -186,6 +212,39 @@ ProvenClearances certify_ranges_with_proof(const model::Model& model, const Join
     ProvenClearances proven;
     proven.pairs = RangeCertification(model, ranges, pairs, options, &proven.certificate).run();
     return proven;
+}
+
+std::vector<PairClearance> nearest_by_part(const model::Model& model, const JointRanges& ranges, const PairRequest& pair, int parts,
+                                           double reach, double tolerance) {
+    const certificate::LinkedPair linked = linked_pair(ranges.linkage, pair.a, pair.b);
+    const std::size_t coordinates = linked.coordinates.size(), screws = std::max(linked.a.size(), linked.b.size());
+    if (coordinates == 0 || coordinates > most_coordinates || screws > most_screws) return {};
+    const std::vector<BodyShape> shapes = body_shapes(model, {pair.a, pair.b});
+    const ScrewedPair whole = screwed_pair(*shapes[pair.a].tree, *shapes[pair.b].tree, ranges.linkage, linked,
+                                           model.bodies[pair.a].pose_start, model.bodies[pair.b].pose_start);
+    if (!has_small_slack(whole)) return {};
+    const std::vector<CoordinateBox> boxes = parts_of(whole.ranges, whole.count, parts);
+    std::vector<RangeSearchResult> found(boxes.size());
+    base::parallel_for(count_of(boxes), 1, [&](int i) {
+        ScrewedPair part = whole;
+        part.ranges = boxes[i];
+        part.start = middle_of(part.ranges);
+        RangeSearchOptions search;
+        search.tolerance = tolerance;
+        search.enough = reach;
+        found[i] = search_ranges(part, search);
+    });
+    std::vector<PairClearance> nearest;
+    for (const RangeSearchResult& part : found) {
+        if (part.nearest.element_a < 0 || !(part.upper <= reach)) continue;
+        PairClearance out = unmeasured({pair.a, pair.b, pair.minimum}, "");
+        out.coordinates = linked.coordinates;
+        out.at.resize(coordinates);
+        out.upper = part.upper;
+        take_nearest(whole, part, out);
+        nearest.push_back(std::move(out));
+    }
+    return nearest;
 }
 
 kinematics::Pose pose_at_witness(const model::Model& model, const JointRanges& ranges, const PairClearance& pair, int body) {

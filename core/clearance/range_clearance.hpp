@@ -22,6 +22,13 @@ std::vector<PairClearance> certify_ranges(const model::Model& model, const Joint
 ProvenClearances certify_ranges_with_proof(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
                                            const ClearanceOptions& options);
 
+/// Where two bodies are nearest in each part of their ranges, which are divided into about so many equal boxes (at least two along each
+/// coordinate), of the parts in which they come within `reach` [m] of each other. The counterpart of nearest_by_window (clearance.hpp):
+/// found to within `tolerance` [m], `lower` and the verdict are not filled in. Nothing where no coordinate moves one against the other, or
+/// too many do.
+std::vector<PairClearance> nearest_by_part(const model::Model& model, const JointRanges& ranges, const PairRequest& pair, int parts,
+                                           double reach, double tolerance);
+
 /// Pose of a body, of any, at a pair's witness: what moves both of the pair stays where it is at the start.
 kinematics::Pose pose_at_witness(const model::Model& model, const JointRanges& ranges, const PairClearance& pair, int body);
 

@@ -240,7 +240,7 @@ private:
 
     bool is_settled() const {
         const double lower = lower_bound(), upper = cells_.result.upper;
-        if (cells_.result.intersecting || queue_.empty() || queue_.least() >= aside_) return true;
+        if (cells_.result.intersecting || queue_.empty() || queue_.least() >= aside_ || lower >= options_.enough) return true;
         if (!(upper - lower <= options_.tolerance)) return false;
         if (upper - lower <= 4 * pair_.slack) return true;
         const double finest = 1e-3 * options_.tolerance;  // where the minimum lies between, or 0 does

@@ -18,6 +18,7 @@ struct RangeSearchOptions {
     double minimum = 0;       ///< greater than 0: goes on below the tolerance until it does not lie between the bounds
     long max_bounds = 4'000'000;
     std::function<bool()> should_stop;
+    double enough = std::numeric_limits<double>::infinity();  ///< stops where they are proven so far apart, whatever the least distance [m]
 };
 
 /// Two elements at a configuration.

@@ -67,6 +67,12 @@ MatrixX stacked(const MatrixX& a, const MatrixX& b) {
     return both;
 }
 
+VectorX margin_of(const VectorX& margin, const VectorX& bounds) {
+    if (margin.size() == 0) return VectorX::Zero(bounds.size());
+    FETTLE_ASSERT(margin.size() == bounds.size() && margin.minCoeff() >= 0, "one margin per bound, not negative");
+    return margin;
+}
+
 }  // namespace
 
 bool is_better(const Evaluation& one, const Evaluation& other) {
@@ -82,6 +88,8 @@ Evaluator::Evaluator(const Problem& problem, EvaluatorOptions options) : problem
                   "the start lies within the bounds");
     FETTLE_ASSERT(problem.constraint_upper.size() == problem.constraint_lower.size(), "one bound per constraint");
     FETTLE_ASSERT(problem.relation_upper.size() == problem.relation_lower.size(), "one bound per relation");
+    margin_ =
+        joined(margin_of(problem.constraint_margin, problem.constraint_lower), margin_of(problem.relation_margin, problem.relation_lower));
     // A variable whose bounds coincide stays where it is; any range scales it.
     range_ = (problem.upper - problem.lower).unaryExpr([](double r) { return r > 0 ? r : 1.0; });
     scaled_start_ = (problem.start - problem.lower).cwiseQuotient(range_).cwiseMax(0).cwiseMin(1);
@@ -118,9 +126,25 @@ void Evaluator::fix_scaling() {
             if (row_size > 0) constraint_scale_[i] = 1 / row_size;
         }
     }
-    scaled_constraint_lower_ = joined(problem_.constraint_lower, problem_.relation_lower).cwiseProduct(constraint_scale_);
-    scaled_constraint_upper_ = joined(problem_.constraint_upper, problem_.relation_upper).cwiseProduct(constraint_scale_);
+    keep_margin(1);
     for (Record& record : records_) record.scaled_evaluation = scaled(record);
+}
+
+void Evaluator::keep_margin(double share) {
+    FETTLE_ASSERT(0 <= share && share <= 1, "a share of the margin");
+    margin_share_ = share;
+    const VectorX nearer = (1 - share) * margin_;
+    scaled_constraint_lower_ = (joined(problem_.constraint_lower, problem_.relation_lower) - nearer).cwiseProduct(constraint_scale_);
+    scaled_constraint_upper_ = (joined(problem_.constraint_upper, problem_.relation_upper) + nearer).cwiseProduct(constraint_scale_);
+}
+
+void Evaluator::keep_margin(double share, const VectorX& scaled_constraints) {
+    keep_margin(0);
+    const VectorX lower = scaled_constraint_lower_.cwiseMax(scaled_constraints),
+                  upper = scaled_constraint_upper_.cwiseMin(scaled_constraints);
+    keep_margin(share);
+    scaled_constraint_lower_ = scaled_constraint_lower_.cwiseMin(lower);
+    scaled_constraint_upper_ = scaled_constraint_upper_.cwiseMax(upper);
 }
 
 VectorX Evaluator::unscaled(const VectorX& scaled_point) const {

@@ -71,7 +71,14 @@ public:
     /// So many evaluations more.
     void allow(int evaluations) { options_.max_evaluations += evaluations; }
 
+    /// Aims at the bounds proper, less this share of their margins; 1, as at the beginning: as the problem says. The second form leaves a
+    /// constraint of this value (scaled) that is nearer to its bound where it is. Contract: 0 <= share <= 1.
+    void keep_margin(double share);
+    void keep_margin(double share, const VectorX& scaled_constraints);
+    double margin_share() const { return margin_share_; }
+
     const VectorX& scaled_start() const { return scaled_start_; }
+    /// What is aimed at, relations too.
     const VectorX& scaled_constraint_lower() const { return scaled_constraint_lower_; }
     const VectorX& scaled_constraint_upper() const { return scaled_constraint_upper_; }
     std::optional<Evaluation> scaled_reference() const;
@@ -118,6 +125,8 @@ private:
     const Problem& problem_;
     EvaluatorOptions options_;
     VectorX range_, scaled_start_, constraint_scale_, scaled_constraint_lower_, scaled_constraint_upper_;
+    VectorX margin_;  ///< of constraints and relations, not scaled
+    double margin_share_ = 1;
     double objective_scale_ = 1;
     Evaluation start_evaluation_;
     std::deque<Record> records_;        ///< references into it stay valid

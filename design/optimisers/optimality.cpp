@@ -7,6 +7,7 @@
 
 #include "fettle/design/optimisers/local_model.hpp"
 #include "fettle/design/optimisers/noise.hpp"
+#include "fettle/design/optimisers/unexplored.hpp"
 
 namespace fettle::design::optimisers {
 
@@ -17,6 +18,8 @@ constexpr double smallest_radius = 3e-4;  // below it a gain is one of microns: 
 constexpr int most_probes = 5;
 constexpr double near = 0.3;  // evaluations within this distance tell of the curvature
 constexpr double exact_penalty = 1e3;
+constexpr int most_looks_aside = 2, most_steps_aside = 3;
+constexpr double least_margin = 0.05, most_margin = 0.25;  // shares that the verdict keeps to; the second where the first was missed
 constexpr int noise_values = 7;
 constexpr double noise_spacing = 1e-3;
 constexpr double telling_share = 0.1;  // of a gain, below which a variable is not named; of a gradient, below which a constraint is not
@@ -53,15 +56,20 @@ VectorX inward(const VectorX& point) {
 class Judgement {
 public:
     Judgement(Evaluator& evaluator, const OptimiserOptions& options)
-        : evaluator_(evaluator), options_(options), point_(evaluator.best_scaled_point()), at_(evaluator.best_scaled_evaluation()) {}
+        : evaluator_(evaluator),
+          options_(options),
+          point_(evaluator.best_scaled_point()),
+          at_(evaluator.best_scaled_evaluation()),
+          margin_(evaluator.margin_share() < 1 ? least_margin : 1) {}
 
     Optimality judge(bool& moved) {
         moved = false;
         try {
-            moved = probe();
+            moved = gains();
             result_.judged = !moved && now_.solution.solved && measure_noise();
         } catch (const StopOptimisation&) {  // what was found so far stands, as not judged
         }
+        if (moved) evaluator_.keep_margin(margin_, evaluator_.best_scaled_evaluation().constraints);
         tell();
         return result_;
     }
@@ -71,6 +79,20 @@ private:
         QuadraticSolution solution;
         double radius = 0, gain = 0;
     };
+
+    // With the margin that the search has kept, as long as it helps on the way; then within it.
+    // @return whether a better point was found.
+    bool gains() {
+        if (margin_ == 1) {
+            if (probe()) return true;
+            if (!is_settled()) return false;
+            if (leaves_saddle()) return true;
+            margin_ = least_margin;
+        }
+        return probe();
+    }
+
+    bool is_settled() const { return now_.solution.solved && now_.gain <= worth_ && result_.refused.empty(); }
 
     // @return whether a probe became the best point.
     bool probe() {
@@ -87,6 +109,7 @@ private:
             const Evaluation& seen = evaluator_.at(point_ + now_.solution.step);
             result_.refused = seen.usable ? std::string() : seen.reason;
             if (!seen.usable) refused = now_;
+            if (seen.usable && seen.violation > 0) margin_ = std::max(margin_, most_margin);
             if (evaluator_.best_point() != before && at_.objective - evaluator_.best_scaled_evaluation().objective > 0.5 * worth_)
                 return true;
             if (evaluator_.best_point() != before) {  // hardly better: judged from there all the same
@@ -101,12 +124,74 @@ private:
         worth_ = least_gain(evaluator_, options_, at_.objective);
         now_.radius = radius;
         at_ = with_telling_derivatives(evaluator_, point_, evaluator_.best_scaled_evaluation());
+        evaluator_.keep_margin(margin_, at_.constraints);
         const VectorX none = VectorX::Zero(evaluator_.constraints());
         const VectorX y = now_.solution.multipliers.size() == none.size() ? smooth_multipliers(now_.solution) : none;
         RestCurvature rest = curvature_near(evaluator_, point_, at_, y);
         now_.solution = best_step(evaluator_, point_, at_, &rest.matrix(), radius, exact_penalty);
         if (!now_.solution.solved) return;
         now_.gain = predicted_gain(at_, rest.matrix(), now_.solution);
+    }
+
+    // What the step keeps, to first order: a row each.
+    MatrixX holding() const {
+        std::vector<VectorX> rows;
+        const QuadraticSolution& s = now_.solution;
+        const double size = std::max({s.multipliers.size() > 0 ? s.multipliers.lpNorm<Eigen::Infinity>() : 0,
+                                      s.cut_multipliers.size() > 0 ? s.cut_multipliers.lpNorm<Eigen::Infinity>() : 0, 1e-12});
+        const auto holds = [size](double multiplier) { return std::abs(multiplier) > 1e-6 * size; };
+        for (Eigen::Index i = 0; i < s.multipliers.size(); ++i)
+            if (holds(s.multipliers[i])) rows.push_back(at_.jacobian.row(i).transpose());
+        for (Eigen::Index j = 0; j < s.cut_multipliers.size() && s.cut_of[j] >= 0; ++j)
+            if (holds(s.cut_multipliers[j])) rows.push_back(at_.constraint_branches.jacobian.row(j).transpose());
+        for (Eigen::Index k = 0; k < point_.size(); ++k) {
+            const Held held = what_holds(k);
+            if (held == Held::lower_bound || held == Held::upper_bound) rows.push_back(VectorX::Unit(point_.size(), k));
+        }
+        MatrixX out(count_of(rows), point_.size());
+        for (Eigen::Index i = 0; i < out.rows(); ++i) out.row(i) = rows[i].transpose();
+        return out;
+    }
+
+    MatrixX known_steps() const {
+        std::vector<VectorX> steps;
+        for (int k = 0; k < evaluator_.known(); ++k) {
+            const VectorX step = evaluator_.scaled_point(k) - point_;
+            if (step.norm() < near && tells(evaluator_.scaled_evaluation(k))) steps.push_back(step);
+        }
+        MatrixX out(count_of(steps), point_.size());
+        for (Eigen::Index i = 0; i < out.rows(); ++i) out.row(i) = steps[i].transpose();
+        return out;
+    }
+
+    // Derivatives at one point know nothing of a gain to both sides. Looks aside where nothing is known, and on from there.
+    // @return whether what was found became the best point.
+    bool leaves_saddle() {
+        for (const VectorX& direction : unexplored_directions(holding(), known_steps(), most_looks_aside)) {
+            VectorX there = aside(direction);
+            if (evaluator_.unscaled(there) == evaluator_.unscaled(point_)) continue;
+            for (int step = 0; step < most_steps_aside; ++step) {
+                if (!evaluator_.refusal(there).empty()) break;
+                const Evaluation& seen = evaluator_.at(there);
+                if (at_.objective - evaluator_.best_scaled_evaluation().objective > 0.5 * worth_) return true;
+                if (!seen.usable) break;
+                const Evaluation told = with_telling_derivatives(evaluator_, there, seen);
+                const RestCurvature rest = curvature_near(evaluator_, there, told, smooth_multipliers(now_.solution));
+                const QuadraticSolution onward = best_step(evaluator_, there, told, &rest.matrix(), first_radius, exact_penalty);
+                if (!onward.solved) break;
+                const double promised = merit(evaluator_, at_, exact_penalty) - (merit(evaluator_, seen, exact_penalty) - onward.decrease);
+                if (!(promised > worth_)) break;
+                there = there + onward.step;
+            }
+        }
+        return false;
+    }
+
+    // To the side on which the bounds leave more room.
+    VectorX aside(const VectorX& direction) const {
+        const VectorX one = (point_ + first_radius * direction).cwiseMax(0).cwiseMin(1);
+        const VectorX other = (point_ - first_radius * direction).cwiseMax(0).cwiseMin(1);
+        return (one - point_).norm() >= (other - point_).norm() ? one : other;
     }
 
     // @return whether it could be: a point next to the best one may be none that can be evaluated.
@@ -182,6 +267,7 @@ private:
     Evaluation at_;
     Look now_;
     double worth_ = 0;
+    double margin_;  // share that is kept
     Optimality result_;
 };
 

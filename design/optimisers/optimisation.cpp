@@ -67,7 +67,7 @@ namespace {
 constexpr int starts_tried = 6;
 constexpr double early_tolerance = 10;  // of the smoother models, times the one asked for
 constexpr double later_radius = 0.1;    // of the first step in a model that begins where another one ended
-constexpr int most_rounds = 4;          // of optimising on from a probe that gained
+constexpr int most_rounds = 6;          // of optimising on from a probe that gained
 
 class StagedRun {
 public:

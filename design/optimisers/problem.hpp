@@ -63,6 +63,7 @@ struct Problem {
     VectorX start, lower, upper;                 ///< n; finite, lower <= start <= upper
     VectorX constraint_lower, constraint_upper;  ///< m; what the optimiser aims at; infinite where there is none
     VectorX relation_lower, relation_upper;      ///< k; what the optimiser aims at; infinite where there is none
+    VectorX constraint_margin, relation_margin;  ///< m, k: by how much these lie inside of what is required; empty: they are that
     std::function<Evaluation(const VectorX&)> evaluate;
     /// Optional: the same numbers without derivatives, for less. An optimiser that uses none is not charged for them.
     std::function<Evaluation(const VectorX&)> values;

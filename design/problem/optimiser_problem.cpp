@@ -46,17 +46,21 @@ optimisers::Problem optimiser_problem(const DesignProblem& design_problem, const
     };
     problem.constraint_lower.resize(m);
     problem.constraint_upper.resize(m);
+    problem.constraint_margin.resize(m);
     for (Eigen::Index i = 0; i < m; ++i) {
         problem.constraint_lower[i] = description::target_lower(design.constraints[i].bounds);
         problem.constraint_upper[i] = description::target_upper(design.constraints[i].bounds);
+        problem.constraint_margin[i] = design.constraints[i].bounds.margin;
     }
     if (!design_problem.rest_constraints().empty()) problem.prepared = prepared(design_problem, problem);
     const auto k = static_cast<Eigen::Index>(design.relations.size());
     problem.relation_lower.resize(k);
     problem.relation_upper.resize(k);
+    problem.relation_margin.resize(k);
     for (Eigen::Index i = 0; i < k; ++i) {
         problem.relation_lower[i] = description::target_lower(design.relations[i].bounds);
         problem.relation_upper[i] = description::target_upper(design.relations[i].bounds);
+        problem.relation_margin[i] = design.relations[i].bounds.margin;
     }
     if (k > 0) problem.relations = [&design_problem](const VectorX& p) { return design_problem.relations(p); };
     problem.refusal = [&design_problem](const VectorX& p) { return design_problem.refusal(p); };

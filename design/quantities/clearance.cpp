@@ -6,9 +6,8 @@
 #include <limits>
 
 #include "fettle/adjoint/clearance/clearance_adjoint.hpp"
-#include "fettle/adjoint/clearance/distinct_witnesses.hpp"
+#include "fettle/adjoint/clearance/local_witnesses.hpp"
 #include "fettle/adjoint/clearance/range_adjoint.hpp"
-#include "fettle/adjoint/clearance/tied_features.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/range_clearance.hpp"
@@ -17,7 +16,6 @@
 namespace fettle::design::quantities {
 
 using core::clearance::PairClearance;
-using core::clearance::Witness;
 using description::Branch;
 using description::Measurement;
 using description::Simulated;
@@ -65,16 +63,8 @@ Errors check_faces(const core::model::Model& model, int body, const std::vector<
     return errors;
 }
 
-constexpr double window_accuracy = 1e-3;  // of the value, to which the nearest instants of the windows are found
-
 // Surfaces apart, solids not.
 bool one_lies_inside(const PairClearance& pair) { return pair.solids == core::certificate::Solids::overlap && !pair.intersecting; }
-
-void add_clearance_seeds(const Simulated& s, const PairClearance& pair, double scale, description::Seeds& seeds) {
-    const std::string refusal =
-        adjoint::clearance::clearance_adjoint(s.model, s.trajectory, pair, scale, seeds.trajectory_bar, seeds.model_bar);
-    if (seeds.refusal.empty()) seeds.refusal = refusal;
-}
 
 }  // namespace
 
@@ -147,51 +137,49 @@ Measurement Clearance::value(const Simulated& s) const {
 }
 
 void Clearance::add_seeds(const Simulated& s, const Measurement& measured, double scale, description::Seeds& seeds) const {
-    const double sign = one_lies_inside(*measured.clearance) ? -1 : 1;
-    if (range_.ranges) {
-        const auto ranges = core::clearance::joint_ranges(s.model);
-        const std::string refusal =
-            ranges ? adjoint::clearance::range_clearance_adjoint(s.model, *ranges, *measured.clearance, sign * scale, seeds.model_bar)
-                   : ranges.errors().front().message;
-        if (seeds.refusal.empty()) seeds.refusal = refusal;
-        return;
+    add_seeds_of(s, *measured.clearance, one_lies_inside(*measured.clearance) ? -scale : scale, seeds);
+}
+
+void Clearance::add_seeds_of(const Simulated& s, const PairClearance& pair, double scale, description::Seeds& seeds) const {
+    std::string refusal;
+    if (!range_.ranges) {
+        refusal = adjoint::clearance::clearance_adjoint(s.model, s.trajectory, pair, scale, seeds.trajectory_bar, seeds.model_bar);
+    } else if (const auto ranges = core::clearance::joint_ranges(s.model)) {
+        refusal = adjoint::clearance::range_clearance_adjoint(s.model, *ranges, pair, scale, seeds.model_bar);
+    } else {
+        refusal = ranges.errors().front().message;
     }
-    add_clearance_seeds(s, *measured.clearance, sign * scale, seeds);
+    if (seeds.refusal.empty()) seeds.refusal = refusal;
 }
 
 // Those at most `room` farther apart than the witness is.
-std::vector<Witness> Clearance::other_witnesses(const Simulated& s, const PairClearance& pair, double room) const {
+std::vector<PairClearance> Clearance::others(const Simulated& s, const PairClearance& pair, double room) const {
     const std::optional<core::clearance::FacesAlone> faces = has_faces() ? std::optional(faces_alone(s.model, range_)) : std::nullopt;
     const core::model::Model& model = faces ? faces->model() : s.model;
-    std::vector<Witness> near = adjoint::clearance::tied_features(model, s.trajectory, pair.a, pair.b, pair.witness, room);
-    if (range_.motion) {
-        const auto [first, last] = steps_of(range_, s.trajectory.timestep, count_of(s.trajectory.steps));
-        const std::vector<Witness> later =
-            core::clearance::nearest_by_window(model, s.trajectory, {pair.a, pair.b}, {first, last, branch_windows},
-                                               pair.witness.distance + room, std::min(window_accuracy * pair.upper, room));
-        near.insert(near.end(), later.begin(), later.end());
+    const adjoint::clearance::LocalWitnessLimits limits{room, branch_parts, (range_.motion ? most_branches : most_branches_at_rest) - 1};
+    std::vector<PairClearance> others;
+    if (!range_.ranges) {
+        std::optional<core::clearance::StepRange> steps;
+        if (range_.motion) {
+            const auto [first, last] = steps_of(range_, s.trajectory.timestep, count_of(s.trajectory.steps));
+            steps = {first, last};
+        }
+        others = adjoint::clearance::local_witnesses(model, s.trajectory, steps, pair, limits);
+    } else if (const auto ranges = core::clearance::joint_ranges(s.model)) {
+        others = adjoint::clearance::local_witnesses(model, *ranges, pair, limits);
     }
     if (faces)
-        for (Witness& witness : near) witness = faces->in_whole(witness);
-    const auto has_none = [&](const Witness& w) {
-        return !adjoint::clearance::no_derivative_at(s.model, s.trajectory, pair.a, pair.b, w).empty();
-    };
-    near.erase(std::remove_if(near.begin(), near.end(), has_none), near.end());
-    return adjoint::clearance::distinct_witnesses(s.model, s.trajectory, {pair.a, pair.b}, pair.witness, near,
-                                                  (range_.motion ? most_branches : most_branches_at_rest) - 1);
+        for (PairClearance& other : others) other = faces->in_whole(other);
+    return others;
 }
 
 std::vector<Branch> Clearance::branches(const Simulated& s, const Measurement& measured, double limit) const {
     std::vector<Branch> branches{{measured.value, [&](double scale, description::Seeds& seeds) { add_seeds(s, measured, scale, seeds); }}};
     const PairClearance& pair = *measured.clearance;
-    if (range_.ranges || pair.is_clash() || !(pair.witness.distance > 0) || !(limit >= measured.value)) return branches;
-    const double rounding = pair.upper - pair.witness.distance;  // that the certificate adds to the witness's
-    for (const Witness& witness : other_witnesses(s, pair, limit - measured.value)) {
-        PairClearance other = pair;
-        other.witness = witness;
-        branches.push_back({std::max(measured.value, witness.distance + rounding),
-                            [&s, other](double scale, description::Seeds& seeds) { add_clearance_seeds(s, other, scale, seeds); }});
-    }
+    if (pair.is_clash() || !(pair.witness.distance > 0) || !(limit >= measured.value)) return branches;
+    for (const PairClearance& other : others(s, pair, limit - measured.value))
+        branches.push_back({std::max(measured.value, other.upper),
+                            [this, &s, other](double scale, description::Seeds& seeds) { add_seeds_of(s, other, scale, seeds); }});
     return branches;
 }
 

@@ -42,20 +42,22 @@ public:
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
-    /// The witness, then the most distinct (adjoint/clearance/distinct_witnesses.hpp) of the features that come as near at its instant, and
-    /// of the nearest instants in each of `branch_windows` equal parts of the range's time. Over the ranges of joints: the witness alone.
+    /// The witness, then the others that say most about where the clearance can go (adjoint/clearance/local_witnesses.hpp): of the range's
+    /// time, or of the joints' ranges, in `branch_parts` equal parts.
     std::vector<description::Branch> branches(const description::Simulated& simulated, const description::Measurement& measured,
                                               double limit) const override;
     bool is_at_rest() const override { return !range_.motion; }
     Errors check(const core::model::Model& model, int steps) const override;
 
-    /// At most so many; each over the motion is one seed more in the sweep, those as assembled cost next to nothing.
-    static constexpr int most_branches = 6, most_branches_at_rest = 12, branch_windows = 8;
+    /// At most so many; each over the motion is one seed more in the sweep, those as assembled and over ranges cost next to nothing.
+    static constexpr int most_branches = 6, most_branches_at_rest = 12, branch_parts = 8;
 
 private:
     bool has_faces() const { return !range_.faces_a.empty() || !range_.faces_b.empty(); }
-    std::vector<core::clearance::Witness> other_witnesses(const description::Simulated& simulated,
-                                                          const core::clearance::PairClearance& pair, double room) const;
+    void add_seeds_of(const description::Simulated& simulated, const core::clearance::PairClearance& pair, double scale,
+                      description::Seeds& seeds) const;
+    std::vector<core::clearance::PairClearance> others(const description::Simulated& simulated, const core::clearance::PairClearance& pair,
+                                                       double room) const;
     core::clearance::PairClearance certify(const description::Simulated& simulated) const;
     core::clearance::PairClearance certify_ranges(const core::model::Model& model, const core::clearance::ClearanceOptions& options) const;
 

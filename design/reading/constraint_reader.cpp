@@ -165,7 +165,8 @@ private:
         }
         const double largest =
             std::max(std::isfinite(bounds.lower) ? std::abs(bounds.lower) : 0, std::isfinite(bounds.upper) ? std::abs(bounds.upper) : 0);
-        const double usual = dimension == Dimension::length ? clearance_margin_ : 1e-4 * largest;
+        constexpr double usual_share = 1e-4;
+        const double usual = dimension == Dimension::length ? clearance_margin_ : usual_share * (largest > 0 ? largest : bounds.unit);
         bounds.margin = amount("margin").value_or(usual);
         if (bounds.margin < 0) node["margin"].fail(ErrorCode::out_of_range, "a margin is not negative");
         bounds.margin = std::clamp(bounds.margin, 0.0, std::max(0.0, (bounds.upper - bounds.lower) / 4));

@@ -187,6 +187,96 @@ OptimiserOptions usual(int evaluations) {
 
 }  // namespace
 
+namespace {
+
+// Minimises 1 + x0 + 0.01 x1^2 where x0 >= 0 is required, and 0.02 more is aimed at: values below `reached` turn out to violate it.
+Problem beside_a_bound(double reached) {
+    Problem p;
+    p.start = Vector2(0.6, 0.5);
+    p.lower = Vector2(-1, -1);
+    p.upper = Vector2(1, 1);
+    p.constraint_lower = VectorX::Constant(1, 0.02);
+    p.constraint_upper = VectorX::Constant(1, infinity);
+    p.constraint_margin = VectorX::Constant(1, 0.02);
+    p.evaluate = [reached](const VectorX& x) {
+        Evaluation e;
+        e.usable = true;
+        e.objective = 1 + x[0] + 0.01 * x[1] * x[1];
+        e.gradient = Vector2(1, 0.02 * x[1]);
+        e.constraints = x.head(1);
+        e.jacobian = Vector2(1, 0).transpose();
+        e.violation = std::max(0.0, reached - x[0]);
+        return e;
+    };
+    return p;
+}
+
+}  // namespace
+
+TEST_CASE("the margin to a bound is given up at the end, but for a twentieth") {
+    for (const std::string& name : {"sqp", "ipopt", "slsqp"}) {
+        const OptimiserReport report = run(beside_a_bound(0), name, usual(60));
+        INFO(name << ": " << report.message << ", " << report.evaluations << " evaluations, at " << report.point.transpose());
+        CHECK(report.status == OptimiserStatus::optimal);
+        CHECK(report.point[0] >= 0);
+        CHECK(report.point[0] <= 0.0012);
+    }
+}
+
+TEST_CASE("a design inside the margin is not called optimal while anything else gains") {
+    // Going back to what is aimed at would cost more than the other variable gains.
+    Problem p = beside_a_bound(0);
+    p.start = Vector2(0.001, 0.9);
+    const OptimiserReport report = optimise(p, Idle(), usual(40));
+    INFO(report.message << ", at " << report.point.transpose());
+    CHECK(report.best.objective < 1.002);
+}
+
+TEST_CASE("where the last of the margin is needed, the verdict keeps a quarter of it") {
+    const OptimiserReport report = run(beside_a_bound(0.003), "sqp", usual(80));
+    INFO(report.message << ", " << report.evaluations << " evaluations, at " << report.point.transpose());
+    CHECK(report.status == OptimiserStatus::optimal);
+    CHECK(report.point[0] >= 0.003);
+    CHECK(report.point[0] <= 0.0052);
+}
+
+TEST_CASE("a saddle is left: what is symmetric is not yet optimal") {
+    // A plank in a corridor that is as wide as its middle is high: -length, which may be 1 / cos of how far it leans, up to 0.5.
+    Problem p;
+    p.start = Vector2(0.6, 0);
+    p.lower = Vector2(0, -0.5);
+    p.upper = Vector2(2, 0.5);
+    p.constraint_lower = VectorX::Constant(1, -infinity);
+    p.constraint_upper = VectorX::Constant(1, 1);
+    p.evaluate = [](const VectorX& x) {
+        Evaluation e;
+        e.usable = true;
+        e.objective = -x[0];
+        e.gradient = Vector2(-1, 0);
+        e.constraints = VectorX::Constant(1, x[0] * std::cos(x[1]));
+        e.jacobian = Vector2(std::cos(x[1]), -x[0] * std::sin(x[1])).transpose();
+        e.violation = std::max(0.0, e.constraints[0] - 1 - 1e-6);
+        return e;
+    };
+    const OptimiserReport report = run(p, "sqp", usual(60));
+    INFO(report.message << ", " << report.evaluations << " evaluations, at " << report.point.transpose());
+    CHECK(report.status == OptimiserStatus::optimal);
+    CHECK(report.objective == Approx(-1 / std::cos(0.5)).epsilon(2e-4));
+    // Where it may not lean, the same look aside finds nothing, and costs little.
+    p.evaluate = [inner = p.evaluate](const VectorX& x) {
+        Evaluation e = inner(x);
+        e.constraints[0] = x[0] / std::cos(x[1]);
+        e.jacobian = Vector2(1 / std::cos(x[1]), x[0] * std::sin(x[1]) / std::pow(std::cos(x[1]), 2)).transpose();
+        e.violation = std::max(0.0, e.constraints[0] - 1 - 1e-6);
+        return e;
+    };
+    const OptimiserReport upright = run(p, "sqp", usual(60));
+    INFO(upright.message << ", " << upright.evaluations << " evaluations, at " << upright.point.transpose());
+    CHECK(upright.status == OptimiserStatus::optimal);
+    CHECK(upright.objective == Approx(-1).epsilon(2e-4));
+    CHECK(upright.evaluations <= 20);
+}
+
 TEST_CASE("an objective's kink is found, and called optimal, where its branches are known") {
     const OptimiserReport report = run(largest_room(true), "sqp", usual(40));
     INFO(report.message << ", " << report.evaluations << " evaluations, at " << report.point.transpose());

@@ -150,4 +150,49 @@ TEST_CASE("the thickest pin of a least play stands in the middle of its bore") {
     CHECK(report.evaluations <= 12);
 }
 
+namespace {
+
+// A bar that turns wholly about its middle in a window of 80 x 40 mm; how long it is, and where the pivot stands, is free.
+const char* window_scene = R"({
+  "fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.01,
+  "variables": { "length": "24mm", "x": "2mm", "y": "3mm" },
+  "bodies": [
+    { "name": "frame", "type": "static", "group": "apart",
+      "shape": { "profiles": { "frame": { "holes": { "rectangle": [80, 40] }, "in": { "rectangle": [100, 60] } } },
+                 "solid": { "extrude": "frame", "to": "6mm" } } },
+    { "name": "bar", "density": 1000, "group": "apart", "position": ["= x", "= y", 1],
+      "shape": { "profiles": { "bar": { "rectangle": ["= length", 4] } }, "solid": { "extrude": "bar", "to": "4mm" } } }
+  ],
+  "joints": [{ "name": "pivot", "type": "revolute", "b": "bar", "point": ["= x", "= y", 1], "axis": [0, 0, 1] }]
+})";
+const char* window_design = R"({
+  "fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+  "parameters": [{ "name": "length", "lower": 20, "upper": 40 }, { "name": "x", "lower": -10, "upper": 10 },
+                 { "name": "y", "lower": -8, "upper": 8 }],
+  "objective": [{ "type": "expression", "name": "length", "expression": "length / 1mm", "weight": -1 }],
+  "constraints": [{ "type": "clearance", "a": "bar", "b": "frame", "minimum": 1, "ranges": true }],
+  "optimiser": { "name": "sqp", "max_evaluations": 40 }
+})";
+
+}  // namespace
+
+TEST_CASE("the longest bar that turns in a window stands in the middle of it: walls that share a clearance over ranges are all seen") {
+    const DesignProblem problem = problem_of(DesignFolder(window_design, window_scene));
+    const DesignEvaluation at = problem.evaluate(Vector3(37.5e-3, 1e-3, 0.2e-3));
+    REQUIRE(at.usable);
+    REQUIRE(at.constraint_branches.of.size() >= 1);
+    CHECK(at.jacobian(0, 2) == Approx(-1).epsilon(1e-6));
+    const VectorX by_y = at.constraint_branches.jacobian.col(2);
+    CHECK(by_y.maxCoeff() == Approx(1).epsilon(1e-6));  // of the lower wall
+    const auto outcome = studies::optimise_design(problem);
+    REQUIRE(outcome);
+    const optimisers::OptimiserReport& report = outcome->report;
+    INFO(report.message << ", " << report.evaluations << " evaluations, at " << report.point.transpose());
+    CHECK(report.status == optimisers::OptimiserStatus::optimal);
+    CHECK(report.point[0] == Approx(2 * std::sqrt(19e-3 * 19e-3 - 2e-3 * 2e-3)).epsilon(3e-4));
+    CHECK(std::abs(report.point[2]) < 5e-6);
+    CHECK(outcome->final.constraints[0].lower >= 1e-3);
+    CHECK(report.evaluations <= 25);
+}
+
 }  // namespace fettle::design::problem::witness_branches_test

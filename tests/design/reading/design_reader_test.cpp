@@ -215,6 +215,21 @@ TEST_CASE("bounds are plain numbers in the file's units, or carry a unit of thei
     CHECK(upper_of("\"upper\": \"4000 mg\"") == 0.004);
 }
 
+TEST_CASE("a bound of 0 has a margin too: of the unit") {
+    const std::string mass = R"({ "type": "mass", "bodies": ["cube"], "lower": 1.5, "upper": 4 })";
+    const auto margin = [&](const std::string& bounds) {
+        const std::string with = R"({ "type": "mass", "bodies": ["cube"], )" + bounds + " }";
+        const DesignFolder folder(tests::support::replaced(small_design, mass, with));
+        const auto file = read_design(folder.design());
+        INFO(all(file.errors()));
+        REQUIRE(file);
+        return file->design.constraints.back().bounds.margin;
+    };
+    CHECK(margin(R"("lower": 1.5, "upper": 4)") == Approx(1e-4 * 4e-3));
+    CHECK(margin(R"("lower": 0)") == Approx(1e-4 * 1e-3));  // masses are counted in g
+    CHECK(margin(R"("lower": 0, "upper": 0)") == 0);
+}
+
 TEST_CASE("a density that is not per volume has no unit of a density per volume") {
     const std::string scene = replaced(small_scene, "\"density\": 1000", "\"density\": 2, \"mass_per\": \"area\"");
     const DesignFolder folder(small_design, scene);
