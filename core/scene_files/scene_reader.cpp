@@ -94,7 +94,7 @@ private:
         if (rounds.is_string()) {
             if (rounds.choice({"converged"})) friction.rounds = -1;
         } else {
-            friction.rounds = rounds.integer(1).value_or(1);
+            friction.rounds = rounds.integer(1).value_or(friction.rounds);
         }
         for (const files::JsonNode& pair : node["pairs"].elements()) read_friction_pair(pair);
     }
