@@ -23,8 +23,13 @@ import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PROGRAM = os.path.join(ROOT, "build/release/bin/fettle")
-WITHIN = 1.001  # of the best value
+WITHIN = 0.001  # of the best value
 OPTIMISERS = ("sqp", "ipopt", "mma", "ccsaq", "slsqp", "cobyla")
+
+
+def nearly(best, share=WITHIN):
+    """The largest value that counts as the best one; objectives may be negative."""
+    return best + share * abs(best)
 
 
 def optimise(design, out, *options):
@@ -76,10 +81,10 @@ def starts(arguments, folder):
     best = min(feasible, default=None)
     return {
         "starts": len(rows),
-        "within 0.1% of the best": sum(value <= WITHIN * best for value in feasible),
-        "within 0.5% of the best": sum(value <= 1.005 * best for value in feasible),
+        "within 0.1% of the best": sum(value <= nearly(best) for value in feasible),
+        "within 0.5% of the best": sum(value <= nearly(best, 0.005) for value in feasible),
         "optimal": sum(row["status"] == "optimal" for row in rows),
-        "optimal, and above the best by more than 0.1%": [r for r in rows if r["status"] == "optimal" and r["objective"] > WITHIN * best],
+        "optimal, and above the best by more than 0.1%": [r for r in rows if r["status"] == "optimal" and r["objective"] > nearly(best)],
         "best": best,
         "worst feasible": max(feasible, default=None),
         "median simulations": statistics.median(row["evaluations"] for row in rows),
@@ -104,7 +109,7 @@ def table(arguments, folder):
         for optimiser, seed, answer, entries in runs:
             if optimiser != name:
                 continue
-            found = first_within(entries, WITHIN * best) if best else None
+            found = first_within(entries, nearly(best)) if best is not None else None
             seconds = sum(e["forward_seconds"] + e["backward_seconds"] for e in entries)
             summary[name][seed] = {
                 "status": answer["status"], "objective": answer["objective"], "simulations": len(entries), "seconds": round(seconds, 1),
@@ -139,7 +144,7 @@ def mutations(arguments, folder):
         row = {"parameter": moved["name"], "moved_by": value - converged["parameters"][moved["name"]],
                **{key: answer[key] for key in ("status", "objective", "evaluations")}}
         print(json.dumps(row), flush=True)
-        if answer["status"] in ("optimal", "feasible") and answer["objective"] < converged["objective"] * (1 - 1e-3):
+        if answer["status"] in ("optimal", "feasible") and answer["objective"] < converged["objective"] - WITHIN * abs(converged["objective"]):
             better.append(row)
     return {"tries": arguments.n, "converged": converged["objective"], "better by more than 0.1%": better}
 
