@@ -93,6 +93,8 @@ struct PairCertificate {
     std::vector<double> at;      ///< and where in it: its coordinates
     CertifiedPoint point_a, point_b;
     std::vector<BoxProof> boxes;  ///< one for each; none at all if lower is 0
+    /// What is required of the two [m], by whoever made this: no claim, and nothing proves it. Nothing: no one said.
+    std::optional<double> minimum{};
 };
 
 struct BodyPieces {
@@ -135,8 +137,8 @@ std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, 
 ///   exports (optional) [{file, hash, rounding}], joints (optional, ideal_joints.hpp), path_as_stored (optional, is_of_path),
 ///   over ranges of joints coordinates [{start, low, high, is_whole_turn, joints [{joint, is_angle, scale, offset}]}] and
 ///   links [{parent, screws [{coordinate, point, axis, turn, slide}]}],
-///   pairs [{a, b, lower, upper, solids, step, segment, at, point_a {kind, index, weight}, point_b, boxes [{splits, normals}]}], `normals`
-///   flat. Written whole or not at all.
+///   pairs [{a, b, lower, upper, solids, minimum (optional), step, segment, at, point_a {kind, index, weight}, point_b,
+///   boxes [{splits, normals}]}], `normals` flat. Written whole or not at all.
 /// Read, too, are the two formats before it: fettle_certificate 2, of a path (`segments` [{splits, planes}] for `boxes`, `t` for `0`, `s`
 /// for `at`), and fettle_range_certificate 1 (a pair's one `splits` and `normals` beside its bounds).
 [[nodiscard]] base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate);

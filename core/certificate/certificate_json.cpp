@@ -123,6 +123,7 @@ void write_pair(JsonWriter& out, const PairCertificate& pair) {
     write_number(out, "lower", pair.lower);
     write_number(out, "upper", pair.upper);
     write_text(out, "solids", to_string(pair.solids));
+    if (pair.minimum) write_number(out, "minimum", *pair.minimum);
     write_number(out, "step", pair.step);
     write_number(out, "segment", pair.segment);
     out.key("at");
@@ -250,6 +251,7 @@ PairCertificate read_pair(const JsonNode& node, Format format) {
     pair.lower = read_bound(node.require("lower"));
     pair.upper = read_bound(node.require("upper"));
     pair.solids = read_solids(node.require("solids"));
+    pair.minimum = node["minimum"].number(files::not_negative);
     if (format != Format::old_range) {
         pair.step = read_index(node.require("step"), -1);
         pair.segment = read_index(node.require("segment"), 0);

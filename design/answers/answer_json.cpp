@@ -2,6 +2,7 @@
 #include "fettle/design/answers/answer_json.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -16,6 +17,8 @@ using core::clearance::PairStatus;
 using Json = nlohmann::ordered_json;
 
 Json vector_json(const Vector3& v) { return Json(Json::array_t(v.begin(), v.end())); }
+
+Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 Json pair_json(const PairClearance& pair, const std::vector<std::string>& names) {
     Json json;

@@ -15,6 +15,9 @@ namespace fettle::design::answers {
 
 nlohmann::ordered_json vector_json(const Vector3& v);
 
+/// The number; null where it is infinite or none.
+nlohmann::ordered_json finite_or_null(double x);
+
 /// {a, b, minimum, lower, upper, status, time, point_a, point_b}
 nlohmann::ordered_json pair_json(const core::clearance::PairClearance& pair, const std::vector<std::string>& body_names);
 

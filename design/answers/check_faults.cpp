@@ -32,8 +32,13 @@ std::string few(const Names& names) {
     return core::base::joined(Names(names.begin(), names.begin() + most)) + formatted(" and %zu more", names.size() - most);
 }
 
-// What the table of differences has against the gradients.
-Names faults_of_differences(const CheckReport& report, double limit) {
+/// What speaks against a gradient, and what only leaves it open.
+struct Causes {
+    Names faults, open;
+};
+
+// Of the table of differences.
+Causes causes_of_differences(const CheckReport& report, double limit) {
     Names disagreeing, kinks, hidden, along;
     for (const CheckRow& row : report.rows) {
         if (row.kink != 0) {
@@ -46,42 +51,64 @@ Names faults_of_differences(const CheckReport& report, double limit) {
     }
     for (const LineRow& row : report.along)
         if (disagrees(row, limit)) along.push_back(row.quantity + formatted(" by %.2g", row.relative_error));
-    Names faults;
+    Causes causes;
     if (!disagreeing.empty())
-        faults.push_back("gradients and differences disagree: " + few(disagreeing) + formatted(" (limit %.3g)", limit));
-    if (!along.empty()) faults.push_back("they disagree along the gradient: " + few(along) + formatted(" (limit %.3g)", limit));
-    if (!kinks.empty()) faults.push_back("there is a kink, and so no derivative: " + few(kinks));
-    if (!hidden.empty()) faults.push_back("noise hides more than the limit: " + few(hidden));
-    return faults;
+        causes.faults.push_back("gradients and differences disagree: " + few(disagreeing) + formatted(" (limit %.3g)", limit));
+    if (!along.empty()) causes.faults.push_back("they disagree along the gradient: " + few(along) + formatted(" (limit %.3g)", limit));
+    if (!kinks.empty()) causes.faults.push_back("there is a kink, and so no derivative: " + few(kinks));
+    if (!hidden.empty()) causes.open.push_back("noise hides more than the limit: " + few(hidden));
+    return causes;
+}
+
+Causes causes_of(const CheckReport& report, double limit) {
+    Causes causes;
+    if (report.interrupted) causes.open.emplace_back("it was interrupted");
+    if (!report.failures.empty()) causes.open.push_back("not all could be checked: " + few(report.failures));
+    const gradient_audit::SweepAgreement& sweeps = report.sweeps;
+    if (!sweeps.failure.empty()) {
+        causes.open.push_back("backwards and forwards could not be compared: " + sweeps.failure);
+    } else if (!(sweeps.disagreement <= limit)) {
+        const std::string by = std::isfinite(sweeps.disagreement) ? formatted("differ by %.2g of the gradient's size", sweeps.disagreement)
+                                                                  : "do not both give a number";
+        causes.faults.push_back("backwards and forwards " + by + (sweeps.quantity.empty() ? "" : ", of " + sweeps.quantity) +
+                                formatted(" (limit %.3g)", limit));
+    }
+    const Causes of_differences = causes_of_differences(report, limit);
+    causes.faults.insert(causes.faults.end(), of_differences.faults.begin(), of_differences.faults.end());
+    causes.open.insert(causes.open.end(), of_differences.open.begin(), of_differences.open.end());
+    return causes;
+}
+
+// Of a check in which nothing disagrees.
+std::string measured_text(const CheckReport& report) {
+    if (report.rows.empty() && report.along.empty()) return "; no difference was measured";
+    return formatted("; all differences that were measured agree, to %.2g", report.largest_relative_error);
 }
 
 }  // namespace
 
+CheckVerdict check_verdict(const CheckReport& report, double limit) {
+    const Causes causes = causes_of(report, limit);
+    if (!causes.faults.empty()) return CheckVerdict::failed;
+    return causes.open.empty() ? CheckVerdict::passed : CheckVerdict::undecided;
+}
+
 std::vector<std::string> check_faults(const CheckReport& report, double limit) {
-    Names faults;
-    if (report.interrupted) faults.emplace_back("it was interrupted");
-    if (!report.failures.empty()) faults.push_back("not all could be checked: " + few(report.failures));
-    const gradient_audit::SweepAgreement& sweeps = report.sweeps;
-    if (!sweeps.failure.empty()) {
-        faults.push_back("backwards and forwards could not be compared: " + sweeps.failure);
-    } else if (!(sweeps.disagreement <= limit)) {
-        const std::string by = std::isfinite(sweeps.disagreement) ? formatted("differ by %.2g of the gradient's size", sweeps.disagreement)
-                                                                  : "do not both give a number";
-        faults.push_back("backwards and forwards " + by + (sweeps.quantity.empty() ? "" : ", of " + sweeps.quantity) +
-                         formatted(" (limit %.3g)", limit));
-    }
-    const Names of_differences = faults_of_differences(report, limit);
-    faults.insert(faults.end(), of_differences.begin(), of_differences.end());
-    return faults;
+    Causes causes = causes_of(report, limit);
+    causes.faults.insert(causes.faults.end(), causes.open.begin(), causes.open.end());
+    return causes.faults;
 }
 
 std::string verdict_text(const CheckReport& report, double limit) {
+    const CheckVerdict verdict = check_verdict(report, limit);
+    if (verdict == CheckVerdict::passed) return formatted("check passed (limit %.3g)\n", limit);
+    std::string text = verdict == CheckVerdict::failed ? "check FAILED: " : "check undecided: ";
     const Names faults = check_faults(report, limit);
-    if (faults.empty()) return formatted("check passed (limit %.3g)\n", limit);
-    std::string text = "check FAILED: ";
     for (std::size_t i = 0; i < faults.size(); ++i) text += (i == 0 ? "" : "; ") + faults[i];
-    const bool all_agree =
-        !report.interrupted && report.failures.empty() && !report.rows.empty() && faults_of_differences(report, limit).empty();
+    if (verdict == CheckVerdict::undecided) return text + measured_text(report) + "\n";
+    const Causes of_differences = causes_of_differences(report, limit);
+    const bool all_agree = !report.interrupted && report.failures.empty() && !report.rows.empty() && of_differences.faults.empty() &&
+                           of_differences.open.empty();
     return text + (all_agree ? "; all differences agree\n" : "\n");
 }
 

@@ -9,13 +9,22 @@
 
 namespace fettle::design::answers {
 
-/// Why a check fails, a clause for each cause: it was interrupted; parameters could not be checked; the derivatives taken backwards and
-/// forwards differ, or could not be compared; gradients and differences disagree, for a parameter or along the gradient; quantities have a
-/// kink; noise hides more than the limit. Empty: the check passes.
-/// @param limit  Largest relative error that passes. Contract: > 0
+enum class CheckVerdict {
+    passed,
+    failed,     ///< derivatives were measured that do not agree, or there is none (a kink)
+    undecided,  ///< nothing speaks against the gradients, but not all of it could be measured
+};
+
+/// Contract: limit > 0, the largest relative error that passes.
+CheckVerdict check_verdict(const gradient_audit::CheckReport& report, double limit);
+
+/// Why a check does not pass, a clause for each cause. It is undecided by these: it was interrupted; parameters could not be checked;
+/// derivatives taken backwards and forwards could not be compared; noise hides more than the limit. It fails by these: the latter differ;
+/// gradients and differences disagree, for a parameter or along the gradient; quantities have a kink. Empty: the check passes.
 std::vector<std::string> check_faults(const gradient_audit::CheckReport& report, double limit);
 
-/// "check passed (limit 1e-05)", or "check FAILED: " with all causes; that all differences agree is said where they do.
+/// "check passed (limit 1e-05)", "check FAILED: " or "check undecided: " with all causes, and what the differences that could be measured
+/// say.
 std::string verdict_text(const gradient_audit::CheckReport& report, double limit);
 
 }  // namespace fettle::design::answers

@@ -51,8 +51,6 @@ Json not_evaluated_json(const DesignEvaluation& evaluation) {
 
 namespace {
 
-Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
 void add_tie(const Design& design, const problem::Tie* tie, Json& entry) {
     if (tie == nullptr) return;
     entry["ties"] = {{"witnesses", tie->branches},

@@ -22,7 +22,7 @@ using core::certificate::Solids;
 std::vector<Claim> claims_of(const Certificate& certificate) {
     std::vector<Claim> claims;
     for (const auto& pair : certificate.pairs) {
-        Claim claim{pair.a, pair.b, pair.lower, pair.upper, pair.solids};
+        Claim claim{pair.a, pair.b, pair.lower, pair.upper, pair.solids, pair.minimum};
         if (certificate.joints) {
             const double charge = joint_charge(*certificate.joints, claim.a, claim.b);
             claim.lower = std::max(0.0, claim.lower - charge);
@@ -122,13 +122,17 @@ core::clearance::PairStatus verdict(const Claim& claim, double minimum) {
     return claim.upper < minimum ? PairStatus::violated : PairStatus::undecided;
 }
 
-core::clearance::PairStatus worst_of(const std::vector<Claim>& claims, double minimum) {
+std::optional<double> minimum_of(const Claim& claim, const std::optional<double>& asked) { return asked ? asked : claim.minimum; }
+
+std::optional<core::clearance::PairStatus> worst_of(const std::vector<Claim>& claims, const std::optional<double>& asked) {
     using core::clearance::PairStatus;
-    PairStatus worst = PairStatus::clear;
+    std::optional<PairStatus> worst;
     for (const Claim& claim : claims) {
-        const PairStatus status = verdict(claim, minimum);
+        const std::optional<double> minimum = minimum_of(claim, asked);
+        if (!minimum) continue;
+        const PairStatus status = verdict(claim, *minimum);
         if (status == PairStatus::violated) return status;
-        if (status == PairStatus::undecided) worst = status;
+        if (!worst || status == PairStatus::undecided) worst = status;
     }
     return worst;
 }

@@ -20,13 +20,16 @@ struct Claim {
     int a = 0, b = 0;             ///< bodies of the path
     double lower = 0, upper = 0;  ///< [m], of joints met at all times where the certificate has joints
     core::certificate::Solids solids = core::certificate::Solids::unproven;
+    std::optional<double> minimum = {};  ///< [m] that the certificate says is required
     bool is_of_bodies = true;  ///< false: of the path as stored, and it is not known whether joints have the bodies elsewhere between nodes
 };
 
 /// Clear, violated or undecided, of a pair whose claims are proven.
 core::clearance::PairStatus verdict(const Claim& claim, double minimum);
-/// violated if one is; else undecided if one is; else clear.
-core::clearance::PairStatus worst_of(const std::vector<Claim>& claims, double minimum);
+/// What a claim is judged by: the minimum that is asked for, else the certificate's own. Nothing: it is not judged.
+std::optional<double> minimum_of(const Claim& claim, const std::optional<double>& asked);
+/// violated if one is; else undecided if one is; else clear. Nothing: none is judged.
+std::optional<core::clearance::PairStatus> worst_of(const std::vector<Claim>& claims, const std::optional<double>& asked);
 
 enum class ExportStatus { same, changed, missing };
 /// A file that the certificate says was made of its bodies.

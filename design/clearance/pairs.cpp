@@ -2,7 +2,9 @@
 #include "fettle/design/clearance/pairs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <unordered_map>
@@ -11,6 +13,7 @@
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/expression.hpp"
+#include "fettle/design/quantities/in_scenario.hpp"
 #include "fettle/design/quantities/process_presets.hpp"
 
 namespace fettle::design::clearance {
@@ -330,7 +333,71 @@ private:
     Errors errors_;
 };
 
+/// A constraint's clearance, and what it is required to be [m].
+struct BoundedClearance {
+    const quantities::Clearance* clearance = nullptr;
+    double minimum = 0;
+};
+
+const description::Quantity* without_scenario(const description::Quantity* quantity) {
+    const auto* in = dynamic_cast<const quantities::InScenario*>(quantity);
+    return in == nullptr ? quantity : in->quantity().get();
+}
+
+// A clearance, or one less a limit that follows from parameters: a formula f(q) of slope 1 in the clearance q requires q >= bound - f(0).
+std::optional<BoundedClearance> bounded_clearance(const description::Design& design, const description::Constraint& constraint) {
+    const description::Quantity* quantity = without_scenario(constraint.quantity.get());
+    if (const auto* clearance = dynamic_cast<const quantities::Clearance*>(quantity))
+        return BoundedClearance{clearance, constraint.bounds.lower};
+    const auto* expression = dynamic_cast<const quantities::Expression*>(quantity);
+    if (expression == nullptr || expression->parts().size() != 1) return std::nullopt;
+    const auto* clearance = dynamic_cast<const quantities::Clearance*>(without_scenario(expression->parts().front().quantity.get()));
+    if (clearance == nullptr) return std::nullopt;
+    const core::expression::Formula& formula = expression->formula();
+    const auto value_at = [&](double q) {
+        std::vector<double> inputs;
+        for (const std::string& input : formula.inputs) {
+            const auto parameter = std::find_if(design.parameters.begin(), design.parameters.end(),
+                                                [&](const description::Parameter& each) { return each.name == input; });
+            const bool is_clearance = input == expression->parts().front().name || parameter == design.parameters.end();
+            inputs.push_back(is_clearance ? q : parameter->value);
+        }
+        return core::expression::value_of<double>(formula, inputs);
+    };
+    const double at_zero = value_at(0);
+    const bool has_slope_1 = std::abs(value_at(1) - at_zero - 1) < 1e-12 && std::abs(value_at(2) - at_zero - 2) < 1e-12;
+    if (!has_slope_1) return std::nullopt;
+    return BoundedClearance{clearance, constraint.bounds.lower - at_zero};
+}
+
+std::optional<PairMinimum> asked_minimum(const description::Design& design, const description::Constraint& constraint, MinimumOver over) {
+    const std::optional<BoundedClearance> bounded = bounded_clearance(design, constraint);
+    if (!bounded || !(bounded->minimum > 0) || !std::isfinite(bounded->minimum)) return std::nullopt;
+    const quantities::ClearanceRange& range = bounded->clearance->range();
+    const MinimumOver own = range.ranges ? MinimumOver::ranges : range.motion ? MinimumOver::motion : MinimumOver::assembly;
+    const bool is_whole = range.faces_a.empty() && range.faces_b.empty() && !range.from && !range.to;
+    if (own != over || !is_whole) return std::nullopt;
+    const auto [a, b] = std::minmax(range.a, range.b);
+    return PairMinimum{a, b, bounded->minimum};
+}
+
 }  // namespace
+
+std::vector<PairMinimum> design_minima(const description::Design& design, int scenario, MinimumOver over) {
+    std::vector<PairMinimum> minima;
+    for (const description::Constraint& constraint : design.constraints) {
+        if (!constraint.quantity->is_about(scenario)) continue;
+        const std::optional<PairMinimum> asked = asked_minimum(design, constraint, over);
+        if (!asked) continue;
+        const auto known = std::find_if(minima.begin(), minima.end(),
+                                        [&](const PairMinimum& other) { return other.a == asked->a && other.b == asked->b; });
+        if (known == minima.end())
+            minima.push_back(*asked);
+        else
+            known->minimum = std::max(known->minimum, asked->minimum);
+    }
+    return minima;
+}
 
 BodyPairs design_pairs(const description::Design& design) {
     BodyPairs pairs;

@@ -59,6 +59,17 @@ using BodyPairs = std::vector<std::pair<int, int>>;
 /// The bodies whose clearance a design's objective or constraints are about, by themselves or within an expression.
 BodyPairs design_pairs(const description::Design& design);
 
+/// What a design requires of two bodies [m].
+struct PairMinimum {
+    int a = 0, b = 0;  ///< the lesser first
+    double minimum = 0;
+};
+enum class MinimumOver { assembly, motion, ranges };
+
+/// The largest minimum that the design's constraints give each pair of bodies in that scenario, at the parameters' values: of whole bodies
+/// (not of faces alone) over the whole motion, over the joints' ranges, or as assembled. Those that follow from parameters count, too.
+std::vector<PairMinimum> design_minima(const description::Design& design, int scenario, MinimumOver over);
+
 /// Without any minimum only distances are wanted, and no pair has one.
 /// @param moves   over a motion, or over ranges of joints; false: as assembled
 /// @param wanted  judged where no pairs are named, and matched by patterns, whatever joins them

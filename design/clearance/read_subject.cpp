@@ -145,6 +145,13 @@ Result<Subject> from_ranges(const SubjectOptions& options, reading::LoadedModel&
     return subject_over(std::move(loaded.model), *std::move(ranges));
 }
 
+// Of a design that was loaded in it: no name means the first.
+int number_of_scenario(const description::Design& design, const std::string& name) {
+    const auto& all = design.scenarios;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& scenario) { return scenario.name == name; });
+    return found == all.end() ? 0 : static_cast<int>(found - all.begin());
+}
+
 std::vector<std::string> all_paths(const SubjectOptions& options) {
     std::vector<std::string> paths{options.path};
     paths.insert(paths.end(), options.more.begin(), options.more.end());
@@ -210,7 +217,15 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
     }
     subject.warnings = std::move(loaded->warnings);
     subject.scene_path = loaded->scene_path;
-    if (loaded->problem != nullptr) subject.wanted = design_pairs(loaded->problem->design());
+    if (loaded->problem != nullptr) {
+        const description::Design& design = loaded->problem->design();
+        subject.wanted = design_pairs(design);
+        const bool moves = options.motion || options.kinematic || !options.poses.empty();
+        subject.required = design_minima(design, number_of_scenario(design, input.scenario),
+                                         options.ranges ? MinimumOver::ranges
+                                         : moves        ? MinimumOver::motion
+                                                        : MinimumOver::assembly);
+    }
     if (subject.ranges) return subject;
     const auto& bodies = subject.model.bodies;
     const bool all_scripted = std::all_of(bodies.begin(), bodies.end(), core::stepper::is_scripted);

@@ -206,6 +206,12 @@ void leave_out_touching(const std::vector<PairClearance>& results, core::certifi
     });
 }
 
+void add_minima(const std::vector<PairMinimum>& required, core::certificate::Certificate& certificate) {
+    for (core::certificate::PairCertificate& pair : certificate.pairs)
+        for (const PairMinimum& each : required)
+            if (std::minmax(pair.a, pair.b) == std::minmax(each.a, each.b)) pair.minimum = each.minimum;
+}
+
 // `results`: one per pair of bodies, in the order of the selection.
 ClearanceReport make_report(const Subject& subject, const PairSelection& selection, const std::vector<PairClearance>& results,
                             bool stopped) {
@@ -272,6 +278,7 @@ Result<ClearanceReport> judge_clearances(const Subject& subject, const Question&
     if (question.proof) {
         proven = certify_with_proof(subject, requests, options);
         leave_out_touching(proven.pairs, proven.certificate);
+        add_minima(subject.required, proven.certificate);
     } else {
         proven.pairs = certify(subject, requests, options);
     }

@@ -26,6 +26,7 @@ struct Subject {
     std::optional<core::clearance::JointedPath> joints;  ///< that hold the bodies at all times, without dynamics; nothing: the path is all
     std::optional<core::clearance::JointRanges> ranges;  ///< in place of a path
     BodyPairs wanted;                                    ///< of a design: those that it is about, which are judged whatever joins them
+    std::vector<PairMinimum> required;                   ///< of a design: what it requires of pairs, for its certificate
     std::string incomplete;                              ///< why the motion is not whole; empty: it is, or there is none
     std::vector<std::string> warnings;                   ///< of the files
     std::vector<std::string> notes;                      ///< what the reader of a report should know

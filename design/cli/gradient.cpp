@@ -265,9 +265,13 @@ int run_gradient(const GradientArguments& options, const CommonOptions& common, 
         const CheckReport report = run_check(*problem, values, evaluation, options, console);
         json.update(answers::check_json(design, report, options.check_limit));
         text += check_text(design, report) + answers::verdict_text(report, options.check_limit);
-        const bool good = json.at("check_faults").empty();
-        if (!good) code = exit_undecided;
-        if (!good) json["status"] = report.interrupted ? "interrupted" : "check_failed";
+        const answers::CheckVerdict verdict = answers::check_verdict(report, options.check_limit);
+        if (verdict != answers::CheckVerdict::passed) {
+            code = exit_undecided;
+            json["status"] = report.interrupted                         ? "interrupted"
+                             : verdict == answers::CheckVerdict::failed ? "check_failed"
+                                                                        : "check_undecided";
+        }
     }
     console.result(json, text);
     return code;
@@ -288,11 +292,13 @@ Command add_gradient(CommandLine& program, const CommonOptions& common) {
     app.closing_words(
         "Example:  fettle gradient examples/slider_crank/slider_crank.design.json --check\n"
         "Gradients are per unit of each parameter as the design has it; values are SI, the objective a plain number.\n"
-        "Exit code 2: the design cannot be evaluated, or the check fails; the last line says why:\n"
-        "  - derivatives of the same simulation, taken backwards and forwards, differ by more than the limit or cannot be compared;\n"
+        "Exit code 2: the design cannot be evaluated, or the check does not pass; the last line says why. \"check FAILED\":\n"
+        "  - derivatives of the same simulation, taken backwards and forwards, differ by more than the limit;\n"
         "  - a gradient and its difference disagree by more than the limit, for a parameter or along the gradient;\n"
-        "  - a quantity has a kink (another slope above than below); noise hides more than the limit;\n"
-        "  - simulations beside the design fail, so that a parameter is not checked; it was interrupted.\n"
+        "  - a quantity has a kink (another slope above than below).\n"
+        "\"check undecided\", where nothing that was measured disagrees:\n"
+        "  - simulations beside the design fail, so that a parameter is not checked; noise hides more than the limit;\n"
+        "  - derivatives backwards and forwards cannot be compared; it was interrupted.\n"
         "What to do in each case: docs/recipes.md, \"When gradient --check fails\".");
     return {app, [options, &common](Console& console) { return run_gradient(*options, common, console); }};
 }

@@ -172,7 +172,8 @@ Command add_validate(CommandLine& program, const CommonOptions& common) {
     app.option("--unit", options->unit, "Unit of a mesh that states none: mm, um, cm, m, in, ft");
     app.option("--trajectory", options->trajectory,
                "For a certificate: the path that it is about (default: FILE's name, .trajectory.json)");
-    app.option("--minimum", options->minimum, "For a certificate: do its bounds meet this clearance, per side, with its unit: 0.3mm");
+    app.option("--minimum", options->minimum,
+               "For a certificate: do its bounds meet this clearance, per side, with its unit: 0.3mm (default: the minima that it states)");
     app.closing_words(
         "Example:  fettle validate examples/slider_crank/slider_crank.design.json\n"
         "          fettle validate fit.certificate.json     is every claim proven? exit code 0: accepted, 1: rejected");

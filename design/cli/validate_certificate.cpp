@@ -42,7 +42,10 @@ Json claims_json(const std::vector<Claim>& claims, const Model& model, const std
                         {"lower", pair.lower},
                         {"upper", pair.upper},
                         {"solids", to_string(pair.solids)}});
-        if (minimum) list.back()["status"] = to_string(verdict(pair, *minimum));
+        const std::optional<double> required = clearance::minimum_of(pair, minimum);
+        if (!required) continue;
+        list.back()["minimum"] = *required;
+        list.back()["status"] = to_string(verdict(pair, *required));
     }
     return list;
 }
@@ -57,12 +60,20 @@ std::string claim_text(const Claim& pair, const RoundedLengths& lengths) {
            lengths.unit() + "; " + core::clearance::words(pair.solids);
 }
 
+std::string required_text(double minimum, const RoundedLengths& lengths) {
+    return formatted("%.6g ", minimum / lengths.metres()) + lengths.unit();
+}
+
 std::string claims_text(const CheckedCertificate& checked, const Model& model, const std::optional<double>& minimum) {
     const RoundedLengths lengths(answers::unit_name(checked.certificate->length_unit));
     std::string text;
-    for (const Claim& pair : checked.claims)
-        text += "  " + claim_name(pair, model) + "  " + claim_text(pair, lengths) +
-                (minimum ? std::string(": ") + to_string(verdict(pair, *minimum)) : "") + "\n";
+    for (const Claim& pair : checked.claims) {
+        text += "  " + claim_name(pair, model) + "  " + claim_text(pair, lengths);
+        const std::optional<double> required = clearance::minimum_of(pair, minimum);
+        if (required && !minimum) text += "; required " + required_text(*required, lengths);
+        if (required) text += std::string(": ") + to_string(verdict(pair, *required));
+        text += "\n";
+    }
     return text;
 }
 
@@ -72,11 +83,11 @@ const char* const of_path_alone = "about the path as stored, between whose nodes
 Check check_of(const Claim& pair, const std::string& name, const RoundedLengths& lengths, const std::optional<double>& minimum,
                const std::string& file) {
     Check check{name, CheckOutcome::passed, "proven", claim_text(pair, lengths), file};
-    if (minimum) {
-        const PairStatus status = verdict(pair, *minimum);
+    if (const std::optional<double> required = clearance::minimum_of(pair, minimum)) {
+        const PairStatus status = verdict(pair, *required);
         check.rule = to_string(status);
         check.outcome = to_check(status);
-        check.message += "; required " + formatted("%.6g ", *minimum / lengths.metres()) + lengths.unit();
+        check.message += "; required " + required_text(*required, lengths);
     } else if (!pair.is_of_bodies || !are_apart(pair.solids)) {
         check.rule = "undecided";
         check.outcome = CheckOutcome::undecided;
@@ -154,8 +165,10 @@ int validate_certificate(const CertificateQuestion& question, const CommonOption
     const std::string trajectory = question.trajectory.empty() ? clearance::certificate_trajectory(question.path) : question.trajectory;
     const auto stored = core::records::read_trajectory(trajectory);
     if (!stored) return console.input_errors(stored.errors());
-    const CheckedCertificate checked = clearance::check_certificate_file(question.path, *stored, input_options(common));
+    CheckedCertificate checked = clearance::check_certificate_file(question.path, *stored, input_options(common));
     const bool accepted = checked.status == CertificateStatus::accepted;
+    if (!accepted)
+        for (Claim& claim : checked.claims) claim.minimum.reset();  // bounds that are not proven are not judged
     const std::optional<double> asked = accepted ? *minimum : std::nullopt;
     Json json{{"status", to_string(checked.status)}, {"kind", "certificate"}, {"trajectory", trajectory}};
     json.update(checked_json(checked, stored->model, asked));
@@ -163,12 +176,11 @@ int validate_certificate(const CertificateQuestion& question, const CommonOption
     for (const auto& fault : checked.faults) text += "  " + fault.where + ": " + fault.message + "\n";
     if (accepted) text += accepted_text(checked, stored->model, asked);
     int code = accepted ? exit_done : exit_violated;
-    if (asked) {
-        const PairStatus worst = worst_of(checked.claims, *asked);
-        json["minimum"] = *asked;
-        json["judgement"] = to_string(worst);
-        text += "at a minimum of " + question.minimum + ": " + to_string(worst) + "\n";
-        code = exit_code(worst);
+    if (const auto worst = worst_of(checked.claims, asked)) {
+        if (asked) json["minimum"] = *asked;
+        json["judgement"] = to_string(*worst);
+        text += (asked ? "at a minimum of " + question.minimum : "at the minima that it states") + ": " + to_string(*worst) + "\n";
+        code = exit_code(*worst);
     }
     json["faults"] = Json::array();
     for (const auto& fault : checked.faults) json["faults"].push_back({{"where", fault.where}, {"message", fault.message}});

@@ -86,7 +86,7 @@ public:
             for (const double side : {1.0, -1.0}) simulate_beside(side, options_.contact_reach);
         if (result_.interrupted) return std::move(result_);
         for (int size = 0; size < options_.sizes; ++size, step /= options_.ratio) {
-            add_difference(step);
+            if (!add_difference(step)) break;
             result_.estimates = estimates(step);
             if (result_.interrupted || good_enough(step)) break;
         }
@@ -127,20 +127,24 @@ private:
         return trial;
     }
 
-    // Where a trial fails the sequence begins anew with the next size: extrapolation needs one ratio throughout.
-    void add_difference(double step) {
+    // Where a trial fails the sequence begins anew with the next size, for extrapolation needs one ratio throughout; false: it ends, with
+    // enough differences to extrapolate and to say how good that is.
+    bool add_difference(double step) {
+        constexpr std::size_t enough = 3;
         const Trial up = simulate_beside(1, step);
         const Trial down = up.evaluation.usable ? simulate_beside(-1, step) : Trial{};
         if (!down.evaluation.usable) {
             result_.failure = up.evaluation.usable ? down.evaluation.reason : up.evaluation.reason;
+            if (differences_.size() >= enough) return false;
             differences_.clear();
             bends_.clear();
-            return;
+            return true;
         }
         result_.failure.clear();
         const VectorX above = quantities_of(up.evaluation), below = quantities_of(down.evaluation);
         bends_.push_back((above - 2 * steps_.values + below) / step);
         differences_.push_back((above - below) * (range_ / (up.value - down.value)));  // their distance is exact, not 2 step
+        return true;
     }
 
     // @param step  Of the newest difference.
@@ -214,8 +218,11 @@ double told_error(bool resolved, double relative_error, double difference_error)
     return resolved ? relative_error : std::max(0.0, relative_error - difference_error);
 }
 
-void compare(const problem::DesignProblem& problem, const MatrixX& adjoint, const std::vector<ParameterDifferences>& found,
-             const DifferenceSteps& steps, const CheckOptions& options, CheckReport& report) {
+// Of differences that ended early only those are taken that are as good as the limit. @return per parameter, whether some of it, or all,
+// was not compared
+std::vector<bool> compare(const problem::DesignProblem& problem, const MatrixX& adjoint, const std::vector<ParameterDifferences>& found,
+                          const DifferenceSteps& steps, const CheckOptions& options, CheckReport& report) {
+    std::vector<bool> is_open(found.size(), false);
     const std::vector<std::string> names = quantity_names(problem.design());
     const VectorX ranges = parameter_ranges(problem.design());
     for (Eigen::Index q = 0; q < adjoint.rows(); ++q) {
@@ -223,9 +230,16 @@ void compare(const problem::DesignProblem& problem, const MatrixX& adjoint, cons
         const double floor = std::max({options.scale_fraction * norm, options.size_fraction * steps.size[q], steps.tolerance[q]});
         for (Eigen::Index k = 0; k < adjoint.cols(); ++k) {
             const ParameterDifferences& differences = found[k];
-            if (differences.estimates.empty()) continue;
+            if (differences.estimates.empty()) {
+                is_open[k] = true;
+                continue;
+            }
             const DifferenceEstimate& estimate = differences.estimates[q];
             CheckRow row = compared(adjoint(q, k) * ranges[k], estimate, floor, options.limit);
+            if (!differences.failure.empty() && !(row.difference_error <= options.limit)) {
+                is_open[k] = true;
+                continue;
+            }
             row.quantity = names[q];
             row.parameter = problem.design().parameters[k].name;
             row.adjoint = adjoint(q, k);
@@ -236,6 +250,7 @@ void compare(const problem::DesignProblem& problem, const MatrixX& adjoint, cons
             report.rows.push_back(std::move(row));
         }
     }
+    return is_open;
 }
 
 // Along one direction: steps fall from the first that differences begin with, by sqrt(10).
@@ -392,7 +407,7 @@ CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX
         const int k = chosen[i];
         found[k] = ParameterCheck(problem, p, k, steps, options, checked).run(count);
     });
-    compare(problem, quantity_gradients(at), found, steps, options, report);
+    const std::vector<bool> is_open = compare(problem, quantity_gradients(at), found, steps, options, report);
     report.contacts_reach = MatrixX::Zero(n, 2);
     for (int k = 0; k < n; ++k) {
         if (!std::binary_search(chosen.begin(), chosen.end(), k)) {
@@ -403,7 +418,7 @@ CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX
         report.contacts_reach.row(k) = differences.contacts_reach.transpose();
         std::move(differences.contact_changes.begin(), differences.contact_changes.end(), std::back_inserter(report.contact_changes));
         report.interrupted = report.interrupted || differences.interrupted;
-        if (differences.estimates.empty()) report.failures.push_back(problem.design().parameters[k].name + ": " + differences.failure);
+        if (is_open[k]) report.failures.push_back(problem.design().parameters[k].name + ": " + differences.failure);
     }
     std::stable_sort(report.contact_changes.begin(), report.contact_changes.end(),
                      [](const ContactChange& a, const ContactChange& b) { return a.share < b.share; });

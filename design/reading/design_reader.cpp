@@ -23,6 +23,7 @@
 #include "fettle/design/reading/parameter_reader.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
 #include "fettle/design/reading/relation_reader.hpp"
+#include "fettle/design/reading/same_parts.hpp"
 #include "fettle/design/reading/scenario_choice.hpp"
 
 namespace fettle::design::reading {
@@ -218,24 +219,20 @@ private:
         const int steps = entry["steps"].integer(1).value_or(
             end_time == design_.scene.end_time && setting->scene.timestep == design_.scene.timestep ? design_.steps
                                                                                                     : steps_of(setting->scene));
-        for (const auto& [pointer, value] : entry["set"].members()) names.parts_differ = names.parts_differ || !leaves_parts(pointer);
+        names.parts_differ = names.parts_differ || changes_parts(entry["set"], setting->scene);
         names.names.push_back(name);
         design_.scenarios.push_back({name, std::move(setting->scene), std::move(setting->shapes), std::move(setting->numbers), steps});
         return true;
     }
 
-    // Settings of these change nothing of the parts, nor where they are at the start.
-    static bool leaves_parts(const std::string& pointer) {
-        const auto begins_with_one_of = [](std::string_view text, std::initializer_list<std::string_view> beginnings) {
-            return std::any_of(beginnings.begin(), beginnings.end(), [&](std::string_view each) { return text.starts_with(each); });
-        };
-        constexpr std::string_view bodies = "/bodies/";
-        if (!pointer.starts_with(bodies))
-            return begins_with_one_of(pointer, {"/gravity", "/timestep", "/end_time", "/integrator", "/contact", "/friction", "/springs",
-                                                "/dampers", "/motors", "/loads"});
-        const std::size_t key = std::min(pointer.find('/', bodies.size()), pointer.size());
-        return begins_with_one_of(std::string_view(pointer).substr(key), {"/prescribed", "/fixed", "/linear_velocity", "/angular_velocity",
-                                                                          "/force", "/torque", "/damping", "/mu"});
+    bool changes_parts(const JsonNode& set, const core::scene::Scene& scene) const {
+        bool sets_variables = false;
+        for (const auto& [pointer, value] : set.members()) {
+            const bool is_variable = pointer.starts_with("/variables/");
+            sets_variables = sets_variables || is_variable;
+            if (!is_variable && !leaves_parts(pointer)) return true;
+        }
+        return sets_variables && !have_same_parts(design_.scene, scene);
     }
 
     void refine(core::scene::Scene& scene, int& steps) const {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <utility>
 
 #include "fettle/core/part_files/part_file.hpp"
@@ -18,15 +20,40 @@ using problem::DesignProblem;
 
 constexpr int times = 2;
 
+// The scenes that are simulated, by the numbers of DesignProblem's scenarios.
+std::vector<core::scene::Scene*> simulated_scenes(Design& design) {
+    if (design.scenarios.empty()) return {&design.scene};
+    std::vector<core::scene::Scene*> scenes;
+    for (auto& scenario : design.scenarios) scenes.push_back(&scenario.scene);
+    return scenes;
+}
+
 // Settings of contact that the scene leaves open would be chosen anew, for another step and other meshes.
 void take_contact(const DesignProblem& from, Design& design) {
-    const auto take = [&](const core::scene::Scene& own, int scenario, core::scene::Scene& scene) {
-        scene.dhat = own.dhat;
-        scene.velocity_tolerance = own.velocity_tolerance;
-        scene.kappa = from.kappa(scenario);
-    };
-    if (design.scenarios.empty()) take(from.design().scene, 0, design.scene);
-    for (int s = 0; s < count_of(design.scenarios); ++s) take(from.design().scenarios[s].scene, s, design.scenarios[s].scene);
+    const std::vector<core::scene::Scene*> scenes = simulated_scenes(design);
+    for (int s = 0; s < count_of(scenes); ++s) {
+        const core::scene::Scene& own = from.design().scenarios.empty() ? from.design().scene : from.design().scenarios[s].scene;
+        scenes[s]->dhat = own.dhat;
+        scenes[s]->velocity_tolerance = own.velocity_tolerance;
+        scenes[s]->kappa = from.kappa(s);
+    }
+}
+
+// Of each scenario: is there friction whose normal forces and directions are those of a round before, as built?
+std::vector<bool> lagging_friction(const DesignProblem& problem) {
+    const VectorX p = description::values_of(problem.design().parameters);
+    std::vector<bool> lagging;
+    for (int s = 0; s < problem.scenario_count(); ++s) {
+        const Result<core::model::Model> model = problem.model_at(p, s);
+        lagging.push_back(model && model->friction.rounds > 0 && model->friction.mu.maxCoeff() > 0);
+    }
+    return lagging;
+}
+
+void settle_friction(const std::vector<bool>& lagging, Design& design) {
+    const std::vector<core::scene::Scene*> scenes = simulated_scenes(design);
+    for (size_t s = 0; s < scenes.size(); ++s)
+        if (lagging[s]) scenes[s]->friction.rounds = -1;
 }
 
 std::vector<std::string> fixed_meshes(const Design& design) {
@@ -36,55 +63,102 @@ std::vector<std::string> fixed_meshes(const Design& design) {
     return names;
 }
 
+double share_of_change(double from, double to) {
+    return from == 0 && to == 0 ? 0 : std::abs(to - from) / std::max(std::abs(from), std::abs(to));
+}
+
+std::vector<ResolvedQuantity> quantities_of(const Design& design) {
+    std::vector<ResolvedQuantity> quantities;
+    for (size_t k = 0; k < design.objective.size(); ++k) quantities.push_back({design.objective[k].name, true, static_cast<int>(k)});
+    for (size_t i = 0; i < design.constraints.size(); ++i) quantities.push_back({design.constraints[i].name, false, static_cast<int>(i)});
+    return quantities;
+}
+
+// The runs of one design, one after the other.
+class ResolutionStudy {
+public:
+    ResolutionStudy(const std::string& path, reading::DesignReadOptions read, const ResolutionOptions& options)
+        : path_(path), read_(std::move(read)), options_(options) {
+        read_.made.reset();  // whose parts have other facets
+    }
+
+    Result<ResolutionReport> run() {
+        if (options_.on_variant) options_.on_variant("as written");
+        Result<DesignProblem> written = problem({1, 1});
+        if (!written) return written.errors();
+        written_.emplace(std::move(written).value());
+        const std::vector<bool> lagging = lagging_friction(*written_);
+        report_.friction_lags = std::find(lagging.begin(), lagging.end(), true) != lagging.end();
+        report_.quantities = quantities_of(written_->design());
+        report_.fixed_meshes = fixed_meshes(written_->design());
+        measure(*written_, add("as written", &ResolvedQuantity::as_written));
+        vary("with twice the facets", &ResolvedQuantity::finer_facets, {times, 1});
+        vary("with half the time step", &ResolvedQuantity::finer_steps, {1, times});
+        vary("with both", &ResolvedQuantity::finer_both, {times, times});
+        if (report_.friction_lags)
+            vary("with settled friction", &ResolvedQuantity::settled_friction, {1, 1},
+                 [&](Design& design) { settle_friction(lagging, design); });
+        return std::move(report_);
+    }
+
+private:
+    Result<DesignProblem> problem(const reading::Resolution& resolution, const std::function<void(Design&)>& change = {}) {
+        read_.resolution = resolution;
+        Result<reading::DesignFile> file = reading::read_design(path_, read_);
+        if (!file) return file.errors();
+        if (written_) take_contact(*written_, file->design);
+        if (change) change(file->design);
+        return DesignProblem::create(std::move(file->design));
+    }
+
+    ResolutionRun& add(const char* name, double ResolvedQuantity::*value) { return report_.runs.emplace_back(ResolutionRun{name, value}); }
+
+    void vary(const char* name, double ResolvedQuantity::*value, const reading::Resolution& resolution,
+              const std::function<void(Design&)>& change = {}) {
+        ResolutionRun& run = add(name, value);
+        if (report_.interrupted) {
+            run.failure = "not begun";
+            return;
+        }
+        if (options_.on_variant) options_.on_variant(name);
+        const Result<DesignProblem> varied = problem(resolution, change);
+        if (varied) {
+            measure(*varied, run);
+        } else {
+            run.failure = varied.errors().front().where + ": " + varied.errors().front().message;
+        }
+    }
+
+    void measure(const DesignProblem& problem, ResolutionRun& run) {
+        problem::EvaluateOptions evaluate;
+        evaluate.gradients = false;
+        evaluate.should_stop = options_.should_stop;
+        const DesignEvaluation at = problem.evaluate(description::values_of(problem.design().parameters), evaluate);
+        report_.interrupted = at.interrupted;
+        if (!at.usable) run.failure = at.reason;
+        for (ResolvedQuantity& quantity : report_.quantities)
+            if (at.usable) quantity.*run.value = (quantity.of_objective ? at.terms : at.constraints)[quantity.index].value;
+    }
+
+    const std::string& path_;
+    reading::DesignReadOptions read_;
+    const ResolutionOptions& options_;
+    std::optional<DesignProblem> written_;
+    ResolutionReport report_;
+};
+
 }  // namespace
 
-double ResolvedQuantity::change() const {
-    const double size = std::max(std::abs(as_written), std::abs(finer_both));
-    return size > 0 ? std::abs(finer_both - as_written) / size : 0;
+double ResolvedQuantity::change() const { return share_of_change(as_written, finer_both); }
+
+double ResolvedQuantity::change_by_friction() const { return share_of_change(as_written, settled_friction); }
+
+bool ResolutionReport::is_complete() const {
+    return std::all_of(runs.begin(), runs.end(), [](const ResolutionRun& run) { return run.failure.empty(); });
 }
 
 Result<ResolutionReport> check_resolution(const std::string& path, reading::DesignReadOptions read, const ResolutionOptions& options) {
-    struct Variant {
-        const char* name;
-        reading::Resolution resolution;
-        double ResolvedQuantity::*value;
-    };
-    const Variant variants[] = {{"as written", {1, 1}, &ResolvedQuantity::as_written},
-                                {"with twice the facets", {times, 1}, &ResolvedQuantity::finer_facets},
-                                {"with half the time step", {1, times}, &ResolvedQuantity::finer_steps},
-                                {"with both", {times, times}, &ResolvedQuantity::finer_both}};
-    read.made.reset();  // whose parts have other facets
-    ResolutionReport report;
-    std::optional<DesignProblem> written;
-    for (const Variant& variant : variants) {
-        if (options.on_variant) options.on_variant(variant.name);
-        read.resolution = variant.resolution;
-        Result<reading::DesignFile> file = reading::read_design(path, read);
-        if (!file) return file.errors();
-        if (written) take_contact(*written, file->design);
-        Result<DesignProblem> problem = DesignProblem::create(std::move(file->design));
-        if (!problem) return problem.errors();
-        problem::EvaluateOptions evaluate;
-        evaluate.gradients = false;
-        evaluate.should_stop = options.should_stop;
-        const Design& design = problem->design();
-        const DesignEvaluation at = problem->evaluate(description::values_of(design.parameters), evaluate);
-        if (!at.usable) {
-            report.failure = std::string(variant.name) + ": " + at.reason;
-            report.interrupted = at.interrupted;
-            return report;
-        }
-        if (!written) {
-            for (const auto& term : design.objective) report.quantities.push_back({term.name, true, count_of(report.quantities)});
-            for (size_t i = 0; i < design.constraints.size(); ++i)
-                report.quantities.push_back({design.constraints[i].name, false, static_cast<int>(i)});
-            report.fixed_meshes = fixed_meshes(design);
-            written.emplace(std::move(problem).value());
-        }
-        for (ResolvedQuantity& quantity : report.quantities)
-            quantity.*variant.value = (quantity.of_objective ? at.terms : at.constraints)[quantity.index].value;
-    }
-    return report;
+    return ResolutionStudy(path, std::move(read), options).run();
 }
 
 }  // namespace fettle::design::studies

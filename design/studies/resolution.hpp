@@ -3,8 +3,11 @@
 /// round, with half the time step, and with both. Contact is that of the design as written (dhat, kappa), so that nothing else changes.
 /// What changes little with both is about as exact as the change is large, where the error falls with the resolution as it does for smooth
 /// motions; it is an estimate, and proves nothing.
+/// Where friction lags (each step solves a given number of rounds, core/model/model.hpp), the design is also measured as written with
+/// rounds until normal forces and directions agree: a lag changes forces by more than a halved time step shows.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -14,22 +17,36 @@
 
 namespace fettle::design::studies {
 
-/// One quantity, SI.
+/// One quantity, SI. NaN: of a run that failed, or of settled friction where none lags.
 struct ResolvedQuantity {
     std::string name;
     bool of_objective = false;  ///< a term of the objective; else a constraint
     int index = 0;
-    double as_written = 0, finer_facets = 0, finer_steps = 0, finer_both = 0;
+    double as_written = std::nan(""), finer_facets = as_written, finer_steps = as_written, finer_both = as_written,
+           settled_friction = as_written;
 
-    /// By what it changes with both, as a share of the larger of the two; 0 where both are 0.
+    /// By what it changes with both, as a share of the larger of the two; 0 where both are 0, NaN where one is not known.
     double change() const;
+    /// The same with settled friction.
+    double change_by_friction() const;
+};
+
+/// One simulation of the design.
+struct ResolutionRun {
+    std::string name;  ///< "with half the time step"
+    double ResolvedQuantity::*value = nullptr;
+    std::string failure = {};  ///< why it has no numbers; empty: it has
 };
 
 struct ResolutionReport {
+    std::vector<ResolutionRun> runs;           ///< as written, finer facets, finer steps, both; with settled friction, if friction lags
     std::vector<ResolvedQuantity> quantities;  ///< terms of the objective, then constraints
     std::vector<std::string> fixed_meshes;     ///< bodies whose facets stay as they are: of mesh files and programs
-    std::string failure;                       ///< why one of the four cannot be measured; empty: all were
-    bool interrupted = false;
+    bool friction_lags = false;                ///< in one scenario at least
+    bool interrupted = false;                  ///< the run that was stopped failed, and those after it were not begun
+
+    /// Have all runs numbers?
+    bool is_complete() const;
 };
 
 struct ResolutionOptions {
@@ -37,8 +54,9 @@ struct ResolutionOptions {
     std::function<void(const std::string& what)> on_variant;  ///< optional: before each simulation
 };
 
+/// A run that fails leaves the others their numbers.
 /// @param path, read  Of the design; `read.resolution` and `read.made` are not looked at.
-/// Errors: those of reading the design, and of DesignProblem::create.
+/// Errors: those of reading the design as written, and of its DesignProblem::create.
 Result<ResolutionReport> check_resolution(const std::string& path, reading::DesignReadOptions read, const ResolutionOptions& options = {});
 
 }  // namespace fettle::design::studies

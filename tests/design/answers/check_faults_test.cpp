@@ -41,6 +41,7 @@ TEST_CASE("verdict on a check: sweeps that differ where all differences agree") 
           "check FAILED: backwards and forwards differ by 0.0018 of the gradient's size, of play (limit 1e-05); all differences agree\n");
     report.sweeps = {0, "", "no memory"};
     CHECK(check_faults(report, 1e-5) == std::vector<std::string>{"backwards and forwards could not be compared: no memory"});
+    CHECK(check_verdict(report, 1e-5) == CheckVerdict::undecided);
 }
 
 TEST_CASE("verdict on a check: differences, kinks, noise, the line, what was not checked") {
@@ -57,13 +58,32 @@ TEST_CASE("verdict on a check: differences, kinks, noise, the line, what was not
     report.along = {line};
     report.failures = {"angle: jams"};
     CHECK(check_faults(report, 1e-5) ==
-          std::vector<std::string>{
-              "not all could be checked: angle: jams", "gradients and differences disagree: objective per wrong by 0.02 (limit 1e-05)",
-              "they disagree along the gradient: objective by 0.003 (limit 1e-05)",
-              "there is a kink, and so no derivative: objective per kinked", "noise hides more than the limit: objective per noisy"});
+          std::vector<std::string>{"gradients and differences disagree: objective per wrong by 0.02 (limit 1e-05)",
+                                   "they disagree along the gradient: objective by 0.003 (limit 1e-05)",
+                                   "there is a kink, and so no derivative: objective per kinked", "not all could be checked: angle: jams",
+                                   "noise hides more than the limit: objective per noisy"});
+    CHECK(check_verdict(report, 1e-5) == CheckVerdict::failed);
     report.interrupted = true;
-    CHECK(verdict_text(report, 1e-5).find("check FAILED: it was interrupted; not all could be checked") == 0);
+    CHECK(verdict_text(report, 1e-5).find("check FAILED: gradients and differences disagree") == 0);
+    CHECK(verdict_text(report, 1e-5).find("it was interrupted; not all could be checked") != std::string::npos);
     CHECK(verdict_text(report, 1e-5).find("all differences agree") == std::string::npos);
+}
+
+TEST_CASE("verdict on a check: a simulation beside it that fails leaves it undecided, with what was measured") {
+    CheckReport report = good_report();
+    report.largest_relative_error = 3e-9;
+    report.failures = {"servo: step 28: no move brings the forces nearer to balance"};
+    CHECK(check_verdict(report, 1e-5) == CheckVerdict::undecided);
+    CHECK(verdict_text(report, 1e-5) ==
+          "check undecided: not all could be checked: servo: step 28: no move brings the forces nearer to balance; all differences that "
+          "were measured agree, to 3e-09\n");
+    report.rows.clear();
+    CHECK(verdict_text(report, 1e-5).ends_with("; no difference was measured\n"));
+    report = good_report();
+    report.rows[0].resolved = false;
+    CHECK(check_verdict(report, 1e-5) == CheckVerdict::undecided);
+    report.rows[1].relative_error = 1;  // what is wrong stays wrong
+    CHECK(check_verdict(report, 1e-5) == CheckVerdict::failed);
 }
 
 TEST_CASE("verdict on a check: what is no number does not pass") {

@@ -233,6 +233,58 @@ TEST_CASE("A certificate says what it covers, is judged by a minimum, and is sta
     CHECK(nothing.json()["status"] == "rejected");
 }
 
+TEST_CASE("A certificate of a design states what the design requires of each pair, and is judged by that") {
+    const auto folder_of = [](const std::string& minimum) {
+        return DesignFolder(R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+            "parameters": [{"name": "place", "value": 40, "lower": 35, "upper": 45}, {"name": "need", "value": 2, "lower": 1, "upper": 3}],
+            "set": {"/bodies/c/position/0": "= place"}, "scenarios": [{"name": "first"}, {"name": "second", "set": {"/gravity": [0, 0, -1]}}],
+            "objective": [{"type": "play", "a": "b", "b": "c", "weight": 1}],
+            "constraints": [{"type": "clearance", "a": "a", "b": "b", "minimum": )" +
+                                minimum + R"(},
+                            {"type": "clearance", "a": "b", "b": "a", "minimum": 9, "motion": true},
+                            {"type": "clearance", "a": "c", "b": "b", "minimum": "= 2 * need"}]})",
+                            scene_of({box_body("a", "static", "10", "[0, 0, 0]"), box_body("b", "static", "10", "[10.5, 0, 0]"),
+                                      box_body("c", "kinematic", "10", "[40, 0, 0]")}));
+    };
+    const DesignFolder folder = folder_of("0.3");
+    const std::string file = folder.file("fit.certificate.json");
+    run("clearance " + folder.design() + " --pairs a:b,b:c,a:c --certificate " + file);
+    const Answer met = run("validate " + file + " --json");
+    CAPTURE(met.out);
+    CHECK(met.code == 0);
+    CHECK(met.json()["judgement"] == "clear");
+    CHECK(met.pair("a", "b")["minimum"].get<double>() == Approx(3e-4));
+    CHECK(met.pair("a", "b")["status"] == "clear");
+    CHECK(met.pair("b", "c")["minimum"].get<double>() == Approx(4e-3));
+    CHECK_FALSE(met.pair("a", "c").contains("minimum"));  // nothing is required of these
+    CHECK_FALSE(met.json().contains("minimum"));
+    CHECK(run("validate " + file).says("; required 0.3 mm: clear"));
+    CHECK(run("validate " + file).says("at the minima that it states: clear"));
+    // The command line goes before them; a certificate that states none is judged by that alone.
+    CHECK(run("validate " + file + " --minimum 0.6mm").code == 1);
+    auto older = nlohmann::ordered_json::parse(contents(file));
+    for (auto& pair : older["pairs"]) pair.erase("minimum");
+    folder.write("fit.certificate.json", older.dump());
+    CHECK(run("validate " + file + " --json").code == 0);
+    CHECK_FALSE(run("validate " + file + " --json").json().contains("judgement"));
+
+    const DesignFolder tight = folder_of("0.6");
+    run("clearance " + tight.design() + " --pairs a:b,b:c --certificate " + tight.file("fit.certificate.json"));
+    const Answer violated = run("validate " + tight.file("fit.certificate.json") + " --json");
+    CHECK(violated.code == 1);
+    CHECK(violated.json()["status"] == "accepted");
+    CHECK(violated.json()["judgement"] == "violated");
+    CHECK(violated.pair("b", "c")["status"] == "clear");
+    // What is not proven is not judged.
+    auto changed = nlohmann::ordered_json::parse(contents(tight.file("fit.certificate.json")));
+    changed["pairs"][0]["lower"] = 1;
+    tight.write("fit.certificate.json", changed.dump());
+    const Answer rejected = run("validate " + tight.file("fit.certificate.json") + " --json");
+    CHECK(rejected.json()["status"] == "rejected");
+    CHECK_FALSE(rejected.json().contains("judgement"));
+    CHECK_FALSE(rejected.json()["pairs"][0].contains("status"));
+}
+
 TEST_CASE("No certificate of a body inside another is accepted") {
     const DesignFolder folder(small_design,
                               scene_of({box_body("block", "static", "30", "[0, 0, 0]"), box_body("ball", "static", "1", "[0, 0, 0]"),

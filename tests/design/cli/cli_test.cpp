@@ -104,6 +104,36 @@ TEST_CASE("clearance: exit codes by status, lengths with units") {
     CHECK(run("clearance " + folder.design() + " --minimum 0.1mm").code == 0);
 }
 
+TEST_CASE("check-resolution: the numbers of what can be simulated, and why the rest cannot") {
+    // A post of eight sides whose corners, with twice the facets, would reach into the block.
+    const DesignFolder folder(R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+        "parameters": [{"name": "size", "value": 10, "lower": 5, "upper": 20}], "set": {"/bodies/block/shape/dimensions/size_y": "= size"},
+        "objective": [{"type": "stroke", "body": "block", "axis": [1, 0, 0]}]})",
+                              R"({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.02, "bodies": [
+        {"name": "post", "type": "static", "rotation": [0, 0, 22.5],
+         "shape": {"part": "cylinder", "dimensions": {"radius": 5, "length": 10}, "counts": {"segments": 8}}},
+        {"name": "block", "density": 1000, "linear_velocity": [1, 0, 0], "position": [10.05, 0, 0],
+         "shape": {"part": "box", "dimensions": {"size_x": 10, "size_y": 10, "size_z": 10}}}]})");
+    const Answer told = run("check-resolution " + folder.design() + " --json");
+    CHECK(told.code == 2);
+    const Json json = told.json();
+    CHECK(json.at("status") == "undecided");
+    CHECK(json.at("message") == "not simulated: with twice the facets, with both");
+    const Json& stroke = json.at("quantities").at(0);
+    CHECK(stroke.at("as_written").get<double>() == Approx(2e-5));
+    CHECK(stroke.at("finer_steps").get<double>() == Approx(2e-5));
+    CHECK(stroke.at("finer_facets").is_null());
+    CHECK(stroke.at("change").is_null());
+    REQUIRE(json.at("failures").size() == 2);
+    CHECK(json.at("failures").at(1).at("run") == "finer_both");
+    CHECK(json.at("failures").at(1).at("reason").get<std::string>().find("post") != std::string::npos);
+    const Answer text = run("check-resolution " + folder.design());
+    CHECK(text.code == 2);
+    CHECK(text.says("stroke block [mm]"));
+    CHECK(text.says("not simulated with twice the facets: "));
+    CHECK(text.says("undecided: not all could be simulated"));
+}
+
 TEST_CASE("relations between parameters, and bounds within which no part can be made, are told without a simulation's results") {
     const std::string relation =
         R"x("constraints": [ { "type": "relation", "name": "flat", "expression": "height / width", "upper": 0.45, "margin": 0 },)x";

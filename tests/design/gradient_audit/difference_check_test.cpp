@@ -146,6 +146,39 @@ TEST_CASE("check: a kink is named, with the slopes of both sides") {
     CHECK(report.rows[1].relative_error < 1e-6);
 }
 
+TEST_CASE("check: what was measured before a simulation fails counts as far as it is good enough, and the rest is not checked") {
+    const auto wave = [](double size, double frequency) {  // small, so that gradients hold over the usual step
+        return std::make_shared<OfDensities>(
+            [=](const VectorX& u) { return size * std::sin(frequency * u[0]); },
+            [=](const VectorX& u) { return VectorX::Constant(1, size * frequency * std::cos(frequency * u[0])); });
+    };
+    // Steps of 1, 1/4, 1/16 kg/m^3 are simulated, smaller ones are not: enough for the slow wave, not for the fast one.
+    const auto check_of = [&](const std::vector<std::shared_ptr<OfDensities>>& quantities) {
+        description::Design design = density_problem(1, quantities).design();
+        design.relations.push_back({.name = "defined", .at = [](const VectorX& p) {
+                                        const double away = std::abs(p[0] - 1000);
+                                        return description::RelationValue{away > 0 && away < 0.05 ? std::nan("") : 0, VectorX::Zero(1)};
+                                    }});
+        const auto problem = DesignProblem::create(std::move(design));
+        REQUIRE(problem);
+        const VectorX p = values_of(problem->design().parameters);
+        const DesignEvaluation at = problem->evaluate(p);
+        REQUIRE(at.usable);
+        return check_gradients(*problem, p, at);
+    };
+    const CheckReport slow = check_of({wave(0.01, 200)});
+    CHECK(slow.failures.empty());
+    REQUIRE(slow.rows.size() == 1);
+    CHECK(slow.rows[0].relative_error < 1e-5);
+    CHECK(slow.rows[0].difference_error < 1e-5);
+    const CheckReport both = check_of({wave(0.01, 200), wave(5e-8, 2000)});
+    INFO("first step " << both.first_step << ", roughness measured " << both.roughness.measured);
+    REQUIRE(both.rows.size() == 1);
+    CHECK(both.rows[0].quantity == "objective");
+    REQUIRE(both.failures.size() == 1);
+    CHECK(both.failures[0].find("relation `defined`") != std::string::npos);
+}
+
 TEST_CASE("check: along the gradient, the remainder's slope tells a right gradient from a wrong one") {
     for (const double factor : {1.0, 1.001}) {
         const auto value = [](const VectorX& u) { return std::exp(2 * u[0]) + 0.5 * u[0] * u[1]; };

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/design/gradient_audit/sweep_agreement.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
@@ -105,6 +106,34 @@ TEST_CASE("scenarios: each is the design with that setting, value for value and 
     CHECK(at.violation == std::max({each[0].violation, each[1].violation, each[2].violation}));
     CHECK(at.constraint_branches.of.size() ==
           each[0].constraint_branches.of.size() + each[1].constraint_branches.of.size() + each[2].constraint_branches.of.size());
+}
+
+TEST_CASE("scenarios: a mass counts once where what they set changes no part, variables of loads included") {
+    const DesignFolder folder(R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+        "parameters": [{"name": "width", "value": 10, "lower": 8, "upper": 12}, {"name": "v", "value": 1, "lower": 0, "upper": 2, "unit": "mm/s"}],
+        "scenarios": [{"name": "free"}, {"name": "pushed", "set": {SET}}],
+        "objective": [{"type": "mass", "bodies": ["stone"]}],
+        "constraints": [{"type": "mass", "bodies": ["stone"], "upper": 4},
+                        {"type": "stroke", "body": "stone", "axis": [1, 0, 0], "upper": 30}]})",
+                              R"({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.05,
+        "variables": {"v": "1mm/s", "width": "10mm", "length": "20mm", "push": "0 N", "half": "= length / 2"},
+        "bodies": [{"name": "stone", "density": 1000, "linear_velocity": ["= v", 0, 0], "position": ["= half", 0, 0],
+                    "shape": {"part": "box", "dimensions": {"size_x": "= length", "size_y": "= width"}}}],
+        "loads": [{"name": "push", "body": "stone", "point": ["= half", 0, 0], "force": ["= push + 0.001 N", 0, 0]}]})");
+    const auto counted = [&](const std::string& set) {
+        auto text = core::files::read_file(folder.design());
+        REQUIRE(text);
+        const auto file = reading::parse_design(fettle::tests::design_support::replaced(*text, "SET", set), folder.design());
+        for (const Error& error : file.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
+        REQUIRE(file);
+        return std::pair(file->design.objective.size(), file->design.constraints.size());
+    };
+    const auto once = std::pair<std::size_t, std::size_t>(1, 3), twice = std::pair<std::size_t, std::size_t>(2, 4);
+    CHECK(counted(R"("/gravity": [1, 0, 0])") == once);
+    CHECK(counted(R"("/variables/push": "1 N", "/bodies/stone/linear_velocity": [3, 0, 0])") == once);
+    CHECK(counted(R"("/variables/length": "21mm")") == twice);
+    CHECK(counted(R"("/variables/half": "= 10mm + 0 * width")") == twice);  // here the same place, elsewhere by another formula
+    CHECK(counted(R"("/variables/push": "1 N", "/bodies/stone/density": 900)") == twice);
 }
 
 TEST_CASE("scenarios: one that sets nothing is the design without, bit for bit; and so for any number of threads") {

@@ -38,7 +38,9 @@ TEST_CASE("resolution: facets change what they make, and the time step what fall
     const Folder folder;
     const auto report = check_resolution(folder.path(), {});
     REQUIRE(report);
-    CHECK(report->failure.empty());
+    CHECK(report->is_complete());
+    CHECK_FALSE(report->friction_lags);
+    CHECK(report->runs.size() == 4);
     CHECK(report->fixed_meshes == std::vector<std::string>{"block"});
     REQUIRE(report->quantities.size() == 2);
     // A polygon round a circle: area n r^2 tan(pi / n).
@@ -68,7 +70,31 @@ TEST_CASE("resolution: scenarios are refined too, and contact is that of the des
     CHECK(report->quantities[2].finer_both == Approx(9.81 * 0.2 * 0.21 / 2).epsilon(1e-6));
 }
 
-TEST_CASE("resolution: what cannot be measured says which") {
+TEST_CASE("resolution: a run that fails is named, and the others have their numbers") {
+    const Folder folder;
+    ResolutionOptions options;
+    int runs = 0;
+    options.on_variant = [&](const std::string&) {
+        if (++runs == 4) folder.write("post.scene.json", "{}");
+    };
+    const auto report = check_resolution(folder.path(), {}, options);
+    REQUIRE(report);
+    CHECK_FALSE(report->is_complete());
+    CHECK_FALSE(report->interrupted);
+    REQUIRE(report->runs.size() == 4);
+    CHECK(report->runs[3].name == "with both");
+    CHECK_FALSE(report->runs[3].failure.empty());
+    for (int k = 0; k < 3; ++k) CHECK(report->runs[k].failure.empty());
+    for (const ResolvedQuantity& quantity : report->quantities) {
+        CHECK(std::isfinite(quantity.as_written));
+        CHECK(std::isfinite(quantity.finer_facets));
+        CHECK(std::isfinite(quantity.finer_steps));
+        CHECK(std::isnan(quantity.finer_both));
+        CHECK(std::isnan(quantity.change()));
+    }
+}
+
+TEST_CASE("resolution: what is interrupted says where, and a design that cannot be read is an error") {
     const Folder folder;
     ResolutionOptions options;
     int asked = 0;
@@ -76,8 +102,47 @@ TEST_CASE("resolution: what cannot be measured says which") {
     const auto stopped = check_resolution(folder.path(), {}, options);
     REQUIRE(stopped);
     CHECK(stopped->interrupted);
-    CHECK(stopped->failure.starts_with("as written: "));
+    REQUIRE(stopped->runs.size() == 4);
+    CHECK(stopped->runs[0].failure != "not begun");
+    CHECK(stopped->runs[1].failure == "not begun");
+    CHECK_FALSE(stopped->is_complete());
     CHECK_FALSE(check_resolution(folder.file("none.design.json"), {}));
+}
+
+TEST_CASE("resolution: friction that lags is settled too") {
+    // A block that is thrown onto a floor slides: its normal force changes from step to step.
+    const char* const scene = R"({"fettle_scene": 1, "units": "mm", "gravity": [0, 0, -9.81], "timestep": 0.005, "end_time": 0.1,
+        "integrator": "implicit_euler", "friction": {"mu": MU, "rounds": ROUNDS},
+        "bodies": [
+          {"name": "floor", "type": "static", "position": [0, 0, -5],
+           "shape": {"part": "box", "dimensions": {"size_x": 200, "size_y": 50, "size_z": 10}}},
+          {"name": "block", "density": 1000, "linear_velocity": [500, 0, -200], "position": [0, 0, 7],
+           "shape": {"part": "box", "dimensions": {"size_x": 10, "size_y": 10, "size_z": 10}}}]})";
+    const char* const design = R"({"fettle_design": 1, "scene": "post.scene.json", "units": "mm",
+        "parameters": [{"name": "size", "value": 10, "lower": 5, "upper": 20}],
+        "set": {"/bodies/block/shape/dimensions/size_y": "= size"},
+        "objective": [{"type": "stroke", "body": "block", "axis": [1, 0, 0]}]})";
+    const auto of = [&](const std::string& mu, const std::string& rounds) {
+        Folder folder;
+        std::string text = scene;
+        text.replace(text.find("MU"), 2, mu).replace(text.find("ROUNDS"), 6, rounds);
+        folder.write("post.scene.json", text);
+        folder.write("post.design.json", design);
+        return check_resolution(folder.path(), {});
+    };
+    const auto lagging = of("0.3", "1"), settled = of("0.3", "\"converged\""), without = of("0", "1");
+    REQUIRE(lagging);
+    REQUIRE(settled);
+    REQUIRE(without);
+    CHECK(lagging->is_complete());
+    CHECK(lagging->friction_lags);
+    REQUIRE(lagging->runs.size() == 5);
+    CHECK(lagging->runs[4].name == "with settled friction");
+    CHECK(lagging->quantities[0].change_by_friction() > 1e-3);
+    CHECK(lagging->quantities[0].settled_friction == settled->quantities[0].as_written);
+    CHECK_FALSE(settled->friction_lags);
+    CHECK(settled->runs.size() == 4);
+    CHECK_FALSE(without->friction_lags);
 }
 
 }  // namespace fettle::design::studies::resolution_test
