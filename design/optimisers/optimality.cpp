@@ -18,7 +18,7 @@ constexpr double smallest_radius = 3e-4;  // below it a gain is one of microns: 
 constexpr int most_probes = 5;
 constexpr double near = 0.3;  // evaluations within this distance tell of the curvature
 constexpr double exact_penalty = 1e3;
-constexpr int most_looks_aside = 2, most_steps_aside = 3;
+constexpr int most_looks_aside = 2, most_steps_aside = 3, most_restorations = 2;
 constexpr double least_margin = 0.05, most_margin = 0.25;  // shares that the verdict keeps to; the second where the first was missed
 constexpr int noise_values = 7;
 constexpr double noise_spacing = 1e-3;
@@ -66,6 +66,7 @@ public:
         moved = false;
         try {
             moved = gains();
+            if (!moved) look_for_margin();
             result_.judged = !moved && now_.solution.solved && measure_noise();
         } catch (const StopOptimisation&) {  // what was found so far stands, as not judged
         }
@@ -109,9 +110,7 @@ private:
             const Evaluation& seen = evaluator_.at(point_ + now_.solution.step);
             result_.refused = seen.usable ? std::string() : seen.reason;
             if (!seen.usable) refused = now_;
-            if (seen.usable && seen.violation > 0) margin_ = std::max(margin_, most_margin);
-            if (evaluator_.best_point() != before && at_.objective - evaluator_.best_scaled_evaluation().objective > 0.5 * worth_)
-                return true;
+            if (gained() || restores(point_ + now_.solution.step)) return true;
             if (evaluator_.best_point() != before) {  // hardly better: judged from there all the same
                 point_ = evaluator_.best_scaled_point();
                 at_ = evaluator_.best_scaled_evaluation();
@@ -131,6 +130,49 @@ private:
         now_.solution = best_step(evaluator_, point_, at_, &rest.matrix(), radius, exact_penalty);
         if (!now_.solution.solved) return;
         now_.gain = predicted_gain(at_, rest.matrix(), now_.solution);
+    }
+
+    bool gained() const { return at_.objective - evaluator_.best_scaled_evaluation().objective > 0.5 * worth_; }
+
+    // Requirements curve: a step that keeps them to first order misses them a little. From such a probe, the shortest way back to what is
+    // aimed at, as long as that promises a gain. What is missed although the values meet it, or after such a way back, needs more margin.
+    // @return whether what was found became the best point.
+    bool restores(VectorX there) {
+        for (int step = 0;; ++step) {
+            const Evaluation& seen = evaluator_.at(there);
+            const double missed = seen.usable ? evaluator_.missed_margins(seen.constraints) : 0;
+            if (!seen.usable || !(seen.violation > 0) || missed > 1) return false;
+            if (missed == 0 || step > 0) margin_ = std::max(margin_, most_margin);
+            if (step == most_restorations) return false;
+            evaluator_.keep_margin(margin_, at_.constraints);
+            const Evaluation telling = with_telling_derivatives(evaluator_, there, seen);
+            const QuadraticSolution back = restoring_step(evaluator_, there, telling, now_.radius, exact_penalty);
+            if (!back.solved || !(at_.objective - (seen.objective + telling.gradient.dot(back.step)) > worth_)) return false;
+            there = (there + back.step).cwiseMax(0).cwiseMin(1);
+            if (!evaluator_.refusal(there).empty()) return false;
+            evaluator_.at(there);
+            if (gained()) return true;
+        }
+    }
+
+    // A step that has been shortened until it promises no gain does not tell that there is none: what holds the design may be the margin
+    // that is left, and not the requirement. Then the last word has the step that gives the margin up.
+    void look_for_margin() {
+        if (!now_.solution.solved || now_.gain > worth_ || now_.radius == first_radius) return;
+        const Look last = now_;
+        look(first_radius);
+        if (!now_.solution.solved || now_.gain <= worth_ || margin_worth() <= worth_) now_ = last;
+    }
+
+    // To first order, what the best point's distance from what its step aims at and reaches is worth.
+    double margin_worth() const {
+        const VectorX y = whole_multipliers(now_.solution);
+        double sum = 0;
+        for (Eigen::Index i = 0; i < y.size(); ++i) {
+            const double aim = y[i] > 0 ? evaluator_.scaled_constraint_lower()[i] : evaluator_.scaled_constraint_upper()[i];
+            if (std::isfinite(aim)) sum += y[i] * (at_.constraints[i] - aim);
+        }
+        return sum;
     }
 
     // What the step keeps, to first order: a row each.
@@ -173,7 +215,7 @@ private:
             for (int step = 0; step < most_steps_aside; ++step) {
                 if (!evaluator_.refusal(there).empty()) break;
                 const Evaluation& seen = evaluator_.at(there);
-                if (at_.objective - evaluator_.best_scaled_evaluation().objective > 0.5 * worth_) return true;
+                if (gained()) return true;
                 if (!seen.usable) break;
                 const Evaluation told = with_telling_derivatives(evaluator_, there, seen);
                 const RestCurvature rest = curvature_near(evaluator_, there, told, smooth_multipliers(now_.solution));
