@@ -22,6 +22,7 @@ constexpr int most_looks_aside = 2, most_steps_aside = 3, most_restorations = 2;
 constexpr double least_margin = 0.05, most_margin = 0.25;  // shares that the verdict keeps to; the second where the first was missed
 constexpr int noise_values = 7;
 constexpr double noise_spacing = 1e-3;
+constexpr double near_bound = 1e-6;    // of a range: an optimiser's steps end so near to a bound at which they end
 constexpr double telling_share = 0.1;  // of a gain, below which a variable is not named; of a gradient, below which a constraint is not
 
 // From the evaluations next to the best one, the farthest first.
@@ -263,13 +264,30 @@ private:
         return true;
     }
 
+    // Those that the last step's length holds, or where that holds none, those that gain, the largest gain first; none where the step's
+    // gain does not count.
+    std::vector<int> improvable() const {
+        if (now_.gain <= worth_) return {};
+        VectorX share = (now_.solution.box_multipliers.cwiseProduct(now_.solution.step)).cwiseAbs();
+        if (share.sum() < telling_share * now_.gain) share = (at_.gradient.cwiseProduct(now_.solution.step)).cwiseAbs();
+        std::vector<int> order(share.size()), found;
+        std::iota(order.begin(), order.end(), 0);
+        std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share[a] > share[b]; });
+        for (const int k : order)
+            if (share[k] > telling_share * share.maxCoeff() || found.empty()) found.push_back(k);
+        return found;
+    }
+
+    // The one answer to what holds a variable: nothing does what could still move.
     Held what_holds(Eigen::Index k) const {
+        const std::vector<int> moving = improvable();
+        if (std::find(moving.begin(), moving.end(), static_cast<int>(k)) != moving.end()) return Held::free;
         const double z = now_.solution.box_multipliers[k], d = now_.solution.step[k];
-        const bool at_lower = point_[k] + d <= 1e-9, at_upper = point_[k] + d >= 1 - 1e-9;
+        const bool at_lower = point_[k] + d <= near_bound, at_upper = point_[k] + d >= 1 - near_bound;
         const double size = std::max({std::abs(at_.gradient[k]), 1e-12});
         if (std::abs(z) > 1e-6 + telling_share * size && (z > 0 ? at_lower : at_upper))
             return z > 0 ? Held::lower_bound : Held::upper_bound;
-        if (std::abs(d) >= now_.radius * (1 - 1e-6) && now_.gain > worth_) return Held::free;
+        if (std::abs(d) >= now_.radius * (1 - 1e-3) && now_.gain > worth_) return Held::free;
         for (Eigen::Index i = 0; i < now_.solution.multipliers.size(); ++i)
             if (std::abs(now_.solution.multipliers[i] * at_.jacobian(i, k)) > telling_share * size) return Held::constraints;
         for (Eigen::Index j = 0; j < now_.solution.cut_multipliers.size() && now_.solution.cut_of[j] >= 0; ++j)
@@ -294,13 +312,7 @@ private:
             const Held held = result_.held[k];
             if (held != Held::lower_bound && held != Held::upper_bound) result_.residual[k] = now_.solution.box_multipliers[k] / f;
         }
-        if (now_.gain <= worth_) return;
-        const VectorX share = (now_.solution.box_multipliers.cwiseProduct(now_.solution.step)).cwiseAbs();
-        std::vector<int> order(n);
-        std::iota(order.begin(), order.end(), 0);
-        std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share[a] > share[b]; });
-        for (const int k : order)
-            if (share[k] > telling_share * share.maxCoeff() || result_.improvable.empty()) result_.improvable.push_back(k);
+        result_.improvable = improvable();
     }
 
     Evaluator& evaluator_;
@@ -329,6 +341,14 @@ const char* to_string(Held held) {
             return "nothing";
     }
     return "unknown";
+}
+
+std::string words(const Optimality& o) {
+    if (!o.improvable.empty() && o.refused.empty()) return "a change near by still promises a gain above the tolerance";
+    if (!o.improvable.empty()) return "a change near by promises a gain above the tolerance, but designs there cannot be evaluated";
+    if (!o.judged) return "whether a better design is near could not be judged";
+    if (o.roughest >= 0) return "simulated values scatter by more than the tolerance";
+    return "no change near by promises a gain above the tolerance";
 }
 
 double least_gain(const Evaluator& evaluator, const OptimiserOptions& options, double scaled_objective) {

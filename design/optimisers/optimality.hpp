@@ -36,7 +36,7 @@ struct Optimality {
     VectorX step;               ///< n, in the variables' units
     VectorX multipliers;     ///< m: objective per unit of the bound, > 0: raising the lower bound costs, < 0: lowering the upper one does
     VectorX residual;        ///< n: objective per range that neither bounds nor constraints hold
-    std::vector<Held> held;  ///< n
+    std::vector<Held> held;  ///< n; free: all of `improvable`, and what else only the length of the last step holds
     std::string refused;     ///< why the designs that this step leads to cannot be evaluated; empty: they can, or it promises nothing
     std::vector<int> improvable;    ///< variables that could still move, largest gain first; empty where the predicted gain does not count
     VectorX noise;                  ///< 1 + m: of objective and constraints; empty: not measured
@@ -45,6 +45,9 @@ struct Optimality {
 
     bool is_optimal() const { return judged && improvable.empty() && roughest < 0; }
 };
+
+/// The verdict in a few words, for people.
+std::string words(const Optimality& optimality);
 
 /// Judges the evaluator's best point, which is feasible; evaluates probes and noise as needed.
 /// @param moved  Set where a probe became the new best: the run can go on from it.

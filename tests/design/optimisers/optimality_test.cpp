@@ -81,6 +81,8 @@ TEST_CASE("where what promises a gain cannot be evaluated, nothing is called opt
         CHECK(report.optimality.predicted_gain > report.optimality.worth);
         const std::vector<int>& improvable = report.optimality.improvable;
         CHECK(std::find(improvable.begin(), improvable.end(), 0) != improvable.end());
+        for (const int k : improvable) CHECK(report.optimality.held[k] == Held::free);
+        CHECK(report.message.find("no change near by promises") == std::string::npos);
         if (name == "mma" || name == "cobyla") continue;  // may still gain when their rounds end
         CHECK(report.point[0] == Approx(0.3).margin(0.02));
         CHECK(report.optimality.refused == "too thin");
@@ -288,6 +290,36 @@ TEST_CASE("where a requirement curves, a design with gain in its margin is not c
             }
         }
     }
+}
+
+TEST_CASE("a variable at its bound, but for rounding, is held by it") {
+    // x0 moves the requirement that holds x1, too.
+    Problem p;
+    p.start = Vector2(1 - 5e-9, 0.5);
+    p.lower = Vector2(0, 0);
+    p.upper = Vector2(1, 1);
+    p.constraint_lower = VectorX::Constant(1, 0.49);
+    p.constraint_upper = VectorX::Constant(1, infinity);
+    p.evaluate = [](const VectorX& x) {
+        Evaluation e;
+        e.usable = true;
+        e.objective = 1 + x[1] - 0.02 * x[0];
+        e.gradient = Vector2(-0.02, 1);
+        e.constraints = VectorX::Constant(1, x[1] - 0.01 * x[0]);
+        e.jacobian = Vector2(-0.01, 1).transpose();
+        e.violation = std::max(0.0, 0.49 - 1e-7 - e.constraints[0]);
+        return e;
+    };
+    const OptimiserReport report = optimise(p, Idle(), usual(40));
+    CHECK(report.status == OptimiserStatus::optimal);
+    CHECK(report.optimality.held[0] == Held::upper_bound);
+    CHECK(report.optimality.held[1] == Held::constraints);
+    CHECK(report.optimality.residual[0] == 0);
+    // On its way there it could still move, and nothing holds it.
+    p.start[0] = 0.95;
+    const OptimiserReport before = optimise(p, Idle(), usual(1));
+    REQUIRE(before.optimality.improvable == std::vector<int>{0});
+    CHECK(before.optimality.held[0] == Held::free);
 }
 
 TEST_CASE("a saddle is left: what is symmetric is not yet optimal") {
