@@ -149,7 +149,7 @@ std::string why_not_optimal(const Design& design, const OptimiseOutcome& outcome
     if (report.budget_spent)
         reasons.emplace_back("the budget of evaluations (`max_evaluations`) ended the search");
     else if (!o.judged && o.improvable.empty())
-        reasons.emplace_back("whether a better design is near could not be judged");
+        reasons.push_back(optimisers::words(o));
     if (!o.improvable.empty()) {
         const std::string share = size > 0 ? formatted(", %.2g%% of it", 100 * o.predicted_gain / size) : "";
         reasons.push_back(formatted("a change is still in sight that promises to lower %s by %.3g%s (the tolerance is %.3g)",

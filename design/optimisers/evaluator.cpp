@@ -147,6 +147,19 @@ void Evaluator::keep_margin(double share, const VectorX& scaled_constraints) {
     scaled_constraint_upper_ = scaled_constraint_upper_.cwiseMax(upper);
 }
 
+double Evaluator::missed_margins(const VectorX& scaled_constraints) const {
+    double largest = 0;
+    for (int i = 0; i < constraints(); ++i) {
+        const double value = scaled_constraints[i] / constraint_scale_[i];
+        const Eigen::Index relation = i - problem_.constraint_lower.size();
+        const double lower = relation < 0 ? problem_.constraint_lower[i] : problem_.relation_lower[relation];
+        const double upper = relation < 0 ? problem_.constraint_upper[i] : problem_.relation_upper[relation];
+        const double missed = std::max(lower - margin_[i] - value, value - upper - margin_[i]);
+        if (missed > 0) largest = std::max(largest, missed / margin_[i]);
+    }
+    return largest;
+}
+
 VectorX Evaluator::unscaled(const VectorX& scaled_point) const {
     // The start is answered exactly: lower + (start - lower) / range * range can differ from it in the last bit.
     if (scaled_point == scaled_start_) return problem_.start;

@@ -76,6 +76,9 @@ public:
     void keep_margin(double share);
     void keep_margin(double share, const VectorX& scaled_constraints);
     double margin_share() const { return margin_share_; }
+    /// The largest miss of a bound proper by these constraints (scaled), in its margin: 0: none; infinite: one that has no margin is
+    /// missed.
+    double missed_margins(const VectorX& scaled_constraints) const;
 
     const VectorX& scaled_start() const { return scaled_start_; }
     /// What is aimed at, relations too.

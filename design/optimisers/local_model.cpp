@@ -168,6 +168,16 @@ QuadraticSolution best_step(const Evaluator& evaluator, const VectorX& point, co
     return solve(program);
 }
 
+QuadraticSolution restoring_step(const Evaluator& evaluator, const VectorX& point, const Evaluation& e, double radius, double penalty) {
+    Evaluation shortest = e;
+    shortest.gradient.setZero();
+    // In units of what is missed: steps are solved to 1e-9 of numbers of order one.
+    const double missed = std::max(target_violation(evaluator, e), 1e-9);
+    shortest.residual_jacobian = MatrixX::Identity(point.size(), point.size()) / std::sqrt(missed);
+    shortest.objective_branches = {};
+    return best_step(evaluator, point, shortest, nullptr, radius, penalty);
+}
+
 double target_violation(const Evaluator& evaluator, const Evaluation& e) {
     return row_violation(e.constraints, evaluator.scaled_constraint_lower(), evaluator.scaled_constraint_upper());
 }

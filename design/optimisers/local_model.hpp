@@ -38,6 +38,10 @@ VectorX whole_multipliers(const QuadraticSolution& solution);
 QuadraticSolution best_step(const Evaluator& evaluator, const VectorX& point, const Evaluation& e, const MatrixX* rest, double radius,
                             double penalty);
 
+/// The shortest step from a scaled point to where the rows, as linearised there, meet what is aimed at; within |d_k| <= radius and the
+/// bounds. Its `decrease` means nothing.
+QuadraticSolution restoring_step(const Evaluator& evaluator, const VectorX& point, const Evaluation& e, double radius, double penalty);
+
 /// The evaluation at a scaled point with, row by row (residuals, constraints), those derivatives that predict the values at the other
 /// points near it better: its own, or those of the smoother model (EvaluatorOptions::reference). A rough function's own derivatives hold
 /// over microns. With no other point to compare, the smoother model's.

@@ -18,10 +18,11 @@ constexpr double smallest_radius = 3e-4;  // below it a gain is one of microns: 
 constexpr int most_probes = 5;
 constexpr double near = 0.3;  // evaluations within this distance tell of the curvature
 constexpr double exact_penalty = 1e3;
-constexpr int most_looks_aside = 2, most_steps_aside = 3;
+constexpr int most_looks_aside = 2, most_steps_aside = 3, most_restorations = 2;
 constexpr double least_margin = 0.05, most_margin = 0.25;  // shares that the verdict keeps to; the second where the first was missed
 constexpr int noise_values = 7;
 constexpr double noise_spacing = 1e-3;
+constexpr double near_bound = 1e-6;    // of a range: an optimiser's steps end so near to a bound at which they end
 constexpr double telling_share = 0.1;  // of a gain, below which a variable is not named; of a gradient, below which a constraint is not
 
 // From the evaluations next to the best one, the farthest first.
@@ -66,6 +67,7 @@ public:
         moved = false;
         try {
             moved = gains();
+            if (!moved) look_for_margin();
             result_.judged = !moved && now_.solution.solved && measure_noise();
         } catch (const StopOptimisation&) {  // what was found so far stands, as not judged
         }
@@ -109,9 +111,7 @@ private:
             const Evaluation& seen = evaluator_.at(point_ + now_.solution.step);
             result_.refused = seen.usable ? std::string() : seen.reason;
             if (!seen.usable) refused = now_;
-            if (seen.usable && seen.violation > 0) margin_ = std::max(margin_, most_margin);
-            if (evaluator_.best_point() != before && at_.objective - evaluator_.best_scaled_evaluation().objective > 0.5 * worth_)
-                return true;
+            if (gained() || restores(point_ + now_.solution.step)) return true;
             if (evaluator_.best_point() != before) {  // hardly better: judged from there all the same
                 point_ = evaluator_.best_scaled_point();
                 at_ = evaluator_.best_scaled_evaluation();
@@ -131,6 +131,49 @@ private:
         now_.solution = best_step(evaluator_, point_, at_, &rest.matrix(), radius, exact_penalty);
         if (!now_.solution.solved) return;
         now_.gain = predicted_gain(at_, rest.matrix(), now_.solution);
+    }
+
+    bool gained() const { return at_.objective - evaluator_.best_scaled_evaluation().objective > 0.5 * worth_; }
+
+    // Requirements curve: a step that keeps them to first order misses them a little. From such a probe, the shortest way back to what is
+    // aimed at, as long as that promises a gain. What is missed although the values meet it, or after such a way back, needs more margin.
+    // @return whether what was found became the best point.
+    bool restores(VectorX there) {
+        for (int step = 0;; ++step) {
+            const Evaluation& seen = evaluator_.at(there);
+            const double missed = seen.usable ? evaluator_.missed_margins(seen.constraints) : 0;
+            if (!seen.usable || !(seen.violation > 0) || missed > 1) return false;
+            if (missed == 0 || step > 0) margin_ = std::max(margin_, most_margin);
+            if (step == most_restorations) return false;
+            evaluator_.keep_margin(margin_, at_.constraints);
+            const Evaluation telling = with_telling_derivatives(evaluator_, there, seen);
+            const QuadraticSolution back = restoring_step(evaluator_, there, telling, now_.radius, exact_penalty);
+            if (!back.solved || !(at_.objective - (seen.objective + telling.gradient.dot(back.step)) > worth_)) return false;
+            there = (there + back.step).cwiseMax(0).cwiseMin(1);
+            if (!evaluator_.refusal(there).empty()) return false;
+            evaluator_.at(there);
+            if (gained()) return true;
+        }
+    }
+
+    // A step that has been shortened until it promises no gain does not tell that there is none: what holds the design may be the margin
+    // that is left, and not the requirement. Then the last word has the step that gives the margin up.
+    void look_for_margin() {
+        if (!now_.solution.solved || now_.gain > worth_ || now_.radius == first_radius) return;
+        const Look last = now_;
+        look(first_radius);
+        if (!now_.solution.solved || now_.gain <= worth_ || margin_worth() <= worth_) now_ = last;
+    }
+
+    // To first order, what the best point's distance from what its step aims at and reaches is worth.
+    double margin_worth() const {
+        const VectorX y = whole_multipliers(now_.solution);
+        double sum = 0;
+        for (Eigen::Index i = 0; i < y.size(); ++i) {
+            const double aim = y[i] > 0 ? evaluator_.scaled_constraint_lower()[i] : evaluator_.scaled_constraint_upper()[i];
+            if (std::isfinite(aim)) sum += y[i] * (at_.constraints[i] - aim);
+        }
+        return sum;
     }
 
     // What the step keeps, to first order: a row each.
@@ -173,7 +216,7 @@ private:
             for (int step = 0; step < most_steps_aside; ++step) {
                 if (!evaluator_.refusal(there).empty()) break;
                 const Evaluation& seen = evaluator_.at(there);
-                if (at_.objective - evaluator_.best_scaled_evaluation().objective > 0.5 * worth_) return true;
+                if (gained()) return true;
                 if (!seen.usable) break;
                 const Evaluation told = with_telling_derivatives(evaluator_, there, seen);
                 const RestCurvature rest = curvature_near(evaluator_, there, told, smooth_multipliers(now_.solution));
@@ -221,13 +264,30 @@ private:
         return true;
     }
 
+    // Those that the last step's length holds, or where that holds none, those that gain, the largest gain first; none where the step's
+    // gain does not count.
+    std::vector<int> improvable() const {
+        if (now_.gain <= worth_) return {};
+        VectorX share = (now_.solution.box_multipliers.cwiseProduct(now_.solution.step)).cwiseAbs();
+        if (share.sum() < telling_share * now_.gain) share = (at_.gradient.cwiseProduct(now_.solution.step)).cwiseAbs();
+        std::vector<int> order(share.size()), found;
+        std::iota(order.begin(), order.end(), 0);
+        std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share[a] > share[b]; });
+        for (const int k : order)
+            if (share[k] > telling_share * share.maxCoeff() || found.empty()) found.push_back(k);
+        return found;
+    }
+
+    // The one answer to what holds a variable: nothing does what could still move.
     Held what_holds(Eigen::Index k) const {
+        const std::vector<int> moving = improvable();
+        if (std::find(moving.begin(), moving.end(), static_cast<int>(k)) != moving.end()) return Held::free;
         const double z = now_.solution.box_multipliers[k], d = now_.solution.step[k];
-        const bool at_lower = point_[k] + d <= 1e-9, at_upper = point_[k] + d >= 1 - 1e-9;
+        const bool at_lower = point_[k] + d <= near_bound, at_upper = point_[k] + d >= 1 - near_bound;
         const double size = std::max({std::abs(at_.gradient[k]), 1e-12});
         if (std::abs(z) > 1e-6 + telling_share * size && (z > 0 ? at_lower : at_upper))
             return z > 0 ? Held::lower_bound : Held::upper_bound;
-        if (std::abs(d) >= now_.radius * (1 - 1e-6) && now_.gain > worth_) return Held::free;
+        if (std::abs(d) >= now_.radius * (1 - 1e-3) && now_.gain > worth_) return Held::free;
         for (Eigen::Index i = 0; i < now_.solution.multipliers.size(); ++i)
             if (std::abs(now_.solution.multipliers[i] * at_.jacobian(i, k)) > telling_share * size) return Held::constraints;
         for (Eigen::Index j = 0; j < now_.solution.cut_multipliers.size() && now_.solution.cut_of[j] >= 0; ++j)
@@ -252,13 +312,7 @@ private:
             const Held held = result_.held[k];
             if (held != Held::lower_bound && held != Held::upper_bound) result_.residual[k] = now_.solution.box_multipliers[k] / f;
         }
-        if (now_.gain <= worth_) return;
-        const VectorX share = (now_.solution.box_multipliers.cwiseProduct(now_.solution.step)).cwiseAbs();
-        std::vector<int> order(n);
-        std::iota(order.begin(), order.end(), 0);
-        std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return share[a] > share[b]; });
-        for (const int k : order)
-            if (share[k] > telling_share * share.maxCoeff() || result_.improvable.empty()) result_.improvable.push_back(k);
+        result_.improvable = improvable();
     }
 
     Evaluator& evaluator_;
@@ -287,6 +341,14 @@ const char* to_string(Held held) {
             return "nothing";
     }
     return "unknown";
+}
+
+std::string words(const Optimality& o) {
+    if (!o.improvable.empty() && o.refused.empty()) return "a change near by still promises a gain above the tolerance";
+    if (!o.improvable.empty()) return "a change near by promises a gain above the tolerance, but designs there cannot be evaluated";
+    if (!o.judged) return "whether a better design is near could not be judged";
+    if (o.roughest >= 0) return "simulated values scatter by more than the tolerance";
+    return "no change near by promises a gain above the tolerance";
 }
 
 double least_gain(const Evaluator& evaluator, const OptimiserOptions& options, double scaled_objective) {

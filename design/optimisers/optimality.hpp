@@ -7,12 +7,13 @@
 /// gain that does not teaches the model, and the step is shortened. Where a clearance has several witnesses near its least one, the step
 /// keeps them all, and a term of the objective that is the greatest of several is taken as that: at a kink no single derivative suffices.
 /// The search has kept a margin to what is required. Where nothing is left to gain with it, steps go to within a twentieth of it, or a
-/// quarter where that was missed, and a design that could gain so is not optimal. Where no gain is left to first order, one or two designs
-/// are looked at aside, along what neither requirements nor bounds hold and nothing that was evaluated has told of (unexplored.hpp): a
-/// saddle is left for what is found there. A step that promises a gain and leads to designs that cannot be evaluated, however short it is
-/// made, shows no optimum either: what stands in the way is no requirement that was asked for. Values that scatter by more than the
-/// tolerance (noise.hpp: the objective's own noise, and each constraint's times its multiplier) show no optimum, whatever the derivatives
-/// say.
+/// quarter where that was not enough, and a design that could gain so is not optimal, even if shorter steps promise nothing. A step that
+/// misses a requirement by less than its margin, because requirements curve, is followed by the shortest step back. Where no gain is left
+/// to first order, one or two designs are looked at aside, along what neither requirements nor bounds hold and nothing that was evaluated
+/// has told of (unexplored.hpp): a saddle is left for what is found there. A step that promises a gain and leads to designs that cannot be
+/// evaluated, however short it is made, shows no optimum either: what stands in the way is no requirement that was asked for. Values that
+/// scatter by more than the tolerance (noise.hpp: the objective's own noise, and each constraint's times its multiplier) show no optimum,
+/// whatever the derivatives say.
 #pragma once
 
 #include <string>
@@ -35,7 +36,7 @@ struct Optimality {
     VectorX step;               ///< n, in the variables' units
     VectorX multipliers;     ///< m: objective per unit of the bound, > 0: raising the lower bound costs, < 0: lowering the upper one does
     VectorX residual;        ///< n: objective per range that neither bounds nor constraints hold
-    std::vector<Held> held;  ///< n
+    std::vector<Held> held;  ///< n; free: all of `improvable`, and what else only the length of the last step holds
     std::string refused;     ///< why the designs that this step leads to cannot be evaluated; empty: they can, or it promises nothing
     std::vector<int> improvable;    ///< variables that could still move, largest gain first; empty where the predicted gain does not count
     VectorX noise;                  ///< 1 + m: of objective and constraints; empty: not measured
@@ -44,6 +45,9 @@ struct Optimality {
 
     bool is_optimal() const { return judged && improvable.empty() && roughest < 0; }
 };
+
+/// The verdict in a few words, for people.
+std::string words(const Optimality& optimality);
 
 /// Judges the evaluator's best point, which is feasible; evaluates probes and noise as needed.
 /// @param moved  Set where a probe became the new best: the run can go on from it.

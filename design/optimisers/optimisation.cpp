@@ -294,7 +294,7 @@ private:
         report_.status = !report_.feasible                 ? OptimiserStatus::infeasible
                          : report_.optimality.is_optimal() ? OptimiserStatus::optimal
                                                            : OptimiserStatus::feasible;
-        report_.message = optimiser_.name() + ": " + native;
+        report_.message = optimiser_.name() + ": " + (report_.feasible ? words(report_.optimality) : native);
         if (report_.budget_spent) report_.message = budget_text();
         if (stopped_ != StopReason::interrupted) return;
         report_.status = OptimiserStatus::interrupted;

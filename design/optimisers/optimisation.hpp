@@ -37,7 +37,7 @@ struct StageReport {
 
 struct OptimiserReport {
     OptimiserStatus status = OptimiserStatus::start_failed;
-    std::string message;  ///< for people: what ended it, in the native optimiser's words too
+    std::string message;  ///< for people: of a feasible design the verdict's words, else the native optimiser's; or what else ended the run
     Evaluation start;     ///< of the problem itself, at its start
     VectorX point;        ///< the best design (the start if nothing could be evaluated)
     Evaluation best;

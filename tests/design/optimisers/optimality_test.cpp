@@ -81,6 +81,8 @@ TEST_CASE("where what promises a gain cannot be evaluated, nothing is called opt
         CHECK(report.optimality.predicted_gain > report.optimality.worth);
         const std::vector<int>& improvable = report.optimality.improvable;
         CHECK(std::find(improvable.begin(), improvable.end(), 0) != improvable.end());
+        for (const int k : improvable) CHECK(report.optimality.held[k] == Held::free);
+        CHECK(report.message.find("no change near by promises") == std::string::npos);
         if (name == "mma" || name == "cobyla") continue;  // may still gain when their rounds end
         CHECK(report.point[0] == Approx(0.3).margin(0.02));
         CHECK(report.optimality.refused == "too thin");
@@ -238,6 +240,86 @@ TEST_CASE("where the last of the margin is needed, the verdict keeps a quarter o
     CHECK(report.status == OptimiserStatus::optimal);
     CHECK(report.point[0] >= 0.003);
     CHECK(report.point[0] <= 0.0052);
+}
+
+namespace {
+
+// Minimises 1 + x1 - x0 / 10 where x1 >= curvature x0^2 + slope x0 is required, and `margin` more is aimed at.
+struct Parabola {
+    double curvature, slope, margin;
+
+    double height(double x0) const { return curvature * x0 * x0 + slope * x0; }
+    double least_objective() const { return 1 - std::pow(slope - 0.1, 2) / (4 * curvature); }
+    Problem from(double x0) const {
+        Problem p;
+        p.start = Vector2(x0, height(x0) + 2 * margin);
+        p.lower = Vector2(-1, -3);
+        p.upper = Vector2(1, 5);
+        p.constraint_lower = p.constraint_margin = VectorX::Constant(1, margin);
+        p.constraint_upper = VectorX::Constant(1, infinity);
+        p.evaluate = [*this](const VectorX& x) {
+            Evaluation e;
+            e.usable = true;
+            e.objective = 1 + x[1] - 0.1 * x[0];
+            e.gradient = Vector2(-0.1, 1);
+            e.constraints = VectorX::Constant(1, x[1] - height(x[0]));
+            e.jacobian = Vector2(-2 * curvature * x[0] - slope, 1).transpose();
+            e.violation = std::max(0.0, -e.constraints[0]);
+            return e;
+        };
+        return p;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("where a requirement curves, a design with gain in its margin is not called optimal, and most of the margin is given up") {
+    OptimiserOptions options = usual(60);
+    options.tolerance = 1e-3;
+    for (const Parabola& wall : {Parabola{1, 0, 0.005}, Parabola{10, 0, 0.0005}, Parabola{10, -1, 0.0005}}) {
+        for (const double x0 : {-0.2, -0.05, -0.01, 0.01, 0.1, 0.3}) {
+            for (const bool idle : {true, false}) {
+                const Problem p = wall.from(x0);
+                const OptimiserReport report = idle ? optimise(p, Idle(), options) : run(p, "sqp", options);
+                INFO((idle ? "idle" : "sqp") << ", curvature " << wall.curvature << ", from " << x0 << ": " << report.message << ", "
+                                             << report.evaluations << " evaluations, objective " << report.objective << " for "
+                                             << wall.least_objective());
+                CHECK((idle || report.status == OptimiserStatus::optimal));
+                if (report.status != OptimiserStatus::optimal) continue;
+                CHECK(report.objective <= wall.least_objective() + 0.25 * wall.margin + 5 * options.tolerance);
+            }
+        }
+    }
+}
+
+TEST_CASE("a variable at its bound, but for rounding, is held by it") {
+    // x0 moves the requirement that holds x1, too.
+    Problem p;
+    p.start = Vector2(1 - 5e-9, 0.5);
+    p.lower = Vector2(0, 0);
+    p.upper = Vector2(1, 1);
+    p.constraint_lower = VectorX::Constant(1, 0.49);
+    p.constraint_upper = VectorX::Constant(1, infinity);
+    p.evaluate = [](const VectorX& x) {
+        Evaluation e;
+        e.usable = true;
+        e.objective = 1 + x[1] - 0.02 * x[0];
+        e.gradient = Vector2(-0.02, 1);
+        e.constraints = VectorX::Constant(1, x[1] - 0.01 * x[0]);
+        e.jacobian = Vector2(-0.01, 1).transpose();
+        e.violation = std::max(0.0, 0.49 - 1e-7 - e.constraints[0]);
+        return e;
+    };
+    const OptimiserReport report = optimise(p, Idle(), usual(40));
+    CHECK(report.status == OptimiserStatus::optimal);
+    CHECK(report.optimality.held[0] == Held::upper_bound);
+    CHECK(report.optimality.held[1] == Held::constraints);
+    CHECK(report.optimality.residual[0] == 0);
+    // On its way there it could still move, and nothing holds it.
+    p.start[0] = 0.95;
+    const OptimiserReport before = optimise(p, Idle(), usual(1));
+    REQUIRE(before.optimality.improvable == std::vector<int>{0});
+    CHECK(before.optimality.held[0] == Held::free);
 }
 
 TEST_CASE("a saddle is left: what is symmetric is not yet optimal") {
