@@ -96,6 +96,12 @@ Json relations_json(const description::Design& design, const optimisers::Rows& r
     return list;
 }
 
+Json continued_json(const problem::DesignEvaluation& evaluation, std::size_t constraint) {
+    for (const problem::ContinuedRow& row : evaluation.continued)
+        if (row.constraint == static_cast<int>(constraint)) return {{"value", row.value}, {"reason", row.reason}};
+    return {};
+}
+
 std::vector<std::string> body_names(const core::model::Model& model) {
     std::vector<std::string> names;
     for (const core::model::Body& body : model.bodies) names.push_back(body.name);

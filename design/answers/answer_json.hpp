@@ -10,6 +10,7 @@
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/design/description/design.hpp"
 #include "fettle/design/optimisers/problem.hpp"
+#include "fettle/design/problem/design_problem.hpp"
 
 namespace fettle::design::answers {
 
@@ -36,6 +37,9 @@ nlohmann::ordered_json gradient_json(const description::Design& design, const Ve
 
 /// Per relation {name, value, lower, upper, met, gradient}: SI, bounds null where there is none, gradients as gradient_json.
 nlohmann::ordered_json relations_json(const description::Design& design, const optimisers::Rows& relations);
+
+/// {value, reason} of a constraint that is continued, SI; null: it is not.
+nlohmann::ordered_json continued_json(const problem::DesignEvaluation& evaluation, std::size_t constraint);
 
 std::vector<std::string> body_names(const core::model::Model& model);
 

@@ -85,6 +85,10 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
         entry["upper"] = finite_or_null(constraint.bounds.upper);
         entry["met"] = description::violation(constraint.bounds, measured) <= 0;
         if (!measured.fault.empty()) entry["fault"] = measured.fault;
+        if (Json continued = continued_json(evaluation, i); !continued.is_null()) {
+            continued["gradient"] = gradient_json(design, search_jacobian(evaluation).row(i).transpose());
+            entry["continued"] = std::move(continued);
+        }
         entry["gradient"] = gradient_json(design, evaluation.jacobian.row(i).transpose());
         add_tie(design, tie_of(evaluation, false, i), entry);
         list.push_back(std::move(entry));

@@ -31,6 +31,7 @@ Json constraints_json(const Design& design, const DesignEvaluation& final) {
                         {"proven", measured.is_proven},
                         {"met", description::violation(constraint.bounds, measured) <= 0}});
         if (!measured.fault.empty()) list.back()["fault"] = measured.fault;
+        if (Json continued = continued_json(final, i); !continued.is_null()) list.back()["continued"] = std::move(continued);
     }
     return list;
 }

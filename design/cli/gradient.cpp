@@ -214,7 +214,7 @@ std::string values_text(const Design& design, const DesignEvaluation& e, const C
         text += formatted("%-40s %s, %s, required %s\n", name.c_str(), description::amount_text(measured.value, bounds.unit, unit).c_str(),
                           measured.is_proven ? ("proven at least " + least).c_str() : "computed",
                           description::required_text(bounds, unit).c_str());
-        if (!measured.fault.empty()) text += "  " + measured.fault + "\n";
+        if (const std::string remark = problem::remark(e, i); !remark.empty()) text += "  " + remark + "\n";
         text += tie_text(design, answers::tie_of(e, false, i), bounds.unit);
     }
     text += relations_text(design, e.relations, console);

@@ -175,9 +175,10 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
         const description::Measurement& measured = outcome.final.constraints[i];
         const std::string unit = description::unit_name(design.constraints[i]);
         const bool met = description::violation(bounds, measured) <= 0;
+        const std::string remark = problem::remark(outcome.final, i);
         text += formatted("  %-40s %s, required %s: ", name.c_str(), description::known_text(measured, bounds, unit).c_str(),
                           description::required_text(bounds, unit).c_str()) +
-                console.coloured(met ? "met" : "VIOLATED", met) + (measured.fault.empty() ? "" : ": " + measured.fault) + "\n";
+                console.coloured(met ? "met" : "VIOLATED", met) + (remark.empty() ? "" : ": " + remark) + "\n";
     }
     text += relations_text(design, outcome.final.relations, console);
     text += round_surfaces_text(design, outcome.final);
@@ -204,7 +205,7 @@ std::vector<Check> outcome_checks(const Design& design, const OptimiseOutcome& o
         const bool doubtful = met && std::count(outcome.in_doubt.begin(), outcome.in_doubt.end(), i) > 0;
         Check check{name, met ? CheckOutcome::passed : CheckOutcome::failed, met ? "met" : "violated", "", file};
         check.message = description::known_text(measured, bounds, unit) + ", required " + description::required_text(bounds, unit);
-        if (!measured.fault.empty()) check.message += "; " + measured.fault;
+        if (const std::string remark = problem::remark(outcome.final, i); !remark.empty()) check.message += "; " + remark;
         if (doubtful) {
             check.outcome = CheckOutcome::remarked;
             check.rule = "in doubt";

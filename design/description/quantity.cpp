@@ -9,6 +9,8 @@ void Quantity::add_deviation_seeds(const Simulated&, int, double, Seeds&) const 
 
 std::vector<Branch> Quantity::branches(const Simulated&, const Measurement&, double) const { return {}; }
 
+std::optional<Continuation> Quantity::continuation(const Simulated&, const Measurement&, const Bounds&) const { return std::nullopt; }
+
 std::string Quantity::explanation(const Measurement&) const { return {}; }
 
 Errors Quantity::check(const core::model::Model&, int) const { return {}; }

@@ -52,6 +52,17 @@ struct Branch {
     std::function<void(double, Seeds&)> add_seeds;  ///< adds scale * d(value); holds references to what it was made from
 };
 
+/// What a search is given in place of a value that has come to an end where it does not change any more, short of what is required: a
+/// force of contact is 0 however far apart the bodies are. It goes on from there, so that it says how far the design is from what is
+/// required, and which way leads there. What is reported, and what requirements are judged by, stays the value.
+struct Continuation {
+    double value = 0;                               ///< SI; the quantity's own value where that has only just come to its end
+    std::function<void(double, Seeds&)> add_seeds;  ///< adds scale * d(value); holds references to what it was made from
+    std::string reason;                             ///< for people: "`arm` and `workpiece` are 0.31 mm apart"
+};
+
+struct Bounds;  // constraint.hpp
+
 class Quantity {
 public:
     virtual ~Quantity() = default;
@@ -80,6 +91,10 @@ public:
     /// Which of its branches the value is: the least (a clearance) or the greatest (the worst of several scenarios; then `limit` is above
     /// the value by as much as branches that are asked for may be below it).
     virtual bool is_greatest_branch() const { return false; }
+
+    /// How its value goes on where it has come to an end short of these bounds. Nothing: it has not, or no quantity of this kind comes to
+    /// one. Not to outlive `simulated`. Those that seeds are added for are of a scenario that it is about.
+    virtual std::optional<Continuation> continuation(const Simulated& simulated, const Measurement& measured, const Bounds& bounds) const;
 
     /// Whether a simulation changes nothing of it: of the parts as assembled, or of their shapes alone.
     virtual bool is_at_rest() const { return false; }

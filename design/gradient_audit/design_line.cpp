@@ -13,8 +13,7 @@ namespace fettle::design::gradient_audit {
 
 VectorX quantities_of(const problem::DesignEvaluation& evaluation) {
     VectorX q(static_cast<Eigen::Index>(evaluation.constraints.size()) + 1);
-    q[0] = evaluation.objective;
-    for (Eigen::Index i = 1; i < q.size(); ++i) q[i] = evaluation.constraints[static_cast<size_t>(i) - 1].value;
+    q << evaluation.objective, problem::search_values(evaluation);
     return q;
 }
 
@@ -26,7 +25,7 @@ std::vector<std::string> quantity_names(const description::Design& design) {
 
 MatrixX quantity_gradients(const problem::DesignEvaluation& evaluation) {
     MatrixX gradients(evaluation.jacobian.rows() + 1, evaluation.gradient.size());
-    gradients << evaluation.gradient.transpose(), evaluation.jacobian;
+    gradients << evaluation.gradient.transpose(), problem::search_jacobian(evaluation);
     return gradients;
 }
 

@@ -12,7 +12,7 @@
 
 namespace fettle::design::gradient_audit {
 
-/// What a study looks at, in this order everywhere: the objective, then each constraint's value. SI.
+/// What a study looks at, in this order everywhere: the objective, then each constraint's value as a search sees it. SI.
 VectorX quantities_of(const problem::DesignEvaluation& evaluation);
 /// "objective", then the constraints' names.
 std::vector<std::string> quantity_names(const description::Design& design);

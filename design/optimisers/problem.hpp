@@ -32,6 +32,7 @@ struct Evaluation {
     VectorX gradient;      ///< n
     VectorX constraints;   ///< c, m
     MatrixX jacobian;      ///< dc/dx, m x n
+    VectorX measured;      ///< m, of what c stands for, for people, where c goes on beyond it (description::Continuation); empty: it is c
     /// f's squared deviations r_i^2 are part of it (each with its weight's root in it): r and dr/dx. Empty where f has none.
     VectorX residuals;
     MatrixX residual_jacobian;

@@ -108,6 +108,26 @@ std::vector<VectorX> parameters_bars(const std::vector<adjoint::Seeds>& seeds) {
 
 }  // namespace
 
+VectorX search_values(const DesignEvaluation& evaluation) {
+    VectorX values(evaluation.constraints.size());
+    for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = evaluation.constraints[static_cast<size_t>(i)].value;
+    for (const ContinuedRow& row : evaluation.continued) values[row.constraint] = row.value;
+    return values;
+}
+
+MatrixX search_jacobian(const DesignEvaluation& evaluation) {
+    MatrixX jacobian = evaluation.jacobian;
+    for (const ContinuedRow& row : evaluation.continued) jacobian.row(row.constraint) = row.gradient.transpose();
+    return jacobian;
+}
+
+std::string remark(const DesignEvaluation& evaluation, size_t constraint) {
+    std::string text = evaluation.constraints[constraint].fault;
+    for (const ContinuedRow& row : evaluation.continued)
+        if (row.constraint == static_cast<int>(constraint)) text += (text.empty() ? "" : "; ") + row.reason;
+    return text;
+}
+
 SimulatedDesign::SimulatedDesign(const Design& design, const DesignEvaluation& evaluation) {
     const std::vector<std::string> names = description::names_of(design.parameters);
     for (const Run& run : evaluation.runs)
@@ -374,9 +394,12 @@ void DesignProblem::measure(DesignEvaluation& evaluation) const {
         look_at(term, evaluation.terms.back());
     }
     for (const auto& constraint : design_.constraints) {
-        evaluation.constraints.push_back(constraint.quantity->value(simulated));
-        look_at(constraint, evaluation.constraints.back());
-        evaluation.violation = std::max(evaluation.violation, description::violation(constraint.bounds, evaluation.constraints.back()));
+        const description::Measurement measured = constraint.quantity->value(simulated);
+        look_at(constraint, measured);
+        evaluation.violation = std::max(evaluation.violation, description::violation(constraint.bounds, measured));
+        if (const auto row = constraint.quantity->continuation(simulated, measured, constraint.bounds))
+            evaluation.continued.push_back({count_of(evaluation.constraints), row->value, row->reason, {}});
+        evaluation.constraints.push_back(measured);
     }
     for (size_t i = 0; i < design_.relations.size(); ++i) {
         const double value = evaluation.relations.values[i];
@@ -384,7 +407,7 @@ void DesignProblem::measure(DesignEvaluation& evaluation) const {
     }
 }
 
-/// Targets: 0 the objective, then the constraints, then the objective's deviations.
+/// Targets: 0 the objective, then the constraints, then the objective's deviations, then the constraints that are continued.
 struct DesignProblem::Share {
     MatrixX rows;
     std::vector<Eigen::Index> targets;  // of the rows
@@ -469,6 +492,15 @@ Result<DesignProblem::Share> DesignProblem::share_of(int s, const MovedScene& mo
         if (quantity.is_about(s)) quantity.add_deviation_seeds(simulated, deviation.index, deviation.root, row(target));
         ++target;
     }
+    for (const ContinuedRow& continued : evaluation.continued) {
+        const description::Constraint& constraint = design_.constraints[continued.constraint];
+        const auto continuation =
+            constraint.quantity->is_about(s)
+                ? constraint.quantity->continuation(simulated, evaluation.constraints[continued.constraint], constraint.bounds)
+                : std::nullopt;
+        if (continuation) continuation->add_seeds(1, row(target));
+        ++target;
+    }
     const auto first_branch = static_cast<Eigen::Index>(seeds.size());
     share.branches = branches_of(design_, simulated, {evaluation.terms, evaluation.constraints}, reach);
     for (const QuantityBranches& quantity : share.branches) add_seeds(quantity, simulated, seeds);
@@ -494,7 +526,8 @@ void DesignProblem::differentiate(const std::vector<MovedScene>& moved, BranchRe
         if (!*found[s]) return refuse(scenario_prefix(design_, s) + first_reason(found[s]->errors()));
     const std::vector<Deviation> deviations = deviations_of(design_, simulated.in(0));
     const Eigen::Index constraints = count_of(design_.constraints), residuals = count_of(deviations);
-    MatrixX rows = MatrixX::Zero(1 + constraints + residuals, parameter_count());
+    const Eigen::Index continued = count_of(evaluation.continued);
+    MatrixX rows = MatrixX::Zero(1 + constraints + residuals + continued, parameter_count());
     for (const auto& share : found)
         for (size_t k = 0; k < (*share)->targets.size(); ++k)
             rows.row((*share)->targets[k]) += (*share)->rows.row(static_cast<Eigen::Index>(k));
@@ -508,7 +541,9 @@ void DesignProblem::differentiate(const std::vector<MovedScene>& moved, BranchRe
     evaluation.jacobian = rows.middleRows(1, constraints);
     evaluation.residuals.resize(residuals);
     for (Eigen::Index i = 0; i < residuals; ++i) evaluation.residuals[i] = deviations[i].value;
-    evaluation.residual_jacobian = rows.bottomRows(residuals);
+    evaluation.residual_jacobian = rows.middleRows(1 + constraints, residuals);
+    for (Eigen::Index i = 0; i < continued; ++i)
+        evaluation.continued[static_cast<size_t>(i)].gradient = rows.row(1 + constraints + residuals + i).transpose();
     std::vector<QuantityBranches> branches;
     for (auto& share : found) {
         take_jacobians((*share)->branch_rows, evaluation.jacobian, (*share)->branches);

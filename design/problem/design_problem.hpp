@@ -39,6 +39,14 @@ struct Run {
     core::stepper::Simulation simulation;             ///< as far as it came
 };
 
+/// A constraint whose value has come to an end short of its bounds: how it goes on (description::Continuation).
+struct ContinuedRow {
+    int constraint = 0;
+    double value = 0;    ///< SI
+    std::string reason;  ///< for people
+    VectorX gradient;    ///< d value / d parameters, SI; empty unless asked for
+};
+
 /// A design, simulated and measured.
 struct DesignEvaluation {
     bool usable = false;
@@ -48,6 +56,7 @@ struct DesignEvaluation {
     std::vector<Run> runs;     ///< one per scenario, at least one; none: a relation is not defined there
     std::vector<description::Measurement> terms;        ///< per objective term, SI
     std::vector<description::Measurement> constraints;  ///< per constraint, SI
+    std::vector<ContinuedRow> continued;                ///< of some constraints, in their order: what a search sees of these instead
     optimisers::Rows relations;                         ///< values and gradients, of an unusable trial too
     double objective = std::nan("");                    ///< sum of weight * value / unit; NaN: not usable
     double violation = std::nan("");           ///< largest of the constraints' and relations' (description/constraint.hpp); NaN: not usable
@@ -61,6 +70,12 @@ struct DesignEvaluation {
     double forward_seconds = 0;                ///< parts, model, simulation, values
     double backward_seconds = 0;               ///< seeds, sweep, chain
 };
+
+/// What a search sees of the constraints, with those that are continued: values, and derivatives (those of `jacobian`), SI.
+VectorX search_values(const DesignEvaluation& evaluation);
+MatrixX search_jacobian(const DesignEvaluation& evaluation);
+/// What is to be known of a constraint beside its numbers: its fault, or why it is continued; empty: nothing.
+std::string remark(const DesignEvaluation& evaluation, std::size_t constraint);
 
 /// What quantities are asked about: every scenario, simulated. Contract: the evaluation has its models, and outlives this.
 class SimulatedDesign {

@@ -79,12 +79,15 @@ optimisers::Evaluation optimiser_evaluation(const DesignEvaluation& evaluation) 
     if (!e.usable) return e;
     e.objective = evaluation.objective;
     e.has_derivatives = evaluation.gradient.size() > 0;
-    e.constraints.resize(evaluation.constraints.size());
-    for (size_t i = 0; i < evaluation.constraints.size(); ++i) e.constraints[i] = evaluation.constraints[i].value;
+    e.constraints = search_values(evaluation);
+    if (!evaluation.continued.empty()) {
+        e.measured.resize(evaluation.constraints.size());
+        for (size_t i = 0; i < evaluation.constraints.size(); ++i) e.measured[i] = evaluation.constraints[i].value;
+    }
     e.violation = evaluation.violation;
     if (e.has_derivatives) {
         e.gradient = evaluation.gradient;
-        e.jacobian = evaluation.jacobian;
+        e.jacobian = search_jacobian(evaluation);
         e.residuals = evaluation.residuals;
         e.residual_jacobian = evaluation.residual_jacobian;
         e.constraint_branches = evaluation.constraint_branches;

@@ -26,6 +26,10 @@ public:
     void add_deviation_seeds(const description::Simulated& simulated, int i, double scale, description::Seeds& seeds) const override;
     std::vector<description::Branch> branches(const description::Simulated& simulated, const description::Measurement& measured,
                                               double limit) const override;
+    std::optional<description::Continuation> continuation(const description::Simulated& simulated, const description::Measurement& measured,
+                                                          const description::Bounds& bounds) const override {
+        return quantity_->continuation(simulated.in(scenario_), measured, bounds);
+    }
     bool is_at_rest() const override { return quantity_->is_at_rest(); }
     bool is_about(int scenario) const override { return scenario == scenario_; }
     std::vector<std::string> parameters() const override { return quantity_->parameters(); }

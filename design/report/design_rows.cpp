@@ -31,7 +31,7 @@ Json row_json(const std::string& name, const Json& told, const description::Boun
             {"required_lower", in_unit(bounds.lower, unit)},
             {"required_upper", in_unit(bounds.upper, unit)},
             {"met", member(told, "met").is_boolean() && told["met"].get<bool>()},
-            {"fault", member(told, "fault")},
+            {"fault", told.contains("fault") ? told["fault"] : member(member(told, "continued"), "reason")},
             {"cost", Json()},
             {"counts", false},
             {"pair", Json()},

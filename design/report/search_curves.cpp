@@ -43,7 +43,7 @@ Json search_curves(const std::string& text, const description::Design& design) {
             const Json value = at_key(entry["parameters"], p.name.c_str());
             shares[k].push_back(value.is_null() ? Json() : finite((value.get<double>() - p.lower) / (p.upper - p.lower)));
         }
-        const Json values = member(entry, "constraints");
+        const Json values = member(entry, entry.contains("measured") ? "measured" : "constraints");
         for (std::size_t i = 0; i < spares.size(); ++i)
             spares[i].push_back(values.is_array() && i < values.size() && values[i].is_number()
                                     ? finite(spare(design.constraints[i], values[i].get<double>()))

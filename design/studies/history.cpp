@@ -108,6 +108,7 @@ std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, i
     if (e.usable) {
         json["objective"] = e.objective;
         json["constraints"] = to_json(e.constraints);
+        if (e.measured.size() > 0) json["measured"] = to_json(e.measured);
         if (e.has_derivatives) {
             json["gradient"] = to_json(e.gradient);
             json["jacobian"] = rows_json(e.jacobian);
@@ -146,6 +147,7 @@ HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) 
     e.objective = json.at("objective").get<double>();
     e.has_derivatives = json.contains("gradient");
     e.constraints = to_vector(json.at("constraints"));
+    if (json.contains("measured")) e.measured = to_vector(json.at("measured"));
     if (e.has_derivatives) {
         e.gradient = to_vector(json.at("gradient"));
         e.jacobian = to_matrix(json.at("jacobian"), n);
@@ -160,7 +162,8 @@ HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) 
     entry.terms = named_values(json.at("terms"));
     entry.certified = named_values(json.at("certified"));
     const auto m = static_cast<Eigen::Index>(header.constraints.size());
-    if (e.constraints.size() != m || (e.has_derivatives && (e.gradient.size() != n || e.jacobian.rows() != m)))
+    if (e.constraints.size() != m || (e.measured.size() > 0 && e.measured.size() != m) ||
+        (e.has_derivatives && (e.gradient.size() != n || e.jacobian.rows() != m)))
         throw std::runtime_error("sizes do not match the header");
     return entry;
 }

@@ -4,10 +4,11 @@
 /// from here; since the optimisers are deterministic it goes on where the killed one stopped and ends with the same design.
 ///   header      fettle_history 1, design (hash of all that an evaluation depends on), program, parameters, constraints (names)
 ///   evaluation  evaluation (1, 2, ...), model (a smoother one's name; not there: the file's own), usable, reason, parameters (by name,
-///               SI), objective, constraints, gradient and jacobian (rows; not of values alone), residuals and residual_jacobian (rows;
-///               where the objective has squared deviations), constraint_branches and objective_branches (of, values, jacobian by rows;
-///               where there are any: optimisers/problem.hpp), violation, terms (by name), certified (lower bounds by constraint, of those
-///               that are proven), forward_seconds, backward_seconds
+///               SI), objective, constraints (as the search sees them; `measured` beside them, where some go on beyond it), gradient and
+///               jacobian (rows; not of values alone), residuals and residual_jacobian (rows; where the objective has squared deviations),
+///               constraint_branches and objective_branches (of, values, jacobian by rows; where there are any: optimisers/problem.hpp),
+///               violation, terms (by name), certified (lower bounds by constraint, of those that are proven), forward_seconds,
+///               backward_seconds
 #pragma once
 
 #include <functional>

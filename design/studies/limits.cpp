@@ -124,9 +124,10 @@ private:
             const description::Measurement& measured = final_.constraints[i];
             const Bounds& bounds = design_.constraints[i].bounds;
             if (description::violation(bounds, measured) <= 0) continue;
+            const std::string remark = problem::remark(final_, i);
             const std::string unit = description::unit_name(design_.constraints[i]);
             lines_.push_back(design_.constraints[i].name + ": " + description::known_text(measured, bounds, unit) + ", required is " +
-                             description::required_text(bounds, unit) + (measured.fault.empty() ? "" : ": " + measured.fault));
+                             description::required_text(bounds, unit) + (remark.empty() ? "" : ": " + remark));
         }
         for (size_t i = 0; i < design_.relations.size(); ++i) {
             const description::Relation& relation = design_.relations[i];

@@ -33,7 +33,7 @@ std::string shortfall(const Design& design, const VectorX& p, const optimisers::
     };
     for (size_t i = 0; i < design.constraints.size(); ++i) {
         const description::Constraint& constraint = design.constraints[i];
-        const description::Measurement value = description::computed(e.constraints[i]);
+        const description::Measurement value = description::computed(e.measured.size() > 0 ? e.measured[i] : e.constraints[i]);
         look_at(constraint.name, description::violation(constraint.bounds, value), description::unit_name(constraint));
     }
     for (const description::Relation& relation : design.relations)
