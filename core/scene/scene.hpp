@@ -64,7 +64,7 @@ struct Friction {
     std::map<std::string, double> materials;  ///< mu of a material against itself
     std::vector<Pair> pairs;
     double eps_v = 1e-3;  ///< static speed bound [m/s]: below it friction is smoothed
-    int rounds = -1;      ///< solves per step, each with normal forces and tangents of the one before; negative: until they agree; 0: off
+    int rounds = 2;       ///< solves per step, each with normal forces and tangents of the one before; negative: until they agree; 0: off
 
     /// Index in `pairs` of two materials, in either order; -1 if they are not listed together or one has no name.
     int pair_of(const std::string& material_a, const std::string& material_b) const;

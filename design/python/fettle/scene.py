@@ -94,7 +94,7 @@ class Friction(Record):
     materials: Dict[str, float] = dataclasses.field(default_factory=dict)
     pairs: List[FrictionPair] = dataclasses.field(default_factory=list)
     eps_v: Number = number("speed", 1e-3)  #: static speed bound [m/s]
-    rounds: int = -1
+    rounds: int = 2
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)

@@ -137,7 +137,7 @@ TEST_CASE("Materials, friction and integrators arrive", "[scene]") {
     CHECK(plainly->integrator == scene::Integrator::implicit_euler);
     CHECK(plainly->friction.mu == 0);
     CHECK(plainly->friction.eps_v == 1e-3);
-    CHECK(plainly->friction.rounds == -1);
+    CHECK(plainly->friction.rounds == 2);
     CHECK(plainly->bodies[0].group == -1);
     CHECK(plainly->bodies[0].mass_kind == scene::MassKind::volume);
     CHECK(shop.read(with("/integrator", "newmark"))->integrator == scene::Integrator::newmark);
