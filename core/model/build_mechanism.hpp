@@ -21,13 +21,15 @@ struct TermScales {
 
 /// Adds Model::mechanism; moves pose_start and velocity_start of dynamic bodies as little as their masses allow, with a warning of each
 /// body that had to. Rows that follow from others are left out, with a warning.
-/// Contract: bodies, masses, dhat and diagonal of the model are set. Stops have no stiffness yet: kappa, which they take it from, depends
-/// on the springs (choose_kappa.hpp). Errors: names that are not there, branches that cannot be said so (branch_of_joint.hpp) or on which a
-/// loop does not close, joints of a body with itself, axes of length 0, motors that turn by half a turn in a time step (inconsistent,
-/// out_of_range); loops that cannot be closed, with the joints and the gaps that remain; joints that contradict one another; Newmark, which
-/// has no rows (unsupported).
+/// Contract: bodies, masses, dhat and diagonal of the model are set. Stops have no stiffness yet (stiffen_stops): they take it from kappa,
+/// which depends on the springs that this adds (choose_kappa.hpp).
+///
+/// Errors: names that are not there, branches that cannot be said so (branch_of_joint.hpp) or on which a loop does not close, joints of a
+/// body with itself, axes of length 0, motors that turn by half a turn in a time step (inconsistent, out_of_range); loops that cannot be
+/// closed, with the joints and the gaps that remain; joints that contradict one another; Newmark, which has no rows (unsupported).
 base::Errors build_mechanism(const scene::Scene& scene, Model& model, const TermScales& scales = {});
 
+/// Gives the stops of joints and springs their stiffness: that of the scales, else choose_stop_stiffness's.
 /// Contract: kappa of the model is set.
 void stiffen_stops(Model& model, const TermScales& scales = {});
 
