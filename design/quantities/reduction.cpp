@@ -9,7 +9,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/expression/dimension_powers.hpp"
-#include "fettle/design/quantities/stroke.hpp"
+#include "fettle/design/quantities/extreme.hpp"
 
 namespace fettle::design::quantities {
 
@@ -74,9 +74,8 @@ std::vector<double> weights_of_steps(Over over, const std::vector<double>& y) {
         return out;
     }
     const auto [extreme, sign] = extreme_of(over, y);
-    for (std::size_t k = 0; k < 3; ++k)
-        if (extreme.weights[k] != 0)
-            out[static_cast<std::size_t>(extreme.first) + k] = over == Over::peak ? sign * extreme.weights[k] : extreme.weights[k];
+    for (int k = 0; k < count_of(extreme.weights); ++k)
+        if (extreme.weights[k] != 0) out[extreme.first + k] = over == Over::peak ? sign * extreme.weights[k] : extreme.weights[k];
     return out;
 }
 

@@ -17,7 +17,7 @@
 
 namespace fettle::design::quantities {
 
-/// Of the window's steps. The extremes are those of stroke.hpp: of the parabola through three steps, smooth in the parameters.
+/// Of the window's steps. The extremes are those of extreme.hpp: of what runs through the steps' numbers, smooth in the parameters.
 enum class Over {
     end,  ///< the last
     sum,

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/text.hpp"
+#include "fettle/design/quantities/extreme.hpp"
 #include "fettle/design/quantities/own_formula.hpp"
 
 namespace fettle::design::quantities {
@@ -13,18 +13,6 @@ namespace fettle::design::quantities {
 using description::Measurement;
 using description::Seeds;
 using description::Simulated;
-
-Extreme smooth_maximum(const std::vector<double>& y) {
-    FETTLE_ASSERT(!y.empty(), "the extreme of nothing");
-    const auto i = static_cast<size_t>(std::max_element(y.begin(), y.end()) - y.begin());
-    if (i == 0 || i + 1 == y.size()) {
-        return {y[i], static_cast<int>(i), {1, 0, 0}};
-    }
-    const double b = (y[i + 1] - y[i - 1]) / 2, a = (y[i + 1] - 2 * y[i] + y[i - 1]) / 2;
-    if (a >= 0) return {y[i], static_cast<int>(i), {1, 0, 0}};  // three equal: flat
-    const double s = -b / (2 * a);
-    return {y[i] + b * s + a * s * s, static_cast<int>(i) - 1, {s * (s - 1) / 2, 1 - s * s, s * (s + 1) / 2}};
-}
 
 std::pair<int, int> Stroke::configurations(double timestep, int steps) const {
     constexpr double of_a_step = 1e-6;  // by which times may miss a step's end, rounded as they are
@@ -63,10 +51,9 @@ void Stroke::add_deviation_seeds(const Simulated& simulated, int, double scale, 
     const int begin = configurations(simulated.trajectory.timestep, count_of(simulated.trajectory.steps)).first;
     for (const double sign : {1.0, -1.0}) {
         const Extreme extreme = smooth_maximum(coordinates(simulated, sign));
-        for (size_t k = 0; k < 3; ++k) {
+        for (int k = 0; k < count_of(extreme.weights); ++k) {
             if (extreme.weights[k] == 0) continue;
-            seeds.trajectory_bar.pose_bar[static_cast<size_t>(begin + extreme.first) + k][body_].col(3) +=
-                scale * extreme.weights[k] * sign * axis_;
+            seeds.trajectory_bar.pose_bar[begin + extreme.first + k][body_].col(3) += scale * extreme.weights[k] * sign * axis_;
         }
     }
     if (target_) add_formula_seed(*target_, simulated, -scale, seeds);

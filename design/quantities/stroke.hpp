@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// Stroke of a body along a world axis: largest minus smallest coordinate axis . q over the motion, of its reference point.
 ///
-/// The extremes are taken of the parabola through the three configurations round the extremal one, not of the configurations themselves:
-/// closer to the truth (the error of a cosine falls from (omega h)^2/8 of its amplitude, at worst, to 3 (omega h)^4/128), and smooth in the
-/// parameters where the largest of many numbers has kinks. At the first or last configuration, or where the three do not bend, it is the
-/// configuration's own coordinate.
-///   y(i + s) = y_i + b s + a s^2,  b = (y_+ - y_-)/2,  a = (y_+ - 2 y_i + y_-)/2;   extreme y_i - b^2/(4a)  at  s = -b/(2a), |s| <= 1/2
+/// The extremes are those of what runs through the configurations (extreme.hpp), not of the configurations themselves.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -17,15 +12,6 @@
 #include "fettle/design/description/quantity.hpp"
 
 namespace fettle::design::quantities {
-
-/// An extreme as a weighted sum of up to three consecutive coordinates: its derivative in them is these weights (envelope theorem).
-struct Extreme {
-    double value = 0;
-    int first = 0;                           ///< index of the first of the three
-    std::array<double, 3> weights{0, 0, 0};  ///< d value / d y[first + k]; sum 1
-};
-/// Largest value of the sequence in the sense above. Contract: not empty. The earliest of equal ones.
-Extreme smooth_maximum(const std::vector<double>& y);
 
 /// A part of the motion: the configurations at times within it, the start included [s]. Default: all of it.
 struct StrokeWindow {

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/quantities/extreme.hpp"
+
+#include <algorithm>
+#include <unsupported/Eigen/AutoDiff>
+
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/text.hpp"
+
+namespace fettle::design::quantities {
+
+namespace {
+
+// With its derivative in the five numbers.
+using Scalar = Eigen::AutoDiffScalar<Eigen::Matrix<double, 5, 1>>;
+
+// 0 up to x = 0, 1 from x = 1.
+Scalar fade(const Scalar& x) {
+    if (x.value() <= 0) return Scalar(0.0);
+    if (x.value() >= 1) return Scalar(1.0);
+    return x * x * (3.0 - 2.0 * x);
+}
+
+Scalar lesser(const Scalar& x, const Scalar& y) { return y.value() < x.value() ? y : x; }
+Scalar greater(const Scalar& x, const Scalar& y) { return y.value() > x.value() ? y : x; }
+
+// How far two lines meet above the largest number, in the interval on one side of it.
+// @param above  the largest number less its neighbour on the other side  @param bend  its own  @param near, far  its neighbours'
+Scalar cliff(const Scalar& above, const Scalar& bend, const Scalar& near, const Scalar& far) {
+    if (near.value() <= 0) return Scalar(0.0);
+    const Scalar turn = bend + near, share = above / turn;
+    const Scalar is_cliff = fade((0.3 - lesser(share, Scalar(1.0 - share))) / 0.2);
+    const Scalar is_straight = fade(Scalar(1.0 - greater(far, Scalar(-far)) / bend));
+    return share * near * is_cliff * is_straight;
+}
+
+}  // namespace
+
+Extreme smooth_maximum(const std::vector<double>& y) {
+    FETTLE_ASSERT(!y.empty(), "the extreme of nothing");
+    const int at = static_cast<int>(std::max_element(y.begin(), y.end()) - y.begin()), last = count_of(y) - 1;
+    const Extreme itself{y[at], at - 2, {0, 0, 1, 0, 0}};
+    if (at == 0 || at == last) return itself;
+    const auto number = [&](int k) { return Scalar(y[at + k], 5, k + 2); };
+    const Scalar largest = number(0), before = number(-1), after = number(1);
+    const Scalar above_before = largest - before, above_after = largest - after, bend = above_before + above_after;
+    if (bend.value() <= 0) return itself;  // three equal: flat
+    const bool has_before = at >= 2, has_after = at + 2 <= last;
+    const Scalar bend_before = has_before ? Scalar(2.0 * before - number(-2) - largest) : bend;
+    const Scalar bend_after = has_after ? Scalar(2.0 * after - number(2) - largest) : bend;
+    const Scalar is_bent = fade(2.0 * lesser(bend_before, bend_after) / bend);
+    const Scalar skew = above_before - above_after, parabola = skew * skew / (8.0 * bend);
+    Scalar lift = is_bent * parabola;
+    if (has_before && has_after)
+        lift += (1.0 - is_bent) *
+                greater(cliff(above_before, bend, bend_after, bend_before), cliff(above_after, bend, bend_before, bend_after));
+    const Scalar value = largest + lift;
+    Extreme out{value.value(), at - 2, {}};
+    for (int k = 0; k < 5; ++k) out.weights[k] = value.derivatives()[k];
+    return out;
+}
+
+}  // namespace fettle::design::quantities
