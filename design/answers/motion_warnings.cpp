@@ -3,7 +3,7 @@
 
 #include "fettle/core/stepper/balance.hpp"
 #include "fettle/core/stepper/branch_warnings.hpp"
-#include "fettle/design/problem/overlooked_peaks.hpp"
+#include "fettle/design/problem/doubtful_extremes.hpp"
 
 namespace fettle::design::answers {
 
@@ -18,7 +18,7 @@ std::vector<std::string> motion_warnings(const description::Design& design, cons
         if (const std::string warning = balance_warning(*run.model, *run.simulation.balance); !warning.empty())
             out.push_back(description::scenario_prefix(design, scenario) + warning);
     }
-    const std::vector<std::string> peaks = problem::overlooked_peaks(design, evaluation);
+    const std::vector<std::string> peaks = problem::doubtful_extremes(design, evaluation);
     out.insert(out.end(), peaks.begin(), peaks.end());
     return out;
 }

@@ -161,7 +161,7 @@ std::string why_not_optimal(const Design& design, const OptimiseOutcome& outcome
         reasons.push_back(
             formatted("simulated values scatter by up to %.3g in %s (the tolerance is %.3g), most of it by %s, which hides "
                       "whether a better design is near: a wider contact distance (`contact.dhat`) or damping makes the motion "
-                      "smoother",
+                      "smoother; where an extreme falls on one step alone (a warning says so), smaller steps do",
                       o.noise_in_objective, minimised.c_str(), o.worth, roughest_name(design, o).c_str()));
     std::string text;
     for (const std::string& reason : reasons) text += (text.empty() ? "" : "; ") + reason;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <unsupported/Eigen/AutoDiff>
+#include <utility>
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/text.hpp"
@@ -24,22 +25,28 @@ Scalar fade(const Scalar& x) {
 Scalar lesser(const Scalar& x, const Scalar& y) { return y.value() < x.value() ? y : x; }
 Scalar greater(const Scalar& x, const Scalar& y) { return y.value() > x.value() ? y : x; }
 
-// How far two lines meet above the largest number, in the interval on one side of it.
-// @param above  the largest number less its neighbour on the other side  @param bend  its own  @param near, far  its neighbours'
-Scalar cliff(const Scalar& above, const Scalar& bend, const Scalar& near, const Scalar& far) {
-    if (near.value() <= 0) return Scalar(0.0);
-    const Scalar turn = bend + near, share = above / turn;
-    const Scalar is_cliff = fade((0.3 - lesser(share, Scalar(1.0 - share))) / 0.2);
-    const Scalar is_straight = fade(Scalar(1.0 - greater(far, Scalar(-far)) / bend));
-    return share * near * is_cliff * is_straight;
-}
+// Where two lines meet above the largest number, in the interval on one side of it, and how far they are to be believed, 0 to 1.
+struct Cliff {
+    Scalar height = Scalar(0.0), belief = Scalar(0.0);
+
+    Cliff() = default;
+    // @param above  the largest number less its neighbour on the other side  @param bend  its own  @param near, far  its neighbours'
+    Cliff(const Scalar& above, const Scalar& bend, const Scalar& near, const Scalar& far) {
+        if (near.value() < -1e-9 * bend.value()) return;
+        const Scalar share = above / (bend + near);
+        const Scalar is_steep = fade((0.3 - lesser(share, Scalar(1.0 - share))) / 0.2);
+        height = share * near;
+        belief = is_steep * fade(Scalar(1.0 - greater(far, Scalar(-far)) / bend));
+    }
+    Scalar lift() const { return height * belief; }
+};
 
 }  // namespace
 
 Extreme smooth_maximum(const std::vector<double>& y) {
     FETTLE_ASSERT(!y.empty(), "the extreme of nothing");
     const int at = static_cast<int>(std::max_element(y.begin(), y.end()) - y.begin()), last = count_of(y) - 1;
-    const Extreme itself{y[at], at - 2, {0, 0, 1, 0, 0}};
+    const Extreme itself{y[at], at - 2, {0, 0, 1, 0, 0}, 0};
     if (at == 0 || at == last) return itself;
     const auto number = [&](int k) { return Scalar(y[at + k], 5, k + 2); };
     const Scalar largest = number(0), before = number(-1), after = number(1);
@@ -50,13 +57,16 @@ Extreme smooth_maximum(const std::vector<double>& y) {
     const Scalar bend_after = has_after ? Scalar(2.0 * after - number(2) - largest) : bend;
     const Scalar is_bent = fade(2.0 * lesser(bend_before, bend_after) / bend);
     const Scalar skew = above_before - above_after, parabola = skew * skew / (8.0 * bend);
-    Scalar lift = is_bent * parabola;
-    if (has_before && has_after)
-        lift += (1.0 - is_bent) *
-                greater(cliff(above_before, bend, bend_after, bend_before), cliff(above_after, bend, bend_before, bend_after));
-    const Scalar value = largest + lift;
-    Extreme out{value.value(), at - 2, {}};
+    Cliff cliff;
+    if (has_before && has_after) {
+        const Cliff later(above_before, bend, bend_after, bend_before), earlier(above_after, bend, bend_before, bend_after);
+        const auto rank = [](const Cliff& c) { return std::pair(c.lift().value(), c.belief.value()); };
+        cliff = rank(earlier) > rank(later) ? earlier : later;
+    }
+    const Scalar value = largest + is_bent * parabola + (1.0 - is_bent) * cliff.lift();
+    Extreme out{value.value(), at - 2, {}, 0};
     for (int k = 0; k < 5; ++k) out.weights[k] = value.derivatives()[k];
+    out.doubt = (1 - is_bent.value()) * (1 - cliff.belief.value()) * std::min(above_before.value(), above_after.value());
     return out;
 }
 

@@ -10,7 +10,8 @@
 /// - **A steady rise that ends in a cliff**, as of a latch that lets go. A parabola is wrong there by up to an eighth of the first
 ///   interval's fall. K is where the straight lines of either side meet in the interval after y_0, a c_1/(c_0 + c_1), or before it,
 ///   b c_-1/(c_0 + c_-1): exact if both sides are straight.
-/// - **Neither**, such as a single number above others, or a jump: P and K fade to 0, and y_0 is left.
+/// - **Neither**, such as a single number above others, or a jump: P and K fade to 0, and y_0 is left. A line from either side would reach
+///   `doubt`, min(a, b), above it before the next number; it too fades where one of the two above holds.
 ///
 /// v fades from 1, where both neighbours bend at least half as much as y_0, to 0, where one does not bend. K fades to 0 where the lesser of
 /// the slopes that meet is 0.1 to 0.3 of their difference (four to a wave are no cliff), and where the number on the far side bends too.
@@ -27,6 +28,7 @@ struct Extreme {
     double value = 0;
     int first = 0;                                 ///< index of the first of the five; may be -1 or -2: there the weights are 0
     std::array<double, 5> weights{0, 0, 0, 0, 0};  ///< d value / d y[first + k]; sum 1
+    double doubt = 0;                              ///< how much larger it may be between the numbers, which do not show it
 };
 /// Largest value of the sequence in the sense above; at its first or last number, the number itself. Contract: not empty. The earliest of
 /// equal ones.

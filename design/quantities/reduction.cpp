@@ -9,7 +9,6 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/expression/dimension_powers.hpp"
-#include "fettle/design/quantities/extreme.hpp"
 
 namespace fettle::design::quantities {
 
@@ -20,18 +19,6 @@ constexpr double of_a_step = 1e-6;  // by which times may miss a step's end, rou
 std::vector<double> negated(std::vector<double> y) {
     for (double& v : y) v = -v;
     return y;
-}
-
-// The greatest of y, of -y, or of both.
-struct SignedExtreme {
-    Extreme extreme;
-    double sign = 1;
-};
-
-SignedExtreme extreme_of(Over over, const std::vector<double>& y) {
-    const Extreme up = over == Over::least ? Extreme{} : smooth_maximum(y),
-                  down = over == Over::largest ? Extreme{} : smooth_maximum(negated(y));
-    return over == Over::largest || (over == Over::peak && up.value >= down.value) ? SignedExtreme{up, 1} : SignedExtreme{down, -1};
 }
 
 double mean_square(const std::vector<double>& y) {
@@ -157,6 +144,12 @@ Errors check(const Reduction& reduction, Dimension of_steps, double timestep, in
     const auto [first, last] = window_of(reduction, timestep, steps);
     if (first >= last) add(ErrorCode::out_of_range, "no step ends within the window; steps are " + seconds(timestep) + " long");
     return errors;
+}
+
+SignedExtreme extreme_of(Over over, const std::vector<double>& y) {
+    const Extreme up = over == Over::least ? Extreme{} : smooth_maximum(y),
+                  down = over == Over::largest ? Extreme{} : smooth_maximum(negated(y));
+    return over == Over::largest || (over == Over::peak && up.value >= down.value) ? SignedExtreme{up, 1} : SignedExtreme{down, -1};
 }
 
 std::pair<int, int> window_of(const Reduction& reduction, double timestep, int steps) {

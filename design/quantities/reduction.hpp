@@ -14,6 +14,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/base/units.hpp"
+#include "fettle/design/quantities/extreme.hpp"
 
 namespace fettle::design::quantities {
 
@@ -51,6 +52,16 @@ Errors check(const Reduction& reduction, Dimension of_steps, double timestep, in
 
 /// Steps [first, second) of the window, counted from 0. Contract: check() finds nothing.
 std::pair<int, int> window_of(const Reduction& reduction, double timestep, int steps);
+
+/// The extreme of a window's steps that `largest`, `least` or `peak` is: sign * extreme.value, of the numbers sign * y; `peak` has no sign.
+struct SignedExtreme {
+    Extreme extreme;
+    double sign = 1;
+};
+/// Contract: one of these three; there is a step, and all are finite.
+SignedExtreme extreme_of(Over over, const std::vector<double>& y);
+/// Is it one of these three?
+inline bool is_extreme(Over over) { return over == Over::largest || over == Over::least || over == Over::peak; }
 
 /// Of y after the derivative. NaN where a step that it depends on has no finite number. Contract: check() finds nothing.
 double number_of(const Reduction& reduction, const std::vector<double>& y, double timestep);

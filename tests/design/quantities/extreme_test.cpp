@@ -81,7 +81,23 @@ TEST_CASE("smooth extreme: what is neither a bend nor a cliff is no higher than 
     const Band bend_before_jump = band_of([](double x) { return x < 0.5 ? -0.1 * x * x : -3; });
     CHECK(bend_before_jump.lowest >= -0.03);
     CHECK(bend_before_jump.highest < 1e-3);
-    CHECK(smooth_maximum({0, 0, 0, 1, 0, 0, 0}).value == 1);
+    const Extreme spike = smooth_maximum({0, 0, 0, 1, 0, 0, 0});
+    CHECK(spike.value == 1);
+    CHECK(spike.doubt == 1);
+    CHECK(smooth_maximum({0, 0.1, 0.2, -3, -3, -3}).doubt == Approx(0.1).epsilon(0.01));
+}
+
+TEST_CASE("smooth extreme: no doubt about bends and cliffs that the numbers show") {
+    for (int k = 0; k < 100; ++k) {
+        std::vector<double> bend, cliff;
+        for (int t = -8; t < 8; ++t) {
+            const double x = t + k / 100.0;
+            bend.push_back(std::cos(0.5 * x));
+            cliff.push_back(x < 0 ? 0.1 * x : -3 * x);
+        }
+        CHECK(smooth_maximum(bend).doubt == 0);
+        CHECK(smooth_maximum(cliff).doubt < 1e-12);
+    }
 }
 
 TEST_CASE("smooth extreme: the weights are the derivative") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/overlooked_peaks.hpp"
+#include "fettle/design/problem/doubtful_extremes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,8 @@ using description::Simulated;
 using quantities::Over;
 using quantities::StepSeries;
 
-constexpr double clearly = 1.01;  // by so much larger is the other sign's
+constexpr double clearly = 1.01;        // by so much larger is the other sign's
+constexpr double clearly_more = 0.002;  // such a share of an extreme hidden between steps is told
 
 /// A series as it is asked for, in one scenario.
 struct Asked {
@@ -40,19 +41,22 @@ public:
             look_at(*term.quantity, "objective `" + term.name + "`", term.unit);
         for (const description::Constraint& constraint : design_.constraints) {
             const auto* series = dynamic_cast<const StepSeries*>(constraint.quantity.get());
-            if (series != nullptr && series->over() == Over::largest && constraint.bounds.upper < 0) continue;
-            look_at(*constraint.quantity, "constraint `" + constraint.name + "`", constraint.bounds.unit);
+            const bool is_to_be_negative = series != nullptr && series->over() == Over::largest && constraint.bounds.upper < 0;
+            look_at(*constraint.quantity, "constraint `" + constraint.name + "`", constraint.bounds.unit, is_to_be_negative);
         }
         return std::move(sentences_);
     }
 
 private:
-    void look_at(const Quantity& quantity, const std::string& name, double unit) {
+    void look_at(const Quantity& quantity, const std::string& name, double unit, bool is_sign_meant = false) {
         std::vector<Asked> asked;
         collect(quantity, simulated_.in(0), false, asked);
         for (const Asked& one : asked) {
-            if (told_.count(one.series) > 0 || one.both_extremes) continue;
-            const std::string sentence = sentence_of(one, one.in_expression ? 1 : unit);
+            if (told_.count(one.series) > 0) continue;
+            const bool may_be_other_sign = one.series->over() != Over::peak && one.series->has_direction() && !one.both_extremes;
+            std::string sentence;
+            if (may_be_other_sign && !is_sign_meant) sentence = on_the_sign(one, one.in_expression ? 1 : unit);
+            if (sentence.empty()) sentence = on_the_steps(one, one.in_expression ? 1 : unit);
             if (sentence.empty()) continue;
             told_.insert(one.series);
             sentences_.push_back(name + ": " + sentence);
@@ -61,8 +65,7 @@ private:
 
     void collect(const Quantity& quantity, const Simulated& in, bool in_expression, std::vector<Asked>& out) const {
         if (const auto* series = dynamic_cast<const StepSeries*>(&quantity)) {
-            const bool is_extreme = series->over() == Over::largest || series->over() == Over::least;
-            if (is_extreme && series->has_direction()) out.push_back({series, &in, in_expression, false});
+            if (quantities::is_extreme(series->over())) out.push_back({series, &in, in_expression, false});
         } else if (const auto* one = dynamic_cast<const quantities::InScenario*>(&quantity)) {
             collect(*one->quantity(), in.in(one->scenario()), in_expression, out);
         } else if (const auto* worst = dynamic_cast<const quantities::Worst*>(&quantity)) {
@@ -79,21 +82,40 @@ private:
         }
     }
 
-    static std::string sentence_of(const Asked& asked, double unit) {
+    // The largest has another sign than what is larger.
+    static std::string on_the_sign(const Asked& asked, double unit) {
         const auto [steps, first_step] = asked.series->window(*asked.simulated);
         const auto [least, largest] = std::minmax_element(steps.begin(), steps.end());
         const bool is_largest = asked.series->over() == Over::largest;
         const double extreme = is_largest ? *largest : *least, other = is_largest ? *least : *largest;
         const bool is_told = is_largest ? extreme < 0 || -other > clearly * extreme : extreme < 0 && other > -clearly * extreme;
         if (!is_told) return {};
-        const std::string name = core::base::unit_name(asked.series->dimension(), unit);
-        const auto amount = [&](double value) { return description::amount_text(value, unit, name, 4); };
+        const auto amount = [&](double value) { return amount_text(asked, value, unit); };
         const std::string what = "\"over\": \"peak\" takes the largest absolute value";
         if (is_largest && extreme < 0)
             return "all steps are negative, and the largest, " + amount(extreme) + ", is the one with the least absolute value: " + what;
         const auto step = static_cast<long>((is_largest ? least : largest) - steps.begin()) + first_step + 1;
         return std::string(is_largest ? "the largest" : "the least") + " of the steps is " + amount(extreme) + ", but step " +
                std::to_string(step) + " has " + amount(other) + ", a larger absolute value: " + what;
+    }
+
+    // One step stands above the others, and the true extreme may lie between.
+    static std::string on_the_steps(const Asked& asked, double unit) {
+        const StepSeries::Window window = asked.series->window(*asked.simulated);
+        const quantities::Extreme extreme = quantities::extreme_of(asked.series->over(), window.steps).extreme;
+        if (!(extreme.doubt > clearly_more * std::abs(extreme.value))) return {};
+        const int at = extreme.first + 2, step = window.first + at + 1;
+        const auto amount = [&](int k) { return amount_text(asked, window.steps[k], unit); };
+        const char* word = asked.series->over() == Over::least ? "the least, " : "the largest, ";
+        return word + amount(at) + ", falls on step " + std::to_string(step) + " alone, at " +
+               core::base::formatted("%.6g s", step * asked.simulated->trajectory.timestep) + " (the steps before and after it have " +
+               amount(at - 1) + " and " + amount(at + 1) + "): between steps it may be beyond that by " +
+               amount_text(asked, extreme.doubt, unit) +
+               ", and values jump from design to design. Smaller steps, or a slower motion there, show it";
+    }
+
+    static std::string amount_text(const Asked& asked, double value, double unit) {
+        return description::amount_text(value, unit, core::base::unit_name(asked.series->dimension(), unit), 4);
     }
 
     const description::Design& design_;
@@ -104,7 +126,7 @@ private:
 
 }  // namespace
 
-std::vector<std::string> overlooked_peaks(const description::Design& design, const DesignEvaluation& evaluation) {
+std::vector<std::string> doubtful_extremes(const description::Design& design, const DesignEvaluation& evaluation) {
     if (!evaluation.usable) return {};
     return Search(design, evaluation).run();
 }

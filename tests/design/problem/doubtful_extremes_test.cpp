@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which extremes are hardly meant: of series that are given.
-#include "fettle/design/problem/overlooked_peaks.hpp"
+#include "fettle/design/problem/doubtful_extremes.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -10,7 +10,7 @@
 #include "fettle/design/quantities/worst.hpp"
 #include "fettle/tests/support/box_mesh.hpp"
 
-namespace fettle::design::problem::overlooked_peaks_test {
+namespace fettle::design::problem::doubtful_extremes_test {
 
 namespace {
 
@@ -61,7 +61,7 @@ std::vector<std::string> told(const Design& design) {
     values.gradients = false;
     const DesignEvaluation at = problem->evaluate(VectorX(0), values);
     REQUIRE(at.usable);
-    return overlooked_peaks(problem->design(), at);
+    return doubtful_extremes(problem->design(), at);
 }
 
 const std::vector<double> turns_back{0.5e-3, -2e-3, 1e-3}, backwards{-1e-3, -2e-3, -3e-3}, forwards{1e-3, 2e-3, 3e-3};
@@ -88,14 +88,33 @@ TEST_CASE("the least is told where a step has a larger absolute value of the oth
     CHECK(found[0].starts_with("objective `t0`: the least of the steps is -1 N mm, but step 2 has 2 N mm"));
 }
 
-TEST_CASE("nothing is said of peaks, means and what has no direction, nor where turning round is forbidden") {
+TEST_CASE("nothing is said of the sign of peaks, means and what has no direction, nor where turning round is forbidden") {
     for (const Over over : {Over::end, Over::sum, Over::mean, Over::peak}) CHECK(told(design_of({torque(turns_back, over)})).empty());
     CHECK(told(design_of({torque(turns_back, Over::largest, false)})).empty());
     CHECK(told(design_of({}, {{torque(backwards, Over::largest), {.upper = -0.5e-3}}})).empty());
     CHECK(told(design_of({}, {{torque(backwards, Over::largest), {.upper = 5e-3}}})).size() == 1);
     CHECK(told(design_of({torque({1e-3, -1.005e-3, 0}, Over::largest)})).empty());  // as good as equal
     const Design unusable = design_of({torque(turns_back, Over::largest)});
-    CHECK(overlooked_peaks(unusable, DesignEvaluation()).empty());
+    CHECK(doubtful_extremes(unusable, DesignEvaluation()).empty());
+}
+
+TEST_CASE("an extreme that falls on one step alone is told, with the steps beside it; bends and cliffs that the steps show are not") {
+    std::vector<double> spike(9, 1e-3), bend, cliff;
+    spike[4] = 2e-3;
+    for (int t = 0; t < 9; ++t) {
+        bend.push_back(2e-3 - 1e-5 * (t - 3.7) * (t - 3.7));
+        cliff.push_back(t < 5 ? 1e-3 + 1e-4 * t : 4e-4 - 1e-3 * (t - 5));
+    }
+    const auto found = told(design_of({torque(spike, Over::largest), torque(bend, Over::largest), torque(cliff, Over::largest, false)}));
+    for (const std::string& sentence : found) UNSCOPED_INFO(sentence);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].starts_with("objective `t0`: the largest, 2 N mm, falls on step 5 alone, at "));
+    CHECK(found[0].find("(the steps before and after it have 1 N mm and 1 N mm)") != std::string::npos);
+    for (double& number : spike) number = -number;
+    CHECK(told(design_of({torque(spike, Over::peak), torque(spike, Over::mean)})).size() == 1);
+    CHECK(told(design_of({torque(spike, Over::least, false)}))[0].starts_with("objective `t0`: the least, -2 N mm, falls on step 5 alone"));
+    spike[4] = -1.001e-3;
+    CHECK(told(design_of({torque(spike, Over::peak)})).empty());  // hardly above the others
 }
 
 TEST_CASE("one that several ask for is told once; expressions, scenarios and the worst are looked into") {
@@ -121,4 +140,4 @@ TEST_CASE("one that several ask for is told once; expressions, scenarios and the
     CHECK(of_scenarios[0].starts_with("objective `t [a]`: "));
 }
 
-}  // namespace fettle::design::problem::overlooked_peaks_test
+}  // namespace fettle::design::problem::doubtful_extremes_test
