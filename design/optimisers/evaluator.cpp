@@ -120,9 +120,12 @@ void Evaluator::fix_scaling() {
         if (objective_size > 0) objective_scale_ = 1 / objective_size;
         const VectorX values = joined(start_evaluation_.constraints, records_.front().relations.values);
         const MatrixX jacobian = stacked(start_evaluation_.jacobian, records_.front().relations.jacobian);
+        const VectorX lower = joined(problem_.constraint_lower, problem_.relation_lower),
+                      upper = joined(problem_.constraint_upper, problem_.relation_upper);
         for (int i = 0; i < constraints(); ++i) {
             const double row = jacobian.row(i).cwiseProduct(range_.transpose()).lpNorm<Eigen::Infinity>();
-            const double row_size = std::max(row, 1e-3 * std::abs(values[i]));
+            const double to_bound = std::min(std::abs(values[i] - lower[i]), std::abs(values[i] - upper[i]));
+            const double row_size = std::max({row, 1e-3 * std::abs(values[i]), std::isfinite(to_bound) ? 0.1 * to_bound : 0});
             if (row_size > 0) constraint_scale_[i] = 1 / row_size;
         }
     }

@@ -4,6 +4,9 @@
 /// (cached by the exact bits of the point, since Ipopt and NLopt ask for values and derivatives of one point separately), counts, keeps the
 /// best design, and stops a run that is over. Scaling and the order of evaluations are functions of the problem alone: a run repeated has
 /// the same bits.
+///
+/// A c that hardly changes at the start, such as a force that is missing there yet, is scaled by a tenth of its distance from its bound
+/// instead: by its derivative it would count 1e5 times as much as the others where it does change.
 #pragma once
 
 #include <deque>

@@ -65,10 +65,10 @@ private:
     bool is_sum_of_squares() const { return std::abs(at_->residuals.squaredNorm() - at_->objective) <= 1e-9 * std::abs(at_->objective); }
 
     // Steps are solved to 1e-9 of the numbers in them: where f is nearly nothing, it and the penalty are counted in larger units.
-    QuadraticSolution step_at_penalty() {
+    QuadraticSolution step_at_penalty(const Evaluation& at) const {
         if (curvature_ == Curvature::estimated || !is_sum_of_squares())
-            return best_step(evaluator_, point_, telling_, &rest_.matrix(), radius_, penalty_);
-        Evaluation large = telling_;
+            return best_step(evaluator_, point_, at, &rest_.matrix(), radius_, penalty_);
+        Evaluation large = at;
         const double size = radius_ * large.gradient.lpNorm<Eigen::Infinity>(), factor = size > 0 ? std::max(1.0, 1 / size) : 1.0;
         large.gradient *= factor;
         large.residual_jacobian *= std::sqrt(factor);
@@ -81,7 +81,7 @@ private:
     // Raises the penalty until a tenth of what could be gained in feasibility is.
     QuadraticSolution steered_step() {
         const double now = target_violation(evaluator_, *at_);
-        QuadraticSolution step = step_at_penalty();
+        QuadraticSolution step = step_at_penalty(telling_);
         if (!step.solved || step.violation <= 1e-9) return step;
         Evaluation feasibility = telling_;
         feasibility.gradient.setZero();
@@ -91,37 +91,85 @@ private:
         if (!least.solved) return step;
         while (now - step.violation < accepted_share * (now - least.violation) - 1e-9 && penalty_ < most_penalty) {
             penalty_ *= 10;
-            const QuadraticSolution steered = step_at_penalty();
+            const QuadraticSolution steered = step_at_penalty(telling_);
             if (!steered.solved) return step;
             step = steered;
         }
         return step;
     }
 
-    void take(const QuadraticSolution& step) {
-        const VectorX trial_point = (point_ + step.step).cwiseMax(0).cwiseMin(1);
-        const double length = step.step.lpNorm<Eigen::Infinity>();
-        if (!evaluator_.refusal(trial_point).empty()) {
-            radius_ = after_failure * std::min(radius_, length);
-            return;
-        }
-        const Evaluation& trial = evaluator_.at(trial_point);
-        if (!trial.usable) {
-            radius_ = after_failure * std::min(radius_, length);
-            return;
-        }
-        const double share = (merit(evaluator_, *at_, penalty_) - merit(evaluator_, trial, penalty_)) / step.decrease;
-        const VectorX old_point = point_;
-        const Evaluation* old = at_;
-        if (share > accepted_share) {
-            point_ = trial_point;
-            at_ = &trial;
-            rest_.learn(old_point, *old, point_, *at_, smooth_multipliers(step));
-        } else {
-            rest_.learn(trial_point, trial, point_, *at_, smooth_multipliers(step));
-        }
+    // Null: the point cannot be evaluated.
+    const Evaluation* evaluated(const VectorX& point) {
+        if (!evaluator_.refusal(point).empty()) return nullptr;
+        const Evaluation& trial = evaluator_.at(point);
+        return trial.usable ? &trial : nullptr;
+    }
+    VectorX moved_by(const VectorX& step) const { return (point_ + step).cwiseMax(0).cwiseMin(1); }
+
+    // What came true of a predicted decrease.
+    double share_of(double decrease, const Evaluation& trial) const {
+        return (merit(evaluator_, *at_, penalty_) - merit(evaluator_, trial, penalty_)) / decrease;
+    }
+
+    // The step by constraints that have the values seen at its end, and the derivatives as before.
+    QuadraticSolution corrected_step(const QuadraticSolution& step, const Evaluation& trial) const {
+        VectorX predicted = telling_.constraints + telling_.jacobian * step.step;
+        const Branches& branches = telling_.constraint_branches;
+        for (int k = 0; k < count_of(branches.of); ++k)
+            predicted[branches.of[k]] = std::min(predicted[branches.of[k]], branches.values[k] + branches.jacobian.row(k).dot(step.step));
+        const VectorX miss = trial.constraints - predicted;
+        Evaluation shifted = telling_;
+        shifted.constraints += miss;
+        for (int k = 0; k < count_of(branches.of); ++k) shifted.constraint_branches.values[k] += miss[branches.of[k]];
+        return step_at_penalty(shifted);
+    }
+
+    // Along constraints that are curved every step misses them by the square of its length, however good it is: the second-order
+    // correction of the step misses them by the cube. Tried where the derivatives promise that it is taken.
+    bool take_corrected(const QuadraticSolution& step, const Evaluation& trial) {
+        if (target_violation(evaluator_, trial) <= step.violation + 1e-9) return false;
+        const QuadraticSolution corrected = corrected_step(step, trial);
+        if (!corrected.solved || (corrected.step - step.step).norm() > step.step.norm()) return false;
+        const double objective = trial.objective + telling_.gradient.dot(corrected.step - step.step);
+        const double promised = merit(evaluator_, *at_, penalty_) - (objective + penalty_ * corrected.violation);
+        if (promised <= accepted_share * step.decrease) return false;
+        const VectorX point = moved_by(corrected.step);
+        const Evaluation* there = evaluated(point);
+        if (there == nullptr) return false;
+        const double share = share_of(step.decrease, *there);
+        if (share <= accepted_share) return false;
+        move_to(point, *there, step);
+        fit_radius(share, step.step.lpNorm<Eigen::Infinity>());
+        return true;
+    }
+
+    void fit_radius(double share, double length) {
         if (share > good_share) radius_ = std::min(largest_radius, std::max(radius_, 2 * length));
         if (share < bad_share) radius_ = shrink * std::min(radius_, length);
+    }
+
+    void move_to(const VectorX& point, const Evaluation& there, const QuadraticSolution& step) {
+        rest_.learn(point_, *at_, point, there, smooth_multipliers(step));
+        point_ = point;
+        at_ = &there;
+    }
+
+    void take(const QuadraticSolution& step) {
+        const VectorX point = moved_by(step.step);
+        const double length = step.step.lpNorm<Eigen::Infinity>();
+        const Evaluation* trial = evaluated(point);
+        if (trial == nullptr) {
+            radius_ = after_failure * std::min(radius_, length);
+            return;
+        }
+        const double share = share_of(step.decrease, *trial);
+        if (share > accepted_share) {
+            move_to(point, *trial, step);
+        } else {
+            if (take_corrected(step, *trial)) return;
+            rest_.learn(point, *trial, point_, *at_, smooth_multipliers(step));
+        }
+        fit_radius(share, length);
     }
 
     Evaluator& evaluator_;
@@ -132,7 +180,7 @@ private:
     const Evaluation* at_;  // in the evaluator's records, which stay
     Evaluation telling_;    // the same with the derivatives that are gone by
     double radius_;
-    double penalty_ = 10;
+    double penalty_ = 2;
     int iterations_ = 0;
 };
 

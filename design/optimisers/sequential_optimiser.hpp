@@ -7,7 +7,9 @@
 /// with a row for each branch of a constraint (one violation for all of them), and for each kink of f what it adds to it
 /// (elastic: from an infeasible point it is the feasibility phase as well), and one evaluation shows whether it was right: the decrease of
 /// f + penalty * violation(c) is compared with the predicted one, the point is taken if it is a tenth of it or more, and the box grows or
-/// shrinks with how well the prediction held (Nocedal and Wright, Numerical Optimization, 2nd ed., algorithm 18.4 with l1 penalty). B is
+/// shrinks with how well the prediction held (Nocedal and Wright, Numerical Optimization, 2nd ed., algorithm 18.4 with l1 penalty). A step
+/// that is refused because constraints are curved is corrected once, by their values at its end (second-order correction, section 18.3;
+/// without it long steps along curved constraints are all refused: the Maratos effect). B is
 /// twice the residuals' J_r^T J_r (Gauss-Newton) and a symmetric rank-one estimate of the Lagrangian's other curvature, taken up only
 /// where it explains the values better than without, made positive semi-definite. The penalty is raised until a step takes a tenth of the
 /// violation that could be taken (Byrd, Nocedal and Waltz 2008). Derivatives are the problem's own, or those of the smoother model that it

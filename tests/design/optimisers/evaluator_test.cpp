@@ -2,6 +2,7 @@
 #include "fettle/design/optimisers/evaluator.hpp"
 
 #include <catch2/catch.hpp>
+#include <limits>
 
 namespace fettle::design::optimisers::evaluator_test {
 
@@ -71,6 +72,25 @@ TEST_CASE("a look costs values alone and does not become the best point") {
     CHECK(evaluator.best_point() == at(0.5));
     CHECK(evaluator.at(at(0.2)).has_derivatives);  // asked for as a candidate it is one
     CHECK(evaluator.best_point() == at(0.2));
+}
+
+TEST_CASE("a constraint that hardly changes at the start counts by its distance from its bound, not by its derivative") {
+    const auto scale_of = [](double slope, double value, double lower) {
+        Parabola parabola;
+        parabola.problem.constraint_lower = VectorX::Constant(1, lower);
+        parabola.problem.constraint_upper = VectorX::Constant(1, std::numeric_limits<double>::infinity());
+        parabola.problem.evaluate = [slope, value, plain = parabola.problem.evaluate](const VectorX& x) {
+            Evaluation e = plain(x);
+            e.constraints = VectorX::Constant(1, value);
+            e.jacobian = MatrixX::Constant(1, 1, slope);
+            return e;
+        };
+        return Evaluator(parabola.problem, {20, {}, {}, {}}).constraint_scale()[0];
+    };
+    CHECK(scale_of(2, 0, 0.2) == Approx(1 / 2.0));
+    CHECK(scale_of(1e-9, 0, 0.2) == Approx(1 / 0.02));      // missed by 0.2: 10, scaled
+    CHECK(scale_of(1e-9, 0.4, 0.2) == Approx(1 / 0.02));    // met
+    CHECK(scale_of(1e-9, 0.2, 0.2) == Approx(1 / 0.2e-3));  // on its bound: by its value
 }
 
 }  // namespace fettle::design::optimisers::evaluator_test
