@@ -52,6 +52,7 @@ Command add_gradient(CommandLine& program, const CommonOptions& common);
 Command add_optimise(CommandLine& program, const CommonOptions& common);
 Command add_report(CommandLine& program, const CommonOptions& common);
 Command add_explore(CommandLine& program, const CommonOptions& common);
+Command add_tolerance(CommandLine& program, const CommonOptions& common);
 
 /// From now on the first Ctrl-C asks the work to stop with what it has; a second one ends the program at once.
 void catch_interrupts();

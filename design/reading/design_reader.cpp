@@ -25,6 +25,7 @@
 #include "fettle/design/reading/relation_reader.hpp"
 #include "fettle/design/reading/same_parts.hpp"
 #include "fettle/design/reading/scenario_choice.hpp"
+#include "fettle/design/reading/tolerance_reader.hpp"
 
 namespace fettle::design::reading {
 
@@ -44,7 +45,7 @@ public:
     Result<DesignFile> read() {
         const JsonNode root = document_.root();
         root.allow_keys({"$schema", "fettle_design", "description", "scene", "units", "parameters", "variables", "set", "scenarios",
-                         "simulation", "quantities", "objective", "constraints", "optimiser", "output"});
+                         "simulation", "quantities", "objective", "constraints", "tolerances", "optimiser", "output"});
         root["$schema"].string();
         root["description"].string();
         core::files::is_version(root.require("fettle_design"), 1);
@@ -56,6 +57,9 @@ public:
         if (!scene) return all_errors();
         DesignFormulas formulas(document_, to_si(1, file_.length_unit), core::scene_files::variables_of(*scene));
         design_.parameters = read_parameters(root.require("parameters"), formulas.scene_variables(), file_.length_unit);
+        std::vector<description::Parameter> as_made = design_.parameters;
+        std::vector<ToleranceEntry> entries = read_tolerances(root["tolerances"], formulas.scene_variables(), file_.length_unit, as_made);
+        if (options_.as_made) design_.parameters = as_made;
         formulas.add_parameters(root["parameters"], design_.parameters);
         formulas.read_variables(root["variables"]);
         if (!has_parameters()) return all_errors();
@@ -67,6 +71,7 @@ public:
         read_simulation(root["simulation"]);
         const ScenarioNames scenarios = read_scenarios(root["scenarios"], root["set"], formulas);
         if (!scene_errors_.empty()) return all_errors();  // of one of them
+        take_tolerances(entries);
         std::vector<quantities::NamedQuantity> named;
         const ReadContext context{design_.scene, to_si(1, file_.length_unit), design_.steps * design_.scene.timestep, formulas, named,
                                   scenarios};
@@ -97,6 +102,18 @@ private:
         return std::all_of(errors.begin(), errors.end(), [](const Error& error) {
             return error.code == ErrorCode::inconsistent || error.code == ErrorCode::out_of_range || error.code == ErrorCode::unsupported;
         });
+    }
+
+    // Of a design as drawn they are checked, and left.
+    void take_tolerances(std::vector<ToleranceEntry>& entries) {
+        const bool has_places = std::any_of(entries.begin(), entries.end(), [](const ToleranceEntry& entry) { return entry.is_place; });
+        if (options_.as_made) {
+            read_place_tolerances(entries, file_.length_unit, design_);
+            for (ToleranceEntry& entry : entries) file_.tolerances.push_back(std::move(entry.tolerance));
+        } else if (has_places) {
+            description::Design checked = design_;
+            read_place_tolerances(entries, file_.length_unit, checked);
+        }
     }
 
     std::optional<JsonDocument> open_scene_file(const JsonNode& node) {
@@ -283,11 +300,12 @@ private:
         const std::vector<JsonNode> nodes = parameters.elements();
         for (std::size_t k = 0; k < design_.parameters.size(); ++k)
             if (used.count(design_.parameters[k].name) == 0)
-                nodes[k].fail(ErrorCode::inconsistent,
-                              "no number of the scene follows from parameter \"" + design_.parameters[k].name +
-                                  "\": use it in a formula there, or in the design's `set`, such as \"/bodies/" +
-                                  (design_.scene.bodies.empty() ? std::string("0") : design_.scene.bodies.front().name) +
-                                  "/position/0\": \"= " + core::expression::quoted_if_needed(design_.parameters[k].name) + "\"");
+                (k < nodes.size() ? nodes[k] : document_.root()["tolerances"])
+                    .fail(ErrorCode::inconsistent,
+                          "no number of the scene follows from parameter \"" + design_.parameters[k].name +
+                              "\": use it in a formula there, or in the design's `set`, such as \"/bodies/" +
+                              (design_.scene.bodies.empty() ? std::string("0") : design_.scene.bodies.front().name) +
+                              "/position/0\": \"= " + core::expression::quoted_if_needed(design_.parameters[k].name) + "\"");
     }
 
     void check_scaled_parts(const Setting& setting) {

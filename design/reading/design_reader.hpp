@@ -9,6 +9,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/design/description/design.hpp"
+#include "fettle/design/description/tolerance.hpp"
 #include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 
@@ -23,6 +24,7 @@ struct DesignFile {
     std::string output;  ///< folder, absolute or relative to the working directory; empty: not said
     std::vector<std::string> warnings;
     std::vector<quantities::NamedQuantity> quantities = {};  ///< of its `quantities`
+    std::vector<description::Tolerance> tolerances = {};     ///< of a design read as made
 };
 
 /// How many times as fine as the files say. Contract: both at least 1.
@@ -35,6 +37,8 @@ struct DesignReadOptions {
     std::vector<std::string> mesh_dirs = {};  ///< also looked in for meshes
     Programs programs = Programs::refused;    ///< scene_shapes.hpp
     Resolution resolution = {};
+    /// Each number with a tolerance becomes a parameter, after the design's own (description/tolerance.hpp).
+    bool as_made = false;
     /// Parts that need not be made again; gets those that are made. Null: there are none.
     std::shared_ptr<std::vector<MadePart>> made = {};
 };

@@ -76,12 +76,10 @@ private:
         return found == variables_.end() ? nullptr : &*found;
     }
 
-    // The unit in which people write such a quantity.
     Unit default_unit(const core::scene::Variable* variable) const {
-        const auto dimension =
-            variable == nullptr ? Dimension::length : named_dimension(variable->formula.dimension).value_or(Dimension::length);
-        if (dimension == Dimension::length) return length_unit_;
-        return *find_unit(dimension == Dimension::angle ? "deg" : dimension == Dimension::angular_speed ? "deg/s" : si_unit(dimension));
+        return usual_unit(
+            variable == nullptr ? Dimension::length : named_dimension(variable->formula.dimension).value_or(Dimension::length),
+            length_unit_);
     }
 
     void read_range(const JsonNode& node, const core::scene::Variable* variable, Parameter& parameter) {
@@ -112,6 +110,11 @@ private:
 };
 
 }  // namespace
+
+Unit usual_unit(Dimension dimension, const Unit& length_unit) {
+    if (dimension == Dimension::length) return length_unit;
+    return *find_unit(dimension == Dimension::angle ? "deg" : dimension == Dimension::angular_speed ? "deg/s" : si_unit(dimension));
+}
 
 std::vector<Parameter> read_parameters(const JsonNode& node, const std::vector<core::scene::Variable>& variables, const Unit& length_unit) {
     ParameterReader reader(variables, length_unit);

@@ -18,4 +18,7 @@ namespace fettle::design::reading {
 std::vector<description::Parameter> read_parameters(const core::files::JsonNode& node, const std::vector<core::scene::Variable>& variables,
                                                     const Unit& length_unit);
 
+/// The unit in which people write such a quantity: of lengths the file's, of angles degrees, of others SI.
+Unit usual_unit(Dimension dimension, const Unit& length_unit);
+
 }  // namespace fettle::design::reading

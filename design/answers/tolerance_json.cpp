@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/answers/tolerance_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "fettle/core/base/text.hpp"
+#include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/description/requirement_text.hpp"
+
+namespace fettle::design::answers {
+
+namespace {
+
+using core::base::formatted;
+using core::base::percent;
+using description::Design;
+using description::Tolerance;
+using Json = nlohmann::ordered_json;
+using studies::Contribution;
+using studies::Response;
+using studies::SampledResponse;
+using studies::ToleranceReport;
+using tolerances::CapabilityIndex;
+using tolerances::CountedYield;
+using tolerances::Yield;
+
+constexpr double confidence = 0.95;
+
+const char* word_of(Response::Kind kind) {
+    return kind == Response::Kind::objective ? "objective" : kind == Response::Kind::constraint ? "constraint" : "relation";
+}
+
+bool has_bounds(const Response& response) { return std::isfinite(response.bounds.lower) || std::isfinite(response.bounds.upper); }
+
+/// The unit that a number is counted in.
+struct CountedUnit {
+    double si = 1;
+    std::string name;
+};
+CountedUnit unit_of(const Design& design, const Response& response) {
+    if (response.kind != Response::Kind::constraint) return {};
+    const description::Constraint& constraint = design.constraints[response.index];
+    return {constraint.bounds.unit, description::unit_name(constraint)};
+}
+
+Json yield_json(const Yield& yield) { return {{"within", yield.within}, {"ppm_outside", ppm_outside(yield)}}; }
+Json yield_json(const CountedYield& yield) {
+    return {{"within", yield.found.within}, {"least", yield.least.within}, {"most", yield.most.within}, {"confidence", confidence}};
+}
+Json index_json(const std::optional<CapabilityIndex>& index) {
+    if (!index) return {};
+    return {{"value", index->value}, {"error", index->error}};
+}
+
+Json sampled_json(const Response& response, const ToleranceReport& report) {
+    if (!response.sampled) return {};
+    const SampledResponse& s = *response.sampled;
+    const tolerances::Moments& moments = s.moments.moments;
+    Json json = {{"mean", moments.mean},
+                 {"mean_error", s.moments.mean_error},
+                 {"standard_deviation", moments.standard_deviation},
+                 {"standard_deviation_error", s.moments.standard_deviation_error},
+                 {"skewness", skewness(moments)},
+                 {"kurtosis", kurtosis(moments)},
+                 {"least", s.least},
+                 {"least_sample", s.least_sample},
+                 {"most", s.most},
+                 {"most_sample", s.most_sample},
+                 {"farthest_from_prediction", s.farthest},
+                 {"farthest_sample", s.farthest_sample},
+                 {"unexplained", s.unexplained}};
+    if (has_bounds(response)) {
+        json["met"] = s.met;
+        json["yield"] = yield_json(tolerances::counted_yield(s.met, report.samples, confidence));
+        json["cp"] = index_json(s.capability.cp);
+        json["cpk"] = index_json(s.capability.cpk);
+    }
+    return json;
+}
+
+Json response_json(const Design& design, const std::vector<Tolerance>& tolerances, const Response& response,
+                   const ToleranceReport& report) {
+    Json json = {{"name", response.name},
+                 {"of", word_of(response.kind)},
+                 {"unit", unit_of(design, response).name},
+                 {"lower", finite_or_null(response.bounds.lower)},
+                 {"upper", finite_or_null(response.bounds.upper)},
+                 {"nominal", response.nominal}};
+    json["linear"] = {{"mean", response.linear.mean},
+                      {"standard_deviation", response.linear.standard_deviation},
+                      {"worst_least", response.worst.least},
+                      {"worst_most", response.worst.most}};
+    if (has_bounds(response)) json["linear"]["yield"] = yield_json(response.linear_yield);
+    json["second_order"] = nullptr;
+    if (response.second_order) {
+        json["second_order"] = {{"mean", response.second_order->mean},
+                                {"standard_deviation", response.second_order->standard_deviation},
+                                {"skewness", skewness(*response.second_order)},
+                                {"kurtosis", kurtosis(*response.second_order)}};
+        if (has_bounds(response))
+            json["second_order"]["yield"] = response.second_order_yield ? yield_json(*response.second_order_yield) : Json();
+    }
+    json["sampled"] = sampled_json(response, report);
+    json["contributions"] = Json::array();
+    for (const Contribution& c : response.contributions)
+        json["contributions"].push_back(
+            {{"of", tolerances[c.tolerance].of}, {"sensitivity", c.sensitivity}, {"share", c.share}, {"worst", c.worst}});
+    return json;
+}
+
+Json tolerance_json(const Design& design, const Tolerance& tolerance) {
+    const Unit& unit = design.parameters[tolerance.parameter].unit;
+    const auto in_unit = [&](double si) { return si / to_si(1, unit); };
+    const tolerances::Moments moments = moments_of(tolerance.deviation);
+    return {{"of", tolerance.of},
+            {"stated", tolerance.stated},
+            {"unit", unit.name},
+            {"lower", in_unit(tolerance.deviation.lower)},
+            {"upper", in_unit(tolerance.deviation.upper)},
+            {"distribution", to_string(tolerance.deviation.kind)},
+            {"mean", in_unit(moments.mean)},
+            {"standard_deviation", in_unit(moments.standard_deviation)}};
+}
+
+std::string status_of(const ToleranceReport& report) {
+    return report.interrupted ? "interrupted" : report.reason.empty() && report.no_second_order.empty() ? "ok" : "undecided";
+}
+std::string message_of(const ToleranceReport& report) {
+    return report.reason.empty() ? report.no_second_order.empty() ? "" : "no second order: " + report.no_second_order : report.reason;
+}
+
+// "99.3% (98.1% to 99.8%)".
+std::string yield_text(const CountedYield& yield) {
+    return formatted("%.4g%% (%.4g%% to %.4g%%)", 100 * yield.found.within, 100 * yield.least.within, 100 * yield.most.within);
+}
+std::string yield_text(const Yield& yield) { return formatted("%.4g%%", 100 * yield.within); }
+
+class Text {
+public:
+    Text(const Design& design, const std::vector<Tolerance>& tolerances, const ToleranceReport& report)
+        : design_(design), tolerances_(tolerances), report_(report) {}
+
+    std::string all() const {
+        std::string text = "tolerances:\n";
+        for (const Tolerance& tolerance : tolerances_) text += line_of(tolerance);
+        if (!report_.reason.empty()) return text + "undecided: " + report_.reason + "\n";
+        for (const Response& response : report_.responses) text += lines_of(response);
+        if (!report_.no_second_order.empty())
+            text += "undecided: no second order, as the design cannot be simulated " + report_.no_second_order + "\n";
+        return text + of_samples() + advice();
+    }
+
+private:
+    std::string line_of(const Tolerance& tolerance) const {
+        const Unit& unit = design_.parameters[tolerance.parameter].unit;
+        const double one = to_si(1, unit);
+        const auto amount = [&](double si) { return formatted("%+.6g", si / one); };
+        const std::string limits =
+            amount(tolerance.deviation.lower) + " to " + amount(tolerance.deviation.upper) + " " + std::string(unit.name);
+        return formatted("  %-40s %-26s %s, sigma %.4g\n", tolerance.of.c_str(), limits.c_str(), to_string(tolerance.deviation.kind),
+                         moments_of(tolerance.deviation).standard_deviation / one);
+    }
+
+    std::string lines_of(const Response& response) const {
+        const CountedUnit unit = unit_of(design_, response);
+        const auto amount = [&](double si) { return description::amount_text(si, unit.si, unit.name, 6); };
+        const auto spread = [&](double mean, double sigma) { return amount(mean) + ", sigma " + amount(sigma); };
+        std::string text = response.name + ": " + amount(response.nominal) + " as drawn";
+        if (has_bounds(response)) text += ", required " + description::required_text(response.bounds, unit.name);
+        text += "\n";
+        const auto row = [&](const char* what, const std::string& value, const std::string& yield) {
+            text += formatted("  %-14s %s", what, value.c_str());
+            if (has_bounds(response) && !yield.empty()) text += "; yield " + yield;
+            text += "\n";
+        };
+        row("linear", spread(response.linear.mean, response.linear.standard_deviation), yield_text(response.linear_yield));
+        if (response.second_order)
+            row("second order", spread(response.second_order->mean, response.second_order->standard_deviation),
+                response.second_order_yield ? yield_text(*response.second_order_yield) : "not known, far from normal");
+        if (response.sampled) {
+            const SampledResponse& s = *response.sampled;
+            row("sampled", spread(s.moments.moments.mean, s.moments.moments.standard_deviation),
+                yield_text(tolerances::counted_yield(s.met, report_.samples, confidence)));
+            row("", "from " + amount(s.least) + " to " + amount(s.most) + capability(s), "");
+            if (s.unexplained > 0.05)
+                row("",
+                    "predictions miss the samples by " + percent(s.unexplained) + " of their sigma, most (" + amount(s.farthest) +
+                        ") in sample " + std::to_string(s.farthest_sample),
+                    "");
+        }
+        row("worst case", amount(response.worst.least) + " to " + amount(response.worst.most) + ", linear", "");
+        return text + "  by " + contributors(response, amount) + "\n";
+    }
+
+    static std::string capability(const SampledResponse& s) {
+        std::string text;
+        if (s.capability.cp) text += formatted("; Cp %.3g +- %.2g", s.capability.cp->value, s.capability.cp->error);
+        if (s.capability.cpk) text += formatted("; Cpk %.3g +- %.2g", s.capability.cpk->value, s.capability.cpk->error);
+        return text;
+    }
+
+    template <class Amount>
+    std::string contributors(const Response& response, const Amount& amount) const {
+        constexpr int most = 5;
+        std::vector<std::string> parts;
+        for (const Contribution& c : response.contributions) {
+            if (count_of(parts) == most || c.share < 0.001) break;
+            parts.push_back(tolerances_[c.tolerance].of + " " + percent(c.share) + " (+-" + amount(c.worst) + ")");
+        }
+        return parts.empty() ? "nothing: no tolerance changes it" : core::base::joined(parts);
+    }
+
+    std::string of_samples() const {
+        if (report_.samples == 0) return report_.interrupted ? "interrupted\n" : "";
+        std::string text = core::base::counted(static_cast<std::size_t>(report_.samples), "sample") + ": " +
+                           std::to_string(report_.met_all) + " meet every requirement, " +
+                           yield_text(tolerances::counted_yield(report_.met_all, report_.samples, confidence)) +
+                           formatted(" at %.0f%% confidence\n", 100 * confidence);
+        if (!report_.failed.empty()) {
+            text += core::base::counted(report_.failed.size(), "sample") + " could not be made or simulated, and count as misses:\n";
+            for (std::size_t k = 0; k < std::min<std::size_t>(report_.failed.size(), 5); ++k)
+                text += "  sample " + std::to_string(report_.failed[k].sample) + ": " + report_.failed[k].reason + "\n";
+        }
+        return report_.interrupted ? text + "interrupted\n" : text;
+    }
+
+    std::string advice() const {
+        std::string text;
+        for (const studies::Tightening& t : studies::what_to_tighten(report_)) {
+            const Response& response = report_.responses[t.response];
+            const CountedUnit unit = unit_of(design_, response);
+            text += "  " + response.name + ": ";
+            if (t.needed <= 0) {
+                text += "its mean is not within the bounds: move the design first\n";
+                continue;
+            }
+            text += "Cpk 1 needs sigma " + description::amount_text(t.needed, unit.si, unit.name, 3) + ": tighten ";
+            text += (t.tolerance ? tolerances_[*t.tolerance].of : "all that it depends on") + " to " + percent(t.factor) + "\n";
+        }
+        for (const int k : studies::what_may_be_loosened(report_))
+            text += "  " + tolerances_[k].of + " may be twice as wide: no requirement notices\n";
+        return text.empty() ? text : "what to do:\n" + text;
+    }
+
+    const Design& design_;
+    const std::vector<Tolerance>& tolerances_;
+    const ToleranceReport& report_;
+};
+
+}  // namespace
+
+Json tolerance_json(const Design& design, const std::vector<Tolerance>& tolerances, const ToleranceReport& report) {
+    Json json = {{"status", status_of(report)}, {"message", message_of(report)}};
+    json["tolerances"] = Json::array();
+    for (const Tolerance& tolerance : tolerances) json["tolerances"].push_back(tolerance_json(design, tolerance));
+    json["responses"] = Json::array();
+    if (report.reason.empty())
+        for (const Response& response : report.responses) json["responses"].push_back(response_json(design, tolerances, response, report));
+    json["samples"] = {{"count", report.samples}, {"met", report.met_all}, {"failed", report.failed.size()}};
+    json["samples"]["yield"] =
+        report.samples > 0 ? yield_json(tolerances::counted_yield(report.met_all, report.samples, confidence)) : Json();
+    json["tighten"] = Json::array();
+    for (const studies::Tightening& t : studies::what_to_tighten(report))
+        json["tighten"].push_back({{"name", report.responses[t.response].name},
+                                   {"standard_deviation", t.needed},
+                                   {"of", t.tolerance ? Json(tolerances[*t.tolerance].of) : Json()},
+                                   {"factor", t.factor}});
+    json["loosen"] = Json::array();
+    for (const int k : studies::what_may_be_loosened(report)) json["loosen"].push_back(tolerances[k].of);
+    json["failed"] = Json::array();
+    for (const studies::FailedSample& failed : report.failed) {
+        Json deviations;
+        for (int k = 0; k < count_of(tolerances); ++k)
+            deviations[tolerances[k].of] = failed.deviations[k] / to_si(1, design.parameters[tolerances[k].parameter].unit);
+        json["failed"].push_back({{"sample", failed.sample}, {"reason", failed.reason}, {"deviations", deviations}});
+    }
+    return json;
+}
+
+std::string tolerance_text(const Design& design, const std::vector<Tolerance>& tolerances, const ToleranceReport& report) {
+    return Text(design, tolerances, report).all();
+}
+
+}  // namespace fettle::design::answers

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+/// fettle tolerance DESIGN: what becomes of it when its parts are made.
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "fettle/design/answers/tolerance_json.hpp"
+#include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/studies/tolerance_study.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+struct Options {
+    std::string path;
+    int samples = 0;
+    int seed = 1;
+    bool first_order = false;
+};
+
+Error no_tolerances(const std::string& path) {
+    return {ErrorCode::missing_key, path,
+            "it has no `tolerances`: say, for instance, \"tolerances\": {\"pin_radius\": \"+-0.05 mm\"}, by names of parameters or of the "
+            "scene's variables, or by places (\"/bodies/pin/shape/dimensions/radius\")"};
+}
+
+int run_tolerance(const Options& options, const CommonOptions& common, Console& console) {
+    begin_to_read(options.path);
+    reading::DesignReadOptions read{common.mesh_dirs, programs_of(common)};
+    read.as_made = true;
+    Result<reading::DesignFile> file = reading::read_design(options.path, read);
+    if (!file) return console.input_errors(file.errors());
+    tell_warnings(console, file->warnings, options.path);
+    if (file->tolerances.empty()) return console.input_errors({no_tolerances(options.path)});
+    const Result<problem::DesignProblem> problem = problem::DesignProblem::create(file->design);
+    if (!problem) return console.input_errors(problem.errors());
+    studies::ToleranceOptions study;
+    study.samples = options.samples;
+    study.seed = static_cast<std::uint64_t>(options.seed);
+    study.second_order = !options.first_order;
+    study.should_stop = interrupted;
+    study.on_simulation = [&](int done, int of) { console.progress("simulating", done, of); };
+    const studies::ToleranceReport report = studies::study_tolerances(*problem, file->tolerances, study);
+    console.end_progress();
+    console.result(answers::tolerance_json(problem->design(), file->tolerances, report),
+                   answers::tolerance_text(problem->design(), file->tolerances, report));
+    return report.reason.empty() && report.no_second_order.empty() && !report.interrupted ? exit_done : exit_undecided;
+}
+
+}  // namespace
+
+Command add_tolerance(CommandLine& program, const CommonOptions& common) {
+    CommandLine app = program.command("tolerance", "What becomes of a design when its parts are made: spread, contributors, yield");
+    auto options = std::make_shared<Options>();
+    app.option("DESIGN", options->path, "Design with `tolerances`, taken at its values").required();
+    app.option("--samples", options->samples, "Whole simulations of made mechanisms (default 0: predictions alone)");
+    app.option("--seed", options->seed, "Of the samples (default 1)");
+    app.flag("--first-order", options->first_order, "Predict from one simulation, without the 2 per tolerance that the second order takes");
+    app.closing_words(
+        "Example:  fettle tolerance examples/slider_crank/slider_crank.design.json --samples 256\n"
+        "Predicts, from the derivatives, how far each number that the design asks for spreads over the tolerances, and which of them make\n"
+        "it so; samples are simulations of their own, at points that are the same for any number of threads. All of it is computed, none\n"
+        "of it proven. Exit code 2: the design as drawn, or one a standard deviation beside it, cannot be simulated.");
+    return {app, [options, &common](Console& console) { return run_tolerance(*options, common, console); }};
+}
+
+}  // namespace fettle::design::cli

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/description/tolerance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fettle/core/expression/parse_formula.hpp"
+#include "fettle/core/scene/place.hpp"
+
+namespace fettle::design::description {
+
+namespace {
+
+using core::expression::Formula;
+using core::scene::BoundNumber;
+
+// nominal + input.
+Formula sum_of(const Formula& nominal, const std::string& input, Dimension dimension) {
+    const auto powers = core::expression::powers_of(dimension);
+    core::expression::Scope scope;
+    scope.names = {{"nominal", powers}, {"deviation", powers}};
+    const Formula sum = core::expression::parse_formula("nominal + deviation", scope).value();
+    return core::expression::substituted(sum, {{"nominal", nominal}, {"deviation", core::expression::input_formula(input, powers)}});
+}
+
+void add_to(const core::scene::Scene& scene, std::vector<BoundNumber>& numbers, const core::scene::Place& place, const std::string& input) {
+    const std::string pointer = core::scene::pointer_to(scene, place);
+    const Dimension dimension = core::scene::dimension_at(scene, place);
+    const auto found = std::find_if(numbers.begin(), numbers.end(), [&](const BoundNumber& number) {
+        const auto other = core::scene::find_place(scene, number.place);
+        return other && *other == place;
+    });
+    if (found != numbers.end()) {
+        found->formula = sum_of(found->formula, input, dimension);
+        return;
+    }
+    const double written = core::scene::value_at(scene, place);
+    const Formula nominal =
+        core::expression::constant_formula(std::isfinite(written) ? written : 0, core::expression::powers_of(dimension));
+    numbers.push_back({pointer, sum_of(nominal, input, dimension)});
+}
+
+}  // namespace
+
+Result<int> add_deviation(Design& design, const std::string& place, const Unit& unit) {
+    const core::scene::Scene scene = described_scene(design);
+    const Result<core::scene::Place> found = core::scene::find_place(scene, place);
+    if (!found) return found.errors();
+    Parameter parameter;
+    parameter.name = "deviation of " + place;
+    parameter.unit = unit;
+    design.parameters.push_back(parameter);
+    if (design.scenarios.empty()) add_to(scene, design.numbers, *found, parameter.name);
+    for (int s = 0; s < count_of(design.scenarios); ++s)
+        add_to(described_scene(design_of_scenario(design, s)), design.scenarios[s].numbers, *found, parameter.name);
+    return count_of(design.parameters) - 1;
+}
+
+VectorX with_deviations(const Design& as_made, const std::vector<Tolerance>& tolerances, const VectorX& deviations) {
+    VectorX p = values_of(as_made.parameters);
+    for (int k = 0; k < count_of(tolerances); ++k) p[tolerances[k].parameter] += deviations[k];
+    return p;
+}
+
+}  // namespace fettle::design::description

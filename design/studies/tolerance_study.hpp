@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+/// What becomes of a design when its parts are made: of each number that it asks for, how far it spreads over the tolerances, and which of
+/// them make it so. Method: docs/method/tolerances.md.
+///
+/// - **Predicted**, from the derivatives of one simulation: y = y0 + sum g_j d_j over the deviations d_j. With second-order terms the
+///   gradients of 2n simulations more, at +-1 standard deviation of each tolerance.
+/// - **Sampled**: whole simulations at scrambled Sobol points. The same samples for any number of threads; sample k is the same whether
+///   there are 100 or 1,000. A sample that cannot be made or simulated (a jam) is counted and kept, never dropped.
+///
+/// All of it is computed. Nothing here is proven, but the clearance of each sample by itself.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fettle/design/description/tolerance.hpp"
+#include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/tolerances/capability.hpp"
+#include "fettle/design/tolerances/propagation.hpp"
+#include "fettle/design/tolerances/yield.hpp"
+
+namespace fettle::design::studies {
+
+struct ToleranceOptions {
+    int samples = 0;  ///< whole simulations; 0: none
+    std::uint64_t seed = 1;
+    bool second_order = true;
+    std::function<bool()> should_stop;                         ///< optional
+    std::function<void(int done, int of)> on_simulation = {};  ///< optional; called from one thread at a time
+};
+
+/// What one tolerance does to one number.
+struct Contribution {
+    int tolerance = 0;
+    double sensitivity = 0;  ///< dy/dd, SI
+    double share = 0;        ///< of the linear variance
+    double worst = 0;        ///< |dy/dd| times half the width of its limits
+};
+
+/// Of the samples that could be simulated.
+struct SampledResponse {
+    tolerances::SampleMoments moments;
+    tolerances::Capability capability;
+    double least = 0, most = 0;
+    int least_sample = 0, most_sample = 0;
+    int met = 0;          ///< that meet the bounds, by what is proven of them where it is
+    double farthest = 0;  ///< largest |sampled - predicted|, by the second order where there is one
+    int farthest_sample = 0;
+    double unexplained = 0;  ///< root mean square of sampled - predicted, over the samples' standard deviation; 0 where nothing varies
+};
+
+/// A number that the design asks for: its objective, a constraint, a relation.
+struct Response {
+    enum class Kind { objective, constraint, relation };
+    std::string name;
+    Kind kind = Kind::constraint;
+    int index = 0;
+    description::Bounds bounds;               ///< the objective has none
+    double nominal = 0;                       ///< as designed
+    VectorX gradient;                         ///< per tolerance
+    std::vector<Contribution> contributions;  ///< the largest share first
+    tolerances::LinearPrediction linear;
+    tolerances::LinearWorstCase worst;
+    tolerances::Yield linear_yield;
+    MatrixX curvature;  ///< empty: there is no second order
+    std::optional<tolerances::Moments> second_order;
+    std::optional<tolerances::Yield> second_order_yield;  ///< nothing too where the moments are of no distribution that is known
+    std::optional<SampledResponse> sampled;
+};
+tolerances::RequirementLimits limits_of(const Response& response);
+
+struct FailedSample {
+    int sample = 0;
+    VectorX deviations;
+    std::string reason;
+};
+
+struct ToleranceReport {
+    std::vector<Response> responses;  ///< objective, constraints, relations
+    std::string no_second_order;      ///< why there is none, though it was asked for; empty: there is, or it was not
+    int samples = 0;                  ///< that came to an end: simulated or failed
+    int met_all = 0;                  ///< that meet every requirement
+    std::vector<FailedSample> failed;
+    bool interrupted = false;
+    std::string reason;  ///< why there is nothing of it: the design as drawn cannot be simulated; empty: there is
+};
+
+/// The deviations of a sample, one per tolerance.
+VectorX deviations_of_sample(const std::vector<description::Tolerance>& tolerances, std::uint64_t seed, int sample);
+
+/// @param problem  Of the design as made (description/tolerance.hpp).
+ToleranceReport study_tolerances(const problem::DesignProblem& problem, const std::vector<description::Tolerance>& tolerances,
+                                 const ToleranceOptions& options = {});
+
+/// What would bring a requirement to Cpk 1 by the predicted moments (99.73% of a normal response within two limits, 99.87% within one).
+struct Tightening {
+    int response = 0;
+    double needed = 0;             ///< standard deviation of the response; 0 or less: its mean is beyond a bound, the design has to move
+    std::optional<int> tolerance;  ///< the largest contributor, if tightening it alone is enough; else all of them
+    double factor = 0;             ///< by which its width, or all widths, are multiplied
+};
+/// Of the requirements that have less, in their order; linear in the tolerances' widths.
+std::vector<Tightening> what_to_tighten(const ToleranceReport& report);
+
+/// Tolerances that could be twice as wide: no requirement has more than a share of 1% of its variance from them.
+std::vector<int> what_may_be_loosened(const ToleranceReport& report);
+
+}  // namespace fettle::design::studies

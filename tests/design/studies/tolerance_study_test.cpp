@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// Published stacks as designs, and a part whose mass and fall have closed forms.
+#include "fettle/design/studies/tolerance_study.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "fettle/core/base/parallel.hpp"
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/tests/support/temporary_folder.hpp"
+
+namespace fettle::design::studies::tolerance_study_test {
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+const char* const block = R"({"fettle_scene": 1, "units": "mm", "gravity": [0, 0, -9.81], "timestep": 0.01, "end_time": 0.03,
+    "variables": {"length": "10 mm", "twice": "2 * length"},
+    "bodies": [{"name": "block", "density": 1000,
+                "shape": {"part": "box", "dimensions": {"size_x": "= length", "size_y": 10, "size_z": 10}}}]})";
+
+// One-way clutch: hub a, roller c, ring e; the wedge's angle is acos((a + c)/(e - c)) (Gao, Chase and Magleby).
+const char* const clutch = R"json({"fettle_design": 1, "scene": "block.scene.json", "units": "mm",
+    "parameters": [{"name": "a", "value": 27.645, "lower": 20, "upper": 30}, {"name": "c", "value": 11.43, "lower": 10, "upper": 12},
+                   {"name": "e", "value": 50.8, "lower": 45, "upper": 55}],
+    "objective": [{"type": "expression", "expression": "acos((a + c) / (e - c)) / 1 deg"}],
+    "constraints": [{"type": "relation", "name": "angle", "expression": "acos((a + c) / (e - c))", "lower": "6.5 deg", "upper": "7.5 deg"}],
+    "tolerances": {"a": "+-0.05 mm", "c": "+-0.01", "e": {"lower": "-0.0125 mm", "upper": 0.0125}}})json";
+
+// Nominal 10 mm long, 10 mm on a side, 1 g/cm^3.
+const char* const made_block = R"json({"fettle_design": 1, "scene": "block.scene.json", "units": "mm",
+    "parameters": [{"name": "depth", "value": 10, "lower": 5, "upper": 20}], "set": {"/bodies/block/shape/dimensions/size_y": "= depth"},
+    "objective": [{"type": "mass", "bodies": ["block"]}],
+    "constraints": [{"type": "mass", "name": "mass", "bodies": ["block"], "upper": "1.02 g"}],
+    "tolerances": TOLERANCES})json";
+
+struct Folder : tests::support::TemporaryFolder {
+    Folder() { write("block.scene.json", block); }
+    Result<reading::DesignFile> read(const std::string& text) {
+        reading::DesignReadOptions options;
+        options.as_made = true;
+        return reading::parse_design(text, file("x.design.json"), options);
+    }
+    Result<reading::DesignFile> read_block(const std::string& tolerances) {
+        std::string text = made_block;
+        return read(text.replace(text.find("TOLERANCES"), 10, tolerances));
+    }
+};
+
+ToleranceReport study(const Result<reading::DesignFile>& file, const ToleranceOptions& options = {}) {
+    for (const Error& error : file.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
+    REQUIRE(file);
+    const auto problem = problem::DesignProblem::create(file->design);
+    for (const Error& error : problem.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
+    REQUIRE(problem);
+    ToleranceReport report = study_tolerances(*problem, file->tolerances, options);
+    INFO(report.reason << report.no_second_order);
+    REQUIRE(report.reason.empty());
+    return report;
+}
+
+}  // namespace
+
+TEST_CASE("tolerances of the one-way clutch: the published sensitivities, shares, moments and worst case") {
+    Folder folder;
+    const ToleranceReport report = study(folder.read(clutch));
+    REQUIRE(report.responses.size() == 2);
+    CHECK(report.no_second_order.empty());
+    const Response& angle = report.responses[1];
+    CHECK(angle.nominal / degree == Approx(7.018389803).epsilon(1e-9));
+    CHECK(angle.gradient[0] * 1e-3 / degree == Approx(-11.910473).epsilon(1e-6));
+    CHECK(angle.gradient[1] * 1e-3 / degree == Approx(-23.731700).epsilon(1e-6));
+    CHECK(angle.gradient[2] * 1e-3 / degree == Approx(11.821227).epsilon(1e-6));
+    CHECK(angle.linear.standard_deviation / degree == Approx(0.2192924).epsilon(1e-6));
+    REQUIRE(angle.contributions.size() == 3);
+    CHECK(angle.contributions[0].share == Approx(0.81942).epsilon(1e-4));
+    CHECK(angle.contributions[1].share == Approx(0.13013).epsilon(1e-4));
+    CHECK(angle.contributions[2].share == Approx(0.05045).epsilon(1e-3));
+    CHECK((angle.worst.most - angle.worst.least) / 2 / degree == Approx(0.980606).epsilon(1e-5));
+    REQUIRE(angle.second_order);
+    CHECK(angle.second_order->mean / degree == Approx(7.0149565).epsilon(1e-4));
+    CHECK(angle.second_order->standard_deviation / degree == Approx(0.2196700).epsilon(1e-4));
+    CHECK(skewness(*angle.second_order) == Approx(-0.0943927).epsilon(0.02));
+    CHECK(kurtosis(*angle.second_order) == Approx(3.0238976).epsilon(1e-3));
+    REQUIRE(angle.second_order_yield);
+}
+
+TEST_CASE("tolerances: samples of the clutch agree with the second order, and are the same for any number of threads") {
+    Folder folder;
+    ToleranceOptions options;
+    options.samples = 512;
+    const auto file = folder.read(clutch);
+    const ToleranceReport report = study(file, options);
+    const Response& angle = report.responses[1];
+    REQUIRE(angle.sampled);
+    CHECK(report.samples == 512);
+    CHECK(report.failed.empty());
+    const tolerances::SampleMoments& sampled = angle.sampled->moments;
+    CHECK(std::abs(sampled.moments.mean - angle.second_order->mean) < 3 * sampled.mean_error);
+    CHECK(std::abs(sampled.moments.standard_deviation - angle.second_order->standard_deviation) < 3 * sampled.standard_deviation_error);
+    CHECK(angle.sampled->unexplained < 0.01);
+    CHECK(angle.sampled->met == report.met_all);
+    CHECK(static_cast<double>(report.met_all) / report.samples == Approx(angle.second_order_yield->within).margin(0.02));
+    options.samples = 40;
+    const ToleranceReport fewer = study(file, options);
+    CHECK(fewer.responses[1].sampled->least >= angle.sampled->least);  // the first of the same samples
+    CHECK(deviations_of_sample(file->tolerances, 1, 7) != deviations_of_sample(file->tolerances, 2, 7));
+}
+
+TEST_CASE("tolerances of a parameter, a variable of the scene, and a place of it") {
+    Folder folder;
+    const auto file =
+        folder.read_block(R"({"depth": "+-0.3 mm", "length": "h10", "/bodies/block/shape/dimensions/size_z": {"general": "m"}})");
+    const ToleranceReport report = study(file);
+    REQUIRE(file->tolerances.size() == 3);
+    const Response& mass = report.responses[1];
+    // 10 g/mm of each side's 10 mm: 0.1 g/mm.
+    for (int k = 0; k < 3; ++k) {
+        INFO(file->tolerances[k].of << " " << file->tolerances[k].stated);
+        CHECK(mass.gradient[k] == Approx(0.1).epsilon(1e-9));  // kg/m
+    }
+    CHECK(mass.nominal == Approx(1e-3));
+    const auto deviation_of = [&](const std::string& of) {
+        for (const description::Tolerance& tolerance : file->tolerances)
+            if (tolerance.of == of) return tolerance.deviation;
+        FAIL(of);
+        return tolerances::Distribution();
+    };
+    CHECK(deviation_of("depth").upper == Approx(0.3e-3));
+    CHECK(deviation_of("length").lower == Approx(-58e-6));
+    CHECK(deviation_of("length").upper == 0);
+    CHECK(deviation_of("/bodies/block/shape/dimensions/size_z").lower == Approx(-0.2e-3));
+    CHECK(mass.worst.most - mass.worst.least == Approx(0.1 * (0.6e-3 + 58e-6 + 0.4e-3)).epsilon(1e-6));
+    // The product of three independent numbers: its second order is exact but for the third.
+    REQUIRE(mass.second_order);
+    CHECK(mass.second_order->mean == Approx(1e-3 * (1 - 29e-6 / 10e-3)).epsilon(1e-9));
+}
+
+TEST_CASE("tolerances: what cannot be made is counted, and told") {
+    Folder folder;
+    const auto file = folder.read_block(R"({"depth": {"lower": -15, "upper": 15, "distribution": "uniform"}})");
+    ToleranceOptions options;
+    options.samples = 64;
+    const ToleranceReport report = study(file, options);
+    CHECK(report.samples == 64);
+    CHECK(report.failed.size() > 5);  // a sixth has no depth
+    CHECK(report.failed.size() < 20);
+    CHECK(report.met_all + count_of(report.failed) <= 64);
+    CHECK_FALSE(report.failed.front().reason.empty());
+    CHECK(report.failed.front().deviations[0] <= -10e-3);
+}
+
+TEST_CASE("tolerances: what to tighten, and what may be wider") {
+    Folder folder;
+    // Mass 1 g at most 1.02 g: Cpk 1 needs a sigma of 0.02 g / 3.
+    const auto file =
+        folder.read_block(R"({"depth": "+-0.3 mm", "length": "+-0.1 mm", "/bodies/block/shape/dimensions/size_z": "+-0.01 mm"})");
+    ToleranceReport report = study(file);
+    const std::vector<Tightening> tighten = what_to_tighten(report);
+    REQUIRE(tighten.size() == 1);
+    CHECK(tighten[0].response == 1);
+    CHECK(tighten[0].needed == Approx(0.02e-3 / 3).epsilon(1e-6));
+    REQUIRE(tighten[0].tolerance);
+    CHECK(file->tolerances[*tighten[0].tolerance].of == "depth");
+    // 0.1 g/mm: the others leave sqrt(0.2^2 - 0.1^2 - 0.01^2) mm of depth's 0.3 mm.
+    CHECK(tighten[0].factor == Approx(std::sqrt(0.04 - 0.01 - 0.0001) / 0.3).epsilon(1e-3));
+    REQUIRE(what_may_be_loosened(report).size() == 1);
+    CHECK(file->tolerances[what_may_be_loosened(report)[0]].of == "/bodies/block/shape/dimensions/size_z");
+    report.responses[1].bounds.upper = 0.9e-3;
+    CHECK(what_to_tighten(report)[0].needed < 0);
+    report.responses[1].bounds.upper = 1.2e-3;
+    CHECK(what_to_tighten(report).empty());
+}
+
+TEST_CASE("tolerances: faults name the entry and say what is allowed") {
+    Folder folder;
+    const auto fault = [&](const std::string& tolerances) {
+        const auto file = folder.read_block(tolerances);
+        REQUIRE_FALSE(file);
+        return file.errors().front().where + ": " + file.errors().front().message;
+    };
+    CHECK(fault(R"({"dept": "+-0.3 mm"})").find("did you mean `depth`") != std::string::npos);
+    CHECK(fault(R"({"/bodies/blok/density": "+-3"})").find("block") != std::string::npos);
+    CHECK(fault(R"({"depth": "H99"})").find("#/tolerances/depth") != std::string::npos);
+    CHECK(fault(R"({"depth": {"lower": 0.1}})").find("upper") != std::string::npos);
+    CHECK(fault(R"({"depth": {"lower": 0.1, "upper": -0.1}})").find("above") != std::string::npos);
+    CHECK(fault(R"({"depth": {"class": "H7", "general": "m"}})").find("one of these") != std::string::npos);
+    CHECK(fault(R"({"twice": "+-0.1 mm"})").find("follows from others") != std::string::npos);
+    CHECK(fault(R"({"depth": "+-1 deg"})").find("length") != std::string::npos);
+    CHECK(fault(R"({"depth": {"lower": -1, "upper": 1, "sigma_level": 0}})").find("sigma_level") != std::string::npos);
+}
+
+}  // namespace fettle::design::studies::tolerance_study_test
