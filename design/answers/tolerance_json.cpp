@@ -20,6 +20,7 @@ using description::Design;
 using description::Tolerance;
 using Json = nlohmann::ordered_json;
 using studies::Contribution;
+using studies::has_bounds;
 using studies::Response;
 using studies::SampledResponse;
 using studies::ToleranceReport;
@@ -33,15 +34,13 @@ const char* word_of(Response::Kind kind) {
     return kind == Response::Kind::objective ? "objective" : kind == Response::Kind::constraint ? "constraint" : "relation";
 }
 
-bool has_bounds(const Response& response) { return std::isfinite(response.bounds.lower) || std::isfinite(response.bounds.upper); }
-
 /// The unit that a number is counted in.
 struct CountedUnit {
     double si = 1;
     std::string name;
 };
 CountedUnit unit_of(const Design& design, const Response& response) {
-    if (response.kind != Response::Kind::constraint) return {};
+    if (response.kind != Response::Kind::constraint) return {response.bounds.unit, ""};  // of relations people know no unit
     const description::Constraint& constraint = design.constraints[response.index];
     return {constraint.bounds.unit, description::unit_name(constraint)};
 }
@@ -93,6 +92,9 @@ Json response_json(const Design& design, const std::vector<Tolerance>& tolerance
                       {"standard_deviation", response.linear.standard_deviation},
                       {"worst_least", response.worst.least},
                       {"worst_most", response.worst.most}};
+    json["worst_found"] = nullptr;
+    if (response.least_found)
+        json["worst_found"] = {{"least", finite_or_null(*response.least_found)}, {"most", finite_or_null(*response.most_found)}};
     if (has_bounds(response)) json["linear"]["yield"] = yield_json(response.linear_yield);
     json["second_order"] = nullptr;
     if (response.second_order) {
@@ -192,6 +194,10 @@ private:
                     "");
         }
         row("worst case", amount(response.worst.least) + " to " + amount(response.worst.most) + ", linear", "");
+        if (response.least_found) {
+            const auto found = [&](double value) { return std::isfinite(value) ? amount(value) : std::string("what cannot be simulated"); };
+            row("", found(*response.least_found) + " to " + found(*response.most_found) + ", simulated at these corners", "");
+        }
         return text + "  by " + contributors(response, amount) + "\n";
     }
 

@@ -16,7 +16,7 @@ struct Options {
     std::string path;
     int samples = 0;
     int seed = 1;
-    bool first_order = false;
+    bool first_order = false, worst_case = false;
 };
 
 Error no_tolerances(const std::string& path) {
@@ -39,6 +39,7 @@ int run_tolerance(const Options& options, const CommonOptions& common, Console& 
     study.samples = options.samples;
     study.seed = static_cast<std::uint64_t>(options.seed);
     study.second_order = !options.first_order;
+    study.worst_case = options.worst_case;
     study.should_stop = interrupted;
     study.on_simulation = [&](int done, int of) { console.progress("simulating", done, of); };
     const studies::ToleranceReport report = studies::study_tolerances(*problem, file->tolerances, study);
@@ -54,9 +55,10 @@ Command add_tolerance(CommandLine& program, const CommonOptions& common) {
     CommandLine app = program.command("tolerance", "What becomes of a design when its parts are made: spread, contributors, yield");
     auto options = std::make_shared<Options>();
     app.option("DESIGN", options->path, "Design with `tolerances`, taken at its values").required();
-    app.option("--samples", options->samples, "Whole simulations of made mechanisms (default 0: predictions alone)");
-    app.option("--seed", options->seed, "Of the samples (default 1)");
+    app.option("--samples", options->samples, "Whole simulations of made mechanisms (default 0: predictions alone)").at_least(0);
+    app.option("--seed", options->seed, "Of the samples (default 1)").at_least(0);
     app.flag("--first-order", options->first_order, "Predict from one simulation, without the 2 per tolerance that the second order takes");
+    app.flag("--worst-case", options->worst_case, "Simulate the worst cases that the derivatives name too: two for each requirement");
     app.closing_words(
         "Example:  fettle tolerance examples/slider_crank/slider_crank.design.json --samples 256\n"
         "Predicts, from the derivatives, how far each number that the design asks for spreads over the tolerances, and which of them make\n"

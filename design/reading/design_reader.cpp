@@ -59,6 +59,7 @@ public:
         design_.parameters = read_parameters(root.require("parameters"), formulas.scene_variables(), file_.length_unit);
         std::vector<description::Parameter> as_made = design_.parameters;
         std::vector<ToleranceEntry> entries = read_tolerances(root["tolerances"], formulas.scene_variables(), file_.length_unit, as_made);
+        refuse_set_variables(root, entries);
         if (options_.as_made) design_.parameters = as_made;
         formulas.add_parameters(root["parameters"], design_.parameters);
         formulas.read_variables(root["variables"]);
@@ -102,6 +103,17 @@ private:
         return std::all_of(errors.begin(), errors.end(), [](const Error& error) {
             return error.code == ErrorCode::inconsistent || error.code == ErrorCode::out_of_range || error.code == ErrorCode::unsupported;
         });
+    }
+
+    // A variable with a tolerance is a parameter, which would replace what is set.
+    static void refuse_set_variables(const JsonNode& root, const std::vector<ToleranceEntry>& entries) {
+        std::vector<JsonNode> sets{root["set"]};
+        for (const JsonNode& scenario : root["scenarios"].elements()) sets.push_back(scenario["set"]);
+        for (const ToleranceEntry& entry : entries)
+            if (std::any_of(sets.begin(), sets.end(),
+                            [&](const JsonNode& set) { return set["/variables/" + entry.tolerance.of].exists(); }))
+                entry.node.fail(ErrorCode::unsupported, "the design, or one of its scenarios, sets variable `" + entry.tolerance.of +
+                                                            "`: give the tolerance to the places that it is used at");
     }
 
     // Of a design as drawn they are checked, and left.

@@ -69,7 +69,7 @@ private:
         if (!formula) return;
         const double size = core::expression::value_of<double>(*formula, {});
         if (!(size >= 0 && std::isfinite(size))) node_.fail(ErrorCode::out_of_range, "a tolerance is a number of at least 0");
-        set_limits(-size, size, text, tolerance);
+        set_limits(size > 0 ? -size : 0, size, text, tolerance);
     }
 
     static void set_limits(double lower, double upper, const std::string& stated, Tolerance& tolerance) {

@@ -2,9 +2,11 @@
 #include "fettle/design/studies/tolerance_study.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/design/tolerances/sobol.hpp"
@@ -47,6 +49,7 @@ public:
         take_nominal(nominal);
         if (options_.second_order) take_curvatures();
         for (Response& response : report_.responses) predict(response);
+        if (options_.worst_case && !report_.interrupted) find_worst_cases();
         if (options_.samples > 0 && !report_.interrupted) sample();
         return std::move(report_);
     }
@@ -179,6 +182,36 @@ private:
         response.second_order_yield = tolerances::cornish_fisher_yield(*response.second_order, limits_of(response));
     }
 
+    // Corners that several responses name are simulated once.
+    void find_worst_cases() {
+        std::vector<VectorX> corners;
+        const auto place_of = [&](const VectorX& corner) {
+            const auto known = std::find(corners.begin(), corners.end(), corner);
+            if (known != corners.end()) return static_cast<int>(known - corners.begin());
+            corners.push_back(corner);
+            return count_of(corners) - 1;
+        };
+        std::vector<std::pair<int, int>> places;  // least, most
+        for (const Response& response : report_.responses)
+            places.push_back(has_bounds(response) ? std::pair(place_of(response.worst.at_least), place_of(response.worst.at_most))
+                                                  : std::pair(-1, -1));
+        to_do_ += count_of(corners);
+        std::vector<VectorX> values(corners.size());
+        std::atomic<bool> is_interrupted = false;
+        core::base::parallel_for(count_of(corners), 1, [&](int k) {
+            const DesignEvaluation evaluation = evaluated(corners[k], false);
+            if (evaluation.interrupted) is_interrupted = true;
+            if (evaluation.usable) values[k] = values_of(evaluation);
+        });
+        report_.interrupted = report_.interrupted || is_interrupted;
+        for (int i = 0; i < count_of(report_.responses); ++i) {
+            if (places[i].first < 0) continue;
+            const auto found = [&](int k) { return values[k].size() > 0 ? values[k][i] : std::nan(""); };
+            report_.responses[i].least_found = found(places[i].first);
+            report_.responses[i].most_found = found(places[i].second);
+        }
+    }
+
     struct Sample {
         VectorX deviations, values;  // values empty: it failed, or was not begun
         std::vector<bool> met;       // per response
@@ -274,6 +307,8 @@ private:
 
 }  // namespace
 
+bool has_bounds(const Response& response) { return std::isfinite(response.bounds.lower) || std::isfinite(response.bounds.upper); }
+
 tolerances::RequirementLimits limits_of(const Response& response) { return {response.bounds.lower, response.bounds.upper}; }
 
 VectorX deviations_of_sample(const std::vector<Tolerance>& tolerances, std::uint64_t seed, int sample) {
@@ -311,10 +346,9 @@ std::vector<int> what_may_be_loosened(const ToleranceReport& report) {
     constexpr double little = 0.01;
     std::map<int, double> largest;
     for (const Response& response : report.responses) {
-        const bool is_required = std::isfinite(response.bounds.lower) || std::isfinite(response.bounds.upper);
         for (const Contribution& c : response.contributions) {
             double& share = largest[c.tolerance];
-            if (is_required) share = std::max(share, c.share);
+            if (has_bounds(response)) share = std::max(share, c.share);
         }
     }
     std::vector<int> out;

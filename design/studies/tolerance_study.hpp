@@ -4,6 +4,9 @@
 ///
 /// - **Predicted**, from the derivatives of one simulation: y = y0 + sum g_j d_j over the deviations d_j. With second-order terms the
 ///   gradients of 2n simulations more, at +-1 standard deviation of each tolerance.
+/// - **Worst case**: the extremes of the linear prediction over all deviations within their limits, and, if asked for, what simulations
+/// have
+///   at those corners. The extremes of a response that is not monotone lie elsewhere.
 /// - **Sampled**: whole simulations at scrambled Sobol points. The same samples for any number of threads; sample k is the same whether
 ///   there are 100 or 1,000. A sample that cannot be made or simulated (a jam) is counted and kept, never dropped.
 ///
@@ -28,7 +31,8 @@ struct ToleranceOptions {
     int samples = 0;  ///< whole simulations; 0: none
     std::uint64_t seed = 1;
     bool second_order = true;
-    std::function<bool()> should_stop;                         ///< optional
+    bool worst_case = false;            ///< simulate the corners that the derivatives name, two per response that has bounds
+    std::function<bool()> should_stop;  ///< optional
     std::function<void(int done, int of)> on_simulation = {};  ///< optional; called from one thread at a time
 };
 
@@ -64,12 +68,15 @@ struct Response {
     std::vector<Contribution> contributions;  ///< the largest share first
     tolerances::LinearPrediction linear;
     tolerances::LinearWorstCase worst;
+    /// Simulated at worst.at_least and worst.at_most; NaN: it cannot be. Nothing: not asked for.
+    std::optional<double> least_found, most_found;
     tolerances::Yield linear_yield;
     MatrixX curvature;  ///< empty: there is no second order
     std::optional<tolerances::Moments> second_order;
     std::optional<tolerances::Yield> second_order_yield;  ///< nothing too where the moments are of no distribution that is known
     std::optional<SampledResponse> sampled;
 };
+bool has_bounds(const Response& response);
 tolerances::RequirementLimits limits_of(const Response& response);
 
 struct FailedSample {

@@ -65,7 +65,9 @@ ToleranceReport study(const Result<reading::DesignFile>& file, const ToleranceOp
 
 TEST_CASE("tolerances of the one-way clutch: the published sensitivities, shares, moments and worst case") {
     Folder folder;
-    const ToleranceReport report = study(folder.read(clutch));
+    ToleranceOptions options;
+    options.worst_case = true;
+    const ToleranceReport report = study(folder.read(clutch), options);
     REQUIRE(report.responses.size() == 2);
     CHECK(report.no_second_order.empty());
     const Response& angle = report.responses[1];
@@ -79,6 +81,8 @@ TEST_CASE("tolerances of the one-way clutch: the published sensitivities, shares
     CHECK(angle.contributions[1].share == Approx(0.13013).epsilon(1e-4));
     CHECK(angle.contributions[2].share == Approx(0.05045).epsilon(1e-3));
     CHECK((angle.worst.most - angle.worst.least) / 2 / degree == Approx(0.980606).epsilon(1e-5));
+    CHECK(angle.least_found.value() / degree == Approx(5.957365).epsilon(1e-6));
+    CHECK(angle.most_found.value() / degree == Approx(7.938469).epsilon(1e-6));
     REQUIRE(angle.second_order);
     CHECK(angle.second_order->mean / degree == Approx(7.0149565).epsilon(1e-4));
     CHECK(angle.second_order->standard_deviation / degree == Approx(0.2196700).epsilon(1e-4));
@@ -138,6 +142,25 @@ TEST_CASE("tolerances of a parameter, a variable of the scene, and a place of it
     CHECK(mass.second_order->mean == Approx(1e-3 * (1 - 29e-6 / 10e-3)).epsilon(1e-9));
 }
 
+TEST_CASE("tolerances: without deviations the design as made is the design, bit for bit") {
+    Folder folder;
+    const std::string tolerances =
+        R"({"depth": "+-0.3 mm", "length": "h10", "/bodies/block/shape/dimensions/size_z": "+-0.1", "/gravity/2": "+-0.1"})";
+    const auto made = folder.read_block(tolerances);
+    const ToleranceReport report = study(made, {.second_order = false});
+    std::string text = made_block;
+    const auto drawn = reading::parse_design(text.replace(text.find("TOLERANCES"), 10, tolerances), folder.file("x.design.json"));
+    REQUIRE(drawn);
+    CHECK(drawn->tolerances.empty());
+    CHECK(count_of(drawn->design.parameters) == 1);
+    const auto problem = problem::DesignProblem::create(drawn->design);
+    REQUIRE(problem);
+    const problem::DesignEvaluation at = problem->evaluate(description::values_of(problem->design().parameters));
+    REQUIRE(at.usable);
+    CHECK(report.responses[0].nominal == at.objective);
+    CHECK(report.responses[1].nominal == at.constraints[0].value);
+}
+
 TEST_CASE("tolerances: what cannot be made is counted, and told") {
     Folder folder;
     const auto file = folder.read_block(R"({"depth": {"lower": -15, "upper": 15, "distribution": "uniform"}})");
@@ -188,6 +211,16 @@ TEST_CASE("tolerances: faults name the entry and say what is allowed") {
     CHECK(fault(R"({"depth": {"lower": 0.1, "upper": -0.1}})").find("above") != std::string::npos);
     CHECK(fault(R"({"depth": {"class": "H7", "general": "m"}})").find("one of these") != std::string::npos);
     CHECK(fault(R"({"twice": "+-0.1 mm"})").find("follows from others") != std::string::npos);
+    const auto set_by = [&](const std::string& what) {
+        std::string text = made_block;
+        text.replace(text.find("TOLERANCES"), 10, R"({"length": "+-0.1 mm"})");
+        text.insert(text.find("\"objective\""), what);
+        const auto file = folder.read(text);
+        REQUIRE_FALSE(file);
+        return file.errors().front().message;
+    };
+    CHECK(set_by(R"("scenarios": [{"name": "long", "set": {"/variables/length": "12 mm"}}],)").find("sets variable `length`") !=
+          std::string::npos);
     CHECK(fault(R"({"depth": "+-1 deg"})").find("length") != std::string::npos);
     CHECK(fault(R"({"depth": {"lower": -1, "upper": 1, "sigma_level": 0}})").find("sigma_level") != std::string::npos);
 }
