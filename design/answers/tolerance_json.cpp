@@ -80,8 +80,7 @@ Json sampled_json(const Response& response, const ToleranceReport& report) {
     return json;
 }
 
-Json response_json(const Design& design, const std::vector<Tolerance>& tolerances, const Response& response,
-                   const ToleranceReport& report) {
+Json response_json(const Design& design, const Response& response, const ToleranceReport& report) {
     Json json = {{"name", response.name},
                  {"of", word_of(response.kind)},
                  {"unit", unit_of(design, response).name},
@@ -108,8 +107,7 @@ Json response_json(const Design& design, const std::vector<Tolerance>& tolerance
     json["sampled"] = sampled_json(response, report);
     json["contributions"] = Json::array();
     for (const Contribution& c : response.contributions)
-        json["contributions"].push_back(
-            {{"of", tolerances[c.tolerance].of}, {"sensitivity", c.sensitivity}, {"share", c.share}, {"worst", c.worst}});
+        json["contributions"].push_back({{"of", c.of}, {"sensitivity", c.sensitivity}, {"share", c.share}, {"worst", c.worst}});
     return json;
 }
 
@@ -124,7 +122,9 @@ Json tolerance_json(const Design& design, const Tolerance& tolerance) {
             {"upper", in_unit(tolerance.deviation.upper)},
             {"distribution", to_string(tolerance.deviation.kind)},
             {"mean", in_unit(moments.mean)},
-            {"standard_deviation", in_unit(moments.standard_deviation)}};
+            {"standard_deviation", in_unit(moments.standard_deviation)},
+            {"group", tolerance.group.empty() ? Json() : Json(tolerance.group)},
+            {"correlation", tolerance.group.empty() ? Json() : Json(tolerance.correlation)}};
 }
 
 std::string status_of(const ToleranceReport& report) {
@@ -214,7 +214,8 @@ private:
         std::vector<std::string> parts;
         for (const Contribution& c : response.contributions) {
             if (count_of(parts) == most || c.share < 0.001) break;
-            parts.push_back(tolerances_[c.tolerance].of + " " + percent(c.share) + " (+-" + amount(c.worst) + ")");
+            parts.push_back(c.tolerance < 0 ? "what " + c.of + " shares " + percent(c.share)
+                                            : c.of + " " + percent(c.share) + " (+-" + amount(c.worst) + ")");
         }
         return parts.empty() ? "nothing: no tolerance changes it" : core::base::joined(parts);
     }
@@ -246,7 +247,7 @@ private:
             text += "Cpk 1 needs sigma " + description::amount_text(t.needed, unit.si, unit.name, 3) + ": tighten ";
             text += (t.tolerance ? tolerances_[*t.tolerance].of : "all that it depends on") + " to " + percent(t.factor) + "\n";
         }
-        for (const int k : studies::what_may_be_loosened(report_))
+        for (const int k : studies::what_may_be_loosened(report_, tolerances_))
             text += "  " + tolerances_[k].of + " may be twice as wide: no requirement notices\n";
         return text.empty() ? text : "what to do:\n" + text;
     }
@@ -264,7 +265,7 @@ Json tolerance_json(const Design& design, const std::vector<Tolerance>& toleranc
     for (const Tolerance& tolerance : tolerances) json["tolerances"].push_back(tolerance_json(design, tolerance));
     json["responses"] = Json::array();
     if (report.reason.empty())
-        for (const Response& response : report.responses) json["responses"].push_back(response_json(design, tolerances, response, report));
+        for (const Response& response : report.responses) json["responses"].push_back(response_json(design, response, report));
     json["samples"] = {{"count", report.samples}, {"met", report.met_all}, {"failed", report.failed.size()}};
     json["samples"]["yield"] =
         report.samples > 0 ? yield_json(tolerances::counted_yield(report.met_all, report.samples, confidence)) : Json();
@@ -275,7 +276,7 @@ Json tolerance_json(const Design& design, const std::vector<Tolerance>& toleranc
                                    {"of", t.tolerance ? Json(tolerances[*t.tolerance].of) : Json()},
                                    {"factor", t.factor}});
     json["loosen"] = Json::array();
-    for (const int k : studies::what_may_be_loosened(report)) json["loosen"].push_back(tolerances[k].of);
+    for (const int k : studies::what_may_be_loosened(report, tolerances)) json["loosen"].push_back(tolerances[k].of);
     json["failed"] = Json::array();
     for (const studies::FailedSample& failed : report.failed) {
         Json deviations;

@@ -19,6 +19,8 @@ struct Tolerance {
     int parameter = 0;                   ///< of the design as made
     tolerances::Distribution deviation;  ///< of that parameter from its value [SI]
     std::string stated;                  ///< as people wrote it: "+-0.05 mm", "H7"
+    std::string group = {};              ///< of tolerances that vary together; empty: it varies by itself
+    double correlation = 1;  ///< with the group's common number, squared, with its sign: -1 to 1 (studies/independent_inputs.hpp)
 };
 
 /// Gives the design a parameter of value 0 that is added to the number at a place, in the scene and in all scenarios.

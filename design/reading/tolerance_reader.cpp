@@ -37,7 +37,7 @@ public:
             read_text(*node_.string(), tolerance);
             return;
         }
-        node_.allow_keys({"lower", "upper", "class", "of", "general", "distribution", "sigma_level", "shift"});
+        node_.allow_keys({"lower", "upper", "class", "of", "general", "distribution", "sigma_level", "shift", "group", "correlation"});
         if (!node_.is_object()) return;
         const int ways = (node_["lower"].exists() || node_["upper"].exists()) + node_["class"].exists() + node_["general"].exists();
         if (ways != 1)
@@ -48,6 +48,7 @@ public:
         if (node_["general"].exists()) read_general(tolerance);
         if (node_["lower"].exists() || node_["upper"].exists()) read_limits(tolerance);
         read_distribution(tolerance.deviation);
+        read_group(tolerance);
     }
 
 private:
@@ -129,6 +130,17 @@ private:
                                                     : Kind::triangular;
         deviation.sigma_level = node_["sigma_level"].number(core::files::positive).value_or(deviation.sigma_level);
         deviation.shift = amount(node_["shift"]).value_or(0);
+    }
+
+    void read_group(Tolerance& tolerance) const {
+        tolerance.group = node_["group"].string().value_or("");
+        tolerance.correlation = node_["correlation"].number({-1, 1}).value_or(tolerance.correlation);
+        if (node_["group"].is_string() && tolerance.group.empty()) node_["group"].fail(ErrorCode::out_of_range, "a group has a name");
+        if (node_["correlation"].exists() && !node_["group"].exists())
+            node_["correlation"].fail(ErrorCode::inconsistent, "`correlation` goes with `group`");
+        if (!tolerance.group.empty() && tolerance.deviation.kind != tolerances::DistributionKind::normal)
+            node_["group"].fail(ErrorCode::unsupported,
+                                "what varies with a group is normal; this one is " + std::string(to_string(tolerance.deviation.kind)));
     }
 
     const JsonNode& node_;

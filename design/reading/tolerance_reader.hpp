@@ -5,6 +5,7 @@
 ///     "bore": { "lower": "-0.02 mm", "upper": "0.05 mm", "distribution": "uniform" }
 ///     "shaft": { "class": "h6" }                                ISO 286, of a diameter; "of": "radius": the value is half of it
 ///     "/bodies/crank/shape/dimensions/length": { "general": "m" }      ISO 2768-1
+///     "pin": { ..., "group": "print", "correlation": 0.7 }       varies with others of its group
 /// Part of design_reader.hpp. Names are looked up before the scene is read, since variables with a tolerance become parameters of the
 /// design as made; places after it.
 #pragma once

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <map>
 #include <mutex>
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/design/tolerances/sobol.hpp"
 
 namespace fettle::design::studies {
 
@@ -34,7 +32,7 @@ class ToleranceStudy {
 public:
     ToleranceStudy(const DesignProblem& problem, const std::vector<Tolerance>& tolerances, const ToleranceOptions& options)
         : problem_(problem), design_(problem.design()), tolerances_(tolerances), options_(options), n_(count_of(tolerances)) {
-        for (const Tolerance& tolerance : tolerances) inputs_.push_back(moments_of(tolerance.deviation));
+        for (const Tolerance& tolerance : tolerances) deviations_.push_back(moments_of(tolerance.deviation));
         to_do_ = 1 + (options.second_order ? 2 * n_ : 0) + options.samples;
     }
 
@@ -109,15 +107,15 @@ private:
         std::vector<DesignEvaluation> at(2 * n_);
         core::base::parallel_for(2 * n_, 1, [&](int task) {
             const int k = task / 2;
-            if (inputs_[k].standard_deviation == 0) return;
+            if (deviations_[k].standard_deviation == 0) return;
             VectorX deviations = VectorX::Zero(n_);
-            deviations[k] = (task % 2 == 0 ? 1 : -1) * inputs_[k].standard_deviation;
+            deviations[k] = (task % 2 == 0 ? 1 : -1) * deviations_[k].standard_deviation;
             at[task] = evaluated(deviations, true);
         });
         const MatrixX here = all_gradients();
         std::vector<MatrixX> curvatures(report_.responses.size(), MatrixX::Zero(n_, n_)), thirds = curvatures;
         for (int k = 0; k < n_; ++k) {
-            if (inputs_[k].standard_deviation == 0) continue;
+            if (deviations_[k].standard_deviation == 0) continue;
             const DesignEvaluation &up = at[2 * k], &down = at[2 * k + 1];
             if (!up.usable || !down.usable) {
                 report_.interrupted = report_.interrupted || up.interrupted || down.interrupted;
@@ -126,7 +124,7 @@ private:
                 return;
             }
             const MatrixX above = gradients_of(up), below = gradients_of(down);
-            const double step = inputs_[k].standard_deviation;
+            const double step = deviations_[k].standard_deviation;
             for (int i = 0; i < count_of(curvatures); ++i) {
                 curvatures[i].row(k) = (above.row(i) - below.row(i)) / (2 * step);
                 thirds[i].row(k) = (above.row(i) - 2 * here.row(i) + below.row(i)) / (step * step);
@@ -144,19 +142,20 @@ private:
         return out;
     }
 
-    // With the third derivatives that the same gradients show, d^3 y / dd_j^2 dd_l, if they are those at the means; in three different
-    // deviations they are not known.
+    // With the third derivatives that the same gradients show, d^3 y / dd_j^2 dd_l, if they are those at the means of deviations that are
+    // independent; in three different deviations they are not known.
     Moments second_order_of(const Response& response, const MatrixX& third) const {
-        const bool at_means = std::all_of(inputs_.begin(), inputs_.end(), [](const Moments& input) { return input.mean == 0; });
-        if (!at_means) return tolerances::predict_quadratically(response.nominal, response.gradient, response.curvature, inputs_);
+        const bool at_means = std::all_of(deviations_.begin(), deviations_.end(), [](const Moments& d) { return d.mean == 0; });
+        if (!at_means || !inputs_.groups.empty())
+            return tolerances::predict_quadratically(response.nominal, inputs_.map.transpose() * response.gradient,
+                                                     inputs_.map.transpose() * response.curvature * inputs_.map, inputs_.moments);
+        VectorX v = response.gradient;
+        for (int j = 0; j < n_; ++j) v[j] *= deviations_[j].standard_deviation * deviations_[j].standard_deviation;
         double along = 0;
-        for (int j = 0; j < n_; ++j) {
-            for (int l = 0; l < n_; ++l) {
-                const auto v = [&](int k) { return response.gradient[k] * inputs_[k].standard_deviation * inputs_[k].standard_deviation; };
-                along += (j == l ? 1 : 3) * third(j, l) * v(j) * v(j) * v(l);
-            }
-        }
-        return tolerances::predict_with_third_derivatives(response.nominal, response.gradient, response.curvature, {third, along}, inputs_);
+        for (int j = 0; j < n_; ++j)
+            for (int l = 0; l < n_; ++l) along += (j == l ? 1 : 3) * third(j, l) * v[j] * v[j] * v[l];
+        return tolerances::predict_with_third_derivatives(response.nominal, response.gradient, response.curvature, {third, along},
+                                                          deviations_);
     }
 
     double predicted(const Response& response, const VectorX& deviations) const {
@@ -170,12 +169,15 @@ private:
             lower[k] = tolerances_[k].deviation.lower;
             upper[k] = tolerances_[k].deviation.upper;
         }
-        response.linear = tolerances::predict_linearly(response.nominal, response.gradient, inputs_);
+        const VectorX by_input = inputs_.map.transpose() * response.gradient;
+        response.linear = tolerances::predict_linearly(response.nominal, by_input, inputs_.moments);
         response.worst = tolerances::linear_worst_case(response.nominal, response.gradient, lower, upper);
         response.linear_yield = tolerances::normal_yield(response.linear.mean, response.linear.standard_deviation, limits_of(response));
-        for (int k = 0; k < n_; ++k)
-            response.contributions.push_back(
-                {k, response.gradient[k], response.linear.shares[k], std::abs(response.gradient[k]) * (upper[k] - lower[k]) / 2});
+        for (int k = 0; k < inputs_.count(); ++k) {
+            const bool is_own = k < n_;
+            response.contributions.push_back({is_own ? tolerances_[k].of : inputs_.groups[k - n_], is_own ? k : -1, by_input[k],
+                                              response.linear.shares[k], is_own ? std::abs(by_input[k]) * (upper[k] - lower[k]) / 2 : 0});
+        }
         std::stable_sort(response.contributions.begin(), response.contributions.end(),
                          [](const Contribution& a, const Contribution& b) { return a.share > b.share; });
         if (!response.second_order) return;
@@ -299,7 +301,8 @@ private:
     const std::vector<Tolerance>& tolerances_;
     const ToleranceOptions& options_;
     const int n_;
-    std::vector<Moments> inputs_;
+    const IndependentInputs inputs_ = independent_inputs(tolerances_);
+    std::vector<Moments> deviations_;  // of each tolerance as a whole
     std::mutex mutex_;
     int done_ = 0, to_do_ = 0;
     ToleranceReport report_;
@@ -310,13 +313,6 @@ private:
 bool has_bounds(const Response& response) { return std::isfinite(response.bounds.lower) || std::isfinite(response.bounds.upper); }
 
 tolerances::RequirementLimits limits_of(const Response& response) { return {response.bounds.lower, response.bounds.upper}; }
-
-VectorX deviations_of_sample(const std::vector<Tolerance>& tolerances, std::uint64_t seed, int sample) {
-    const VectorX u = tolerances::SobolPoints(count_of(tolerances), seed).point(static_cast<std::uint32_t>(sample));
-    VectorX deviations(u.size());
-    for (int k = 0; k < count_of(tolerances); ++k) deviations[k] = quantile(tolerances[k].deviation, u[k]);
-    return deviations;
-}
 
 ToleranceReport study_tolerances(const DesignProblem& problem, const std::vector<Tolerance>& tolerances, const ToleranceOptions& options) {
     return ToleranceStudy(problem, tolerances, options).run();
@@ -334,26 +330,28 @@ std::vector<Tightening> what_to_tighten(const ToleranceReport& report) {
         if (needed > 0) {
             const double own = response.contributions.front().share * sigma * sigma;
             const double left = needed * needed - (sigma * sigma - own);
-            if (left > 0) tightening.tolerance = response.contributions.front().tolerance;
-            tightening.factor = left > 0 ? std::sqrt(left / own) : needed / sigma;
+            const bool is_enough = left > 0 && response.contributions.front().tolerance >= 0;
+            if (is_enough) tightening.tolerance = response.contributions.front().tolerance;
+            tightening.factor = is_enough ? std::sqrt(left / own) : needed / sigma;
         }
         out.push_back(tightening);
     }
     return out;
 }
 
-std::vector<int> what_may_be_loosened(const ToleranceReport& report) {
+std::vector<int> what_may_be_loosened(const ToleranceReport& report, const std::vector<Tolerance>& tolerances) {
     constexpr double little = 0.01;
-    std::map<int, double> largest;
-    for (const Response& response : report.responses) {
-        for (const Contribution& c : response.contributions) {
-            double& share = largest[c.tolerance];
-            if (has_bounds(response)) share = std::max(share, c.share);
-        }
-    }
     std::vector<int> out;
-    for (const auto& [tolerance, share] : largest)
-        if (share <= little) out.push_back(tolerance);
+    for (int k = 0; k < count_of(tolerances); ++k) {
+        const auto is_of_it = [&](const Contribution& c) {
+            return c.tolerance == k || (c.tolerance < 0 && c.of == tolerances[k].group && tolerances[k].correlation != 0);
+        };
+        const bool is_little = std::all_of(report.responses.begin(), report.responses.end(), [&](const Response& response) {
+            return !has_bounds(response) || std::all_of(response.contributions.begin(), response.contributions.end(),
+                                                        [&](const Contribution& c) { return !is_of_it(c) || c.share <= little; });
+        });
+        if (is_little) out.push_back(k);
+    }
     return out;
 }
 

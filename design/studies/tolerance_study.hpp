@@ -21,6 +21,7 @@
 
 #include "fettle/design/description/tolerance.hpp"
 #include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/studies/independent_inputs.hpp"
 #include "fettle/design/tolerances/capability.hpp"
 #include "fettle/design/tolerances/propagation.hpp"
 #include "fettle/design/tolerances/yield.hpp"
@@ -36,12 +37,13 @@ struct ToleranceOptions {
     std::function<void(int done, int of)> on_simulation = {};  ///< optional; called from one thread at a time
 };
 
-/// What one tolerance does to one number.
+/// What one tolerance, by itself, does to one number, or what a group of tolerances shares.
 struct Contribution {
-    int tolerance = 0;
-    double sensitivity = 0;  ///< dy/dd, SI
+    std::string of;          ///< the tolerance, or the group
+    int tolerance = 0;       ///< -1: of a group
+    double sensitivity = 0;  ///< dy/dd, SI; of a group: by one standard deviation of what it shares
     double share = 0;        ///< of the linear variance
-    double worst = 0;        ///< |dy/dd| times half the width of its limits
+    double worst = 0;        ///< |dy/dd| times half the width of its limits; of a group 0, as its members have theirs
 };
 
 /// Of the samples that could be simulated.
@@ -95,9 +97,6 @@ struct ToleranceReport {
     std::string reason;  ///< why there is nothing of it: the design as drawn cannot be simulated; empty: there is
 };
 
-/// The deviations of a sample, one per tolerance.
-VectorX deviations_of_sample(const std::vector<description::Tolerance>& tolerances, std::uint64_t seed, int sample);
-
 /// @param problem  Of the design as made (description/tolerance.hpp).
 ToleranceReport study_tolerances(const problem::DesignProblem& problem, const std::vector<description::Tolerance>& tolerances,
                                  const ToleranceOptions& options = {});
@@ -113,6 +112,6 @@ struct Tightening {
 std::vector<Tightening> what_to_tighten(const ToleranceReport& report);
 
 /// Tolerances that could be twice as wide: no requirement has more than a share of 1% of its variance from them.
-std::vector<int> what_may_be_loosened(const ToleranceReport& report);
+std::vector<int> what_may_be_loosened(const ToleranceReport& report, const std::vector<description::Tolerance>& tolerances);
 
 }  // namespace fettle::design::studies

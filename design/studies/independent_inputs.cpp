@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/studies/independent_inputs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fettle/core/base/contract.hpp"
+#include "fettle/design/tolerances/normal_distribution.hpp"
+#include "fettle/design/tolerances/sobol.hpp"
+
+namespace fettle::design::studies {
+
+using description::Tolerance;
+using tolerances::Moments;
+
+namespace {
+
+bool is_shared(const Tolerance& tolerance) { return !tolerance.group.empty() && tolerance.correlation != 0; }
+
+Moments normal_moments(double mean, double variance) { return {mean, std::sqrt(variance), 0, 3 * variance * variance}; }
+
+}  // namespace
+
+IndependentInputs independent_inputs(const std::vector<Tolerance>& tolerances) {
+    IndependentInputs out;
+    for (const Tolerance& tolerance : tolerances)
+        if (is_shared(tolerance) && std::find(out.groups.begin(), out.groups.end(), tolerance.group) == out.groups.end())
+            out.groups.push_back(tolerance.group);
+    const int n = count_of(tolerances), shared = count_of(out.groups);
+    out.map = MatrixX::Zero(n, n + shared);
+    for (int j = 0; j < n; ++j) {
+        const Tolerance& tolerance = tolerances[j];
+        const Moments all = moments_of(tolerance.deviation);
+        out.map(j, j) = 1;
+        if (!is_shared(tolerance)) {
+            out.moments.push_back(all);
+            continue;
+        }
+        FETTLE_ASSERT(tolerance.deviation.kind == tolerances::DistributionKind::normal, "deviations that are shared are normal");
+        const double share = std::abs(tolerance.correlation), variance = all.standard_deviation * all.standard_deviation;
+        out.moments.push_back(normal_moments(all.mean, (1 - share) * variance));
+        const auto group = std::find(out.groups.begin(), out.groups.end(), tolerance.group) - out.groups.begin();
+        out.map(j, n + group) = std::copysign(std::sqrt(share) * all.standard_deviation, tolerance.correlation);
+    }
+    for (int g = 0; g < shared; ++g) out.moments.push_back(normal_moments(0, 1));
+    return out;
+}
+
+VectorX deviations_of_sample(const std::vector<Tolerance>& tolerances, std::uint64_t seed, int sample) {
+    const IndependentInputs inputs = independent_inputs(tolerances);
+    const VectorX u = tolerances::SobolPoints(inputs.count(), seed).point(static_cast<std::uint32_t>(sample));
+    VectorX x(inputs.count());
+    for (int k = 0; k < inputs.count(); ++k) {
+        const bool is_own = k < count_of(tolerances) && !is_shared(tolerances[k]);
+        x[k] = is_own ? quantile(tolerances[k].deviation, u[k])
+                      : inputs.moments[k].mean + inputs.moments[k].standard_deviation * tolerances::normal_quantile(u[k]);
+    }
+    return inputs.map * x;
+}
+
+}  // namespace fettle::design::studies
