@@ -239,13 +239,13 @@ private:
         for (const studies::Tightening& t : studies::what_to_tighten(report_)) {
             const Response& response = report_.responses[t.response];
             const CountedUnit unit = unit_of(design_, response);
-            text += "  " + response.name + ": ";
-            if (t.needed <= 0) {
-                text += "its mean is not within the bounds: move the design first\n";
-                continue;
-            }
-            text += "Cpk 1 needs sigma " + description::amount_text(t.needed, unit.si, unit.name, 3) + ": tighten ";
-            text += (t.tolerance ? tolerances_[*t.tolerance].of : "all that it depends on") + " to " + percent(t.factor) + "\n";
+            const auto amount = [&](double si) { return description::amount_text(si, unit.si, unit.name, 3); };
+            text += "  " + response.name + ": for Cpk 1 move its mean by " + amount(3 * (response.linear.standard_deviation - t.needed)) +
+                    " away from the bound";
+            if (t.needed > 0)
+                text += ", or tighten " + (t.tolerance ? tolerances_[*t.tolerance].of : "all that it depends on") + " to " +
+                        percent(t.factor) + " (sigma " + amount(t.needed) + ")";
+            text += "\n";
         }
         for (const int k : studies::what_may_be_loosened(report_, tolerances_))
             text += "  " + tolerances_[k].of + " may be twice as wide: no requirement notices\n";
