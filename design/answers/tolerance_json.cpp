@@ -240,11 +240,16 @@ private:
             const Response& response = report_.responses[t.response];
             const CountedUnit unit = unit_of(design_, response);
             const auto amount = [&](double si) { return description::amount_text(si, unit.si, unit.name, 3); };
-            text += "  " + response.name + ": for Cpk 1 move its mean by " + amount(3 * (response.linear.standard_deviation - t.needed)) +
-                    " away from the bound";
+            const double sigma = response.linear.standard_deviation;
+            std::vector<std::string> ways;
+            if (response.bounds.upper - response.bounds.lower > 6 * sigma)
+                ways.push_back("move its mean by " + amount(3 * (sigma - t.needed)) + " away from the bound");
             if (t.needed > 0)
-                text += ", or tighten " + (t.tolerance ? tolerances_[*t.tolerance].of : "all that it depends on") + " to " +
-                        percent(t.factor) + " (sigma " + amount(t.needed) + ")";
+                ways.push_back("tighten " + (t.tolerance ? tolerances_[*t.tolerance].of : "all that it depends on") + " to " +
+                               percent(t.factor) + " (sigma " + amount(t.needed) + ")");
+            text += "  " + response.name + ": for Cpk 1 ";
+            text += ways.empty() ? "move its mean within the bounds, and tighten: they are less than 6 sigma apart" : ways.front();
+            if (ways.size() == 2) text += ", or " + ways.back();
             text += "\n";
         }
         for (const int k : studies::what_may_be_loosened(report_, tolerances_))
