@@ -104,6 +104,42 @@ TEST_CASE("clearance: exit codes by status, lengths with units") {
     CHECK(run("clearance " + folder.design() + " --minimum 0.1mm").code == 0);
 }
 
+TEST_CASE("tolerance: spreads, contributors and samples, as text and as JSON") {
+    const char* const block = R"({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.02, "bodies": [
+        {"name": "block", "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 10, "size_y": 10, "size_z": 10}}}]})";
+    const auto design_with = [](const std::string& tolerances) {
+        return R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+            "parameters": [{"name": "size", "value": 10, "lower": 5, "upper": 20}], "set": {"/bodies/block/shape/dimensions/size_y": "= size"},
+            "objective": [{"type": "mass", "bodies": ["block"]}],
+            "constraints": [{"type": "mass", "name": "weight", "bodies": ["block"], "upper": "1.02 g"}])" +
+               tolerances + "}";
+    };
+    const DesignFolder folder(design_with(R"(, "tolerances": {"size": "+-0.3 mm"})"), block);
+    const Answer told = run("tolerance " + folder.design() + " --samples 16 --worst-case --json");
+    CHECK(told.code == 0);
+    const Json json = told.json();
+    CHECK(json.at("status") == "ok");
+    CHECK(json.at("tolerances").at(0).at("standard_deviation").get<double>() == Approx(0.1));
+    const Json& weight = json.at("responses").at(1);
+    CHECK(weight.at("name") == "weight");
+    CHECK(weight.at("linear").at("standard_deviation").get<double>() == Approx(1e-5));
+    CHECK(weight.at("worst_found").at("most").get<double>() == Approx(1.03e-3));
+    CHECK(weight.at("contributions").at(0).at("of") == "size");
+    CHECK(weight.at("sampled").at("met").get<int>() == json.at("samples").at("met").get<int>());
+    CHECK(json.at("samples").at("count") == 16);
+    CHECK(json.at("tighten").at(0).at("of") == "size");
+    CHECK(run("tolerance " + folder.design() + " --samples 16 --worst-case --json --threads 1").out == told.out);
+    const Answer text = run("tolerance " + folder.design());
+    CHECK(text.says("weight: 1 g as drawn, required at most 1.02 g"));
+    CHECK(text.says("by size 100% (+-0.03 g)"));
+    CHECK(text.says("weight: for Cpk 1 move its mean by 0.01 g away from the bound, or tighten size to 67% (sigma 0.00667 g)"));
+    const DesignFolder without(design_with(""), block);
+    const Answer none = run("tolerance " + without.design(), true);
+    CHECK(none.code == 3);
+    CHECK(none.says("it has no `tolerances`"));
+    CHECK(run("tolerance " + folder.design() + " --samples -1").code == 3);
+}
+
 TEST_CASE("check-resolution: the numbers of what can be simulated, and why the rest cannot") {
     // A post of eight sides whose corners, with twice the facets, would reach into the block.
     const DesignFolder folder(R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
