@@ -16,6 +16,7 @@ namespace {
 
 using core::base::formatted;
 using core::base::percent;
+using description::CountedUnit;
 using description::Design;
 using description::Tolerance;
 using Json = nlohmann::ordered_json;
@@ -34,15 +35,10 @@ const char* word_of(Response::Kind kind) {
     return kind == Response::Kind::objective ? "objective" : kind == Response::Kind::constraint ? "constraint" : "relation";
 }
 
-/// The unit that a number is counted in.
-struct CountedUnit {
-    double si = 1;
-    std::string name;
-};
+// Relations name no unit: of them it is that of their bounds.
 CountedUnit unit_of(const Design& design, const Response& response) {
-    if (response.kind != Response::Kind::constraint) return {response.bounds.unit, ""};  // of relations people know no unit
-    const description::Constraint& constraint = design.constraints[response.index];
-    return {constraint.bounds.unit, description::unit_name(constraint)};
+    if (response.kind == Response::Kind::constraint) return description::counted_unit(design.constraints[response.index]);
+    return {response.bounds.unit};
 }
 
 Json yield_json(const Yield& yield) { return {{"within", yield.within}, {"ppm_outside", ppm_outside(yield)}}; }

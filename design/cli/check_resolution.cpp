@@ -40,17 +40,8 @@ const Column& column_of(const ResolutionRun& run) {
 const char* key_of(const ResolutionRun& run) { return column_of(run).key; }
 const char* title_of(const ResolutionRun& run) { return column_of(run).title; }
 
-/// The unit that a quantity is counted in.
-struct CountedUnit {
-    double si = 1;
-    std::string name;
-};
-
-CountedUnit unit_of(const description::Design& design, const ResolvedQuantity& quantity) {
-    if (!quantity.of_objective) {
-        const description::Constraint& constraint = design.constraints[quantity.index];
-        return {constraint.bounds.unit, description::unit_name(constraint)};
-    }
+description::CountedUnit unit_of(const description::Design& design, const ResolvedQuantity& quantity) {
+    if (!quantity.of_objective) return description::counted_unit(design.constraints[quantity.index]);
     const description::ObjectiveTerm& term = design.objective[quantity.index];
     return {term.unit, core::base::unit_name(term.quantity->dimension(), term.unit)};
 }
@@ -103,7 +94,7 @@ std::string text_of(const description::Design& design, const ResolutionReport& r
     for (const ResolutionRun& run : report.runs) text += formatted(" %13s", title_of(run));
     text += formatted("   %-10s%s\n", "changes by", report.friction_lags ? "  by friction" : "");
     for (const ResolvedQuantity& quantity : report.quantities) {
-        const CountedUnit unit = unit_of(design, quantity);
+        const description::CountedUnit unit = unit_of(design, quantity);
         const std::string name = quantity.name + (unit.name.empty() ? "" : " [" + unit.name + "]");
         text += formatted("%-40s", name.c_str());
         for (const ResolutionRun& run : report.runs)

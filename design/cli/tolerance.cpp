@@ -55,7 +55,7 @@ Command add_tolerance(CommandLine& program, const CommonOptions& common) {
     CommandLine app = program.command("tolerance", "What becomes of a design when its parts are made: spread, contributors, yield");
     auto options = std::make_shared<Options>();
     app.option("DESIGN", options->path, "Design with `tolerances`, taken at its values").required();
-    app.option("--samples", options->samples, "Whole simulations of made mechanisms (default 0: predictions alone)").at_least(0);
+    app.option("--samples", options->samples, "Whole simulations of made mechanisms (default 0: predictions alone)").between(0, 1000000);
     app.option("--seed", options->seed, "Of the samples (default 1)").at_least(0);
     app.flag("--first-order", options->first_order, "Predict from one simulation, without the 2 per tolerance that the second order takes");
     app.flag("--worst-case", options->worst_case, "Simulate the worst cases that the derivatives name too: two for each requirement");

@@ -14,6 +14,13 @@ using core::base::Towards;
 /// The unit in which numbers of the requirement are shown: "mm"; empty: plain numbers.
 std::string unit_name(const Constraint& constraint);
 
+/// The unit that a number is counted in: its SI value, and its name as above.
+struct CountedUnit {
+    double si = 1;
+    std::string name = {};
+};
+inline CountedUnit counted_unit(const Constraint& constraint) { return {constraint.bounds.unit, unit_name(constraint)}; }
+
 /// 3e-4 in 1e-3, "mm" -> "0.3 mm".
 std::string amount_text(double si, double unit, const std::string& unit_name, int digits = 7);
 

@@ -34,9 +34,7 @@ void add_to(const core::scene::Scene& scene, std::vector<BoundNumber>& numbers, 
         found->formula = sum_of(found->formula, input, dimension);
         return;
     }
-    const double written = core::scene::value_at(scene, place);
-    const Formula nominal =
-        core::expression::constant_formula(std::isfinite(written) ? written : 0, core::expression::powers_of(dimension));
+    const Formula nominal = core::expression::constant_formula(core::scene::value_at(scene, place), core::expression::powers_of(dimension));
     numbers.push_back({pointer, sum_of(nominal, input, dimension)});
 }
 
@@ -46,13 +44,20 @@ Result<int> add_deviation(Design& design, const std::string& place, const Unit& 
     const core::scene::Scene scene = described_scene(design);
     const Result<core::scene::Place> found = core::scene::find_place(scene, place);
     if (!found) return found.errors();
+    std::vector<core::scene::Scene> scenes;
+    for (int s = 0; s < scenario_count(design); ++s) {
+        scenes.push_back(design.scenarios.empty() ? scene : described_scene(design_of_scenario(design, s)));
+        if (std::isnan(core::scene::value_at(scenes.back(), *found)))
+            return Error{ErrorCode::unsupported, place,
+                         scenario_prefix(design, s) +
+                             "the scene leaves this number to its default: write it there, so that it has a size to deviate from"};
+    }
     Parameter parameter;
     parameter.name = "deviation of " + place;
     parameter.unit = unit;
     design.parameters.push_back(parameter);
-    if (design.scenarios.empty()) add_to(scene, design.numbers, *found, parameter.name);
-    for (int s = 0; s < count_of(design.scenarios); ++s)
-        add_to(described_scene(design_of_scenario(design, s)), design.scenarios[s].numbers, *found, parameter.name);
+    for (int s = 0; s < count_of(scenes); ++s)
+        add_to(scenes[s], design.scenarios.empty() ? design.numbers : design.scenarios[s].numbers, *found, parameter.name);
     return count_of(design.parameters) - 1;
 }
 

@@ -24,7 +24,7 @@ struct Tolerance {
 };
 
 /// Gives the design a parameter of value 0 that is added to the number at a place, in the scene and in all scenarios.
-/// @param place  Errors: none of the scene.
+/// @param place  Errors: none of the scene, or one that a scenario leaves to its default (core::scene::value_at).
 /// @param unit   In which people read it; of the place's dimension.
 /// @return its index
 Result<int> add_deviation(Design& design, const std::string& place, const Unit& unit);

@@ -130,6 +130,7 @@ private:
                                                     : Kind::triangular;
         deviation.sigma_level = node_["sigma_level"].number(core::files::positive).value_or(deviation.sigma_level);
         deviation.shift = amount(node_["shift"]).value_or(0);
+        if (const std::string fault = fault_of(deviation); !fault.empty()) node_.fail(ErrorCode::out_of_range, fault);
     }
 
     void read_group(Tolerance& tolerance) const {
@@ -211,8 +212,11 @@ void read_place_tolerances(std::vector<ToleranceEntry>& entries, const Unit& len
         for (const Error& error : place.errors()) entry.node.fail(error.code, error.message);
         if (!place) continue;
         const Nominal nominal{core::scene::value_at(scene, *place), usual_unit(core::scene::dimension_at(scene, *place), length_unit)};
+        const Result<int> parameter = description::add_deviation(design, entry.tolerance.of, nominal.unit);
+        for (const Error& error : parameter.errors()) entry.node.fail(error.code, error.message);
+        if (!parameter) continue;
+        entry.tolerance.parameter = *parameter;
         EntryReader(entry.node, nominal).read(entry.tolerance);
-        entry.tolerance.parameter = description::add_deviation(design, entry.tolerance.of, nominal.unit).value();
     }
 }
 

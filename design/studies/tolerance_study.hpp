@@ -4,9 +4,8 @@
 ///
 /// - **Predicted**, from the derivatives of one simulation: y = y0 + sum g_j d_j over the deviations d_j. With second-order terms the
 ///   gradients of 2n simulations more, at +-1 standard deviation of each tolerance.
-/// - **Worst case**: the extremes of the linear prediction over all deviations within their limits, and, if asked for, what simulations
-/// have
-///   at those corners. The extremes of a response that is not monotone lie elsewhere.
+/// - **Worst case**: the extremes of the linear prediction over all deviations within their limits, and, if asked for, what simulations at
+///   those corners have. The extremes of a response that is not monotone lie elsewhere.
 /// - **Sampled**: whole simulations at scrambled Sobol points. The same samples for any number of threads; sample k is the same whether
 ///   there are 100 or 1,000. A sample that cannot be made or simulated (a jam) is counted and kept, never dropped.
 ///

@@ -250,6 +250,9 @@ TEST_CASE("tolerances: faults name the entry and say what is allowed") {
     CHECK(fault(R"({"depth": {"lower": -1, "upper": 1, "group": "print", "distribution": "uniform"}})").find("normal") !=
           std::string::npos);
     CHECK(fault(R"({"depth": {"lower": -1, "upper": 1, "correlation": 0.5}})").find("`group`") != std::string::npos);
+    CHECK(fault(R"({"depth": {"lower": -1, "upper": 1, "distribution": "truncated", "shift": 5}})").find("within the limits") !=
+          std::string::npos);
+    CHECK(fault(R"({"/bodies/block/mu": "+-0.1"})").find("leaves this number to its default") != std::string::npos);
     CHECK(fault(R"({"twice": "+-0.1 mm"})").find("follows from others") != std::string::npos);
     const auto set_by = [&](const std::string& what) {
         std::string text = made_block;
