@@ -22,7 +22,7 @@ constexpr double centre_rounding = 1e-14;    // of a middle of points, in their 
 struct Piece {
     const LidSurface* surface = nullptr;
     int node = -1;  // -1: a triangle
-    std::array<Vector3, 3> corners;
+    std::array<Vector3, 3> corners = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
     Vector3 half = Vector3::Zero();  // of a node's box
     Vector3 centre = Vector3::Zero();
     double radius = 0;  // round the centre
