@@ -110,6 +110,12 @@ Formula substituted(const Formula& formula, const std::map<std::string, Formula>
     return out;
 }
 
+Formula sum_of(const Formula& a, const Formula& b) {
+    const Formula sum{
+        {{Operation::input, {0, 0, 0}, 0}, {Operation::input, {1, 0, 0}, 0}, {Operation::add, {0, 1, 0}, 0}}, {"a", "b"}, a.dimension, {}};
+    return substituted(sum, {{"a", a}, {"b", b}});
+}
+
 double nearest_kink(const Formula& formula, std::span<const double> inputs) {
     return nearest_kink(formula.nodes, values<double>(formula.nodes, inputs));
 }

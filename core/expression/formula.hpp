@@ -54,6 +54,9 @@ std::vector<int> positions_of(const Formula& formula, std::span<const std::strin
 /// they replace, where the two are looked at together.
 Formula substituted(const Formula& formula, const std::map<std::string, Formula>& replacements);
 
+/// Contract: they have one dimension.
+Formula sum_of(const Formula& a, const Formula& b);
+
 /// How near a kink of min, max, abs or if the inputs are (tape.hpp, nearest_kink); infinity where the formula has none. For warnings.
 double nearest_kink(const Formula& formula, std::span<const double> inputs);
 

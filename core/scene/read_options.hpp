@@ -29,6 +29,7 @@ struct FormulaInput {
     expression::DimensionPowers dimension;
     double value = 0;                                 ///< SI
     std::optional<expression::Formula> meaning = {};  ///< over other inputs; none: an input itself, with this value
+    std::string added_to = {};                        ///< a variable of the file, to whose value it is added; empty: it is not
 };
 
 /// A value that replaces something in the file (files/json_document.hpp, replace).

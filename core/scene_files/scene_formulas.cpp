@@ -57,6 +57,7 @@ SceneFormulas::SceneFormulas(files::JsonDocument& document, const std::vector<sc
     for (const scene::FormulaInput& input : inputs) {
         taken_.insert(input.name);
         scope_.names.push_back({input.name, input.dimension, input.meaning});
+        if (!input.added_to.empty()) added_[input.added_to] = input;
         if (input.meaning) continue;
         input_names_.push_back(input.name);
         inputs_[input.name] = tape_.input(input.value);
@@ -83,6 +84,13 @@ void SceneFormulas::read_variables(const JsonNode& node) {
         }
     }
     const base::Errors errors = expression::define_variables(texts, scope_, [&](const std::string& name, Formula formula) {
+        if (const auto added = added_.find(name); added != added_.end()) {
+            const scene::FormulaInput& input = added->second;
+            if (same(formula.dimension, input.dimension))
+                formula = expression::sum_of(formula, expression::input_formula(input.name, input.dimension));
+            else
+                node[name].fail(ErrorCode::inconsistent, "`" + input.name + "` is added to it, and it is another quantity");
+        }
         const double value = value_of(formula).value;
         if (!base::is_usable_number(value)) node[name].fail(ErrorCode::not_finite, "this is not a finite number");
         expression::Scope::Name out{name, formula.dimension};

@@ -80,7 +80,8 @@ private:
     expression::Tape tape_;
     std::vector<std::string> input_names_;  // of the tape's inputs
     std::map<std::string, expression::Number> inputs_;
-    std::set<std::string> taken_;  // names that are not the file's to give
+    std::set<std::string> taken_;                       // names that are not the file's to give
+    std::map<std::string, scene::FormulaInput> added_;  // by the variable
     std::vector<scene::Variable> variables_;
     std::map<std::string, Found> found_;  // by pointer
     std::map<std::string, expression::Number> bound_;

@@ -146,10 +146,10 @@ base::Result<scene::Scene> read_scene(files::JsonDocument& document, const scene
     return SceneReader(document, options).read();
 }
 
-std::vector<scene::Variable> variables_of(files::JsonDocument& document) {
+std::vector<scene::Variable> variables_of(files::JsonDocument& document, const std::vector<scene::FormulaInput>& inputs) {
     const files::JsonNode root = document.root();
     if (!root.is_object() || !root["fettle_scene"].exists() || !root["variables"].is_object()) return {};
-    SceneFormulas formulas(document, {});
+    SceneFormulas formulas(document, inputs);
     const auto unit = root["units"].is_string() ? base::metres_per_unit(*root["units"].string()) : base::Result<double>(1.0);
     formulas.set_length_unit(unit ? *unit : 1);
     formulas.read_variables(root["variables"]);

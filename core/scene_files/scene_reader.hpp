@@ -17,8 +17,9 @@ base::Result<scene::Scene> read_scene(const std::string& path, const scene::Read
 /// The same of a document in hand, which reads numbers for the scene while this runs.
 base::Result<scene::Scene> read_scene(files::JsonDocument& document, const scene::ReadOptions& options = {});
 
-/// The `variables` of a scene's document, as the file alone has them; those that have faults are left out: reading the scene reports them.
-std::vector<scene::Variable> variables_of(files::JsonDocument& document);
+/// The `variables` of a scene's document, as the file and the inputs have them; those that have faults are left out: reading the scene
+/// reports them.
+std::vector<scene::Variable> variables_of(files::JsonDocument& document, const std::vector<scene::FormulaInput>& inputs = {});
 
 /// The same from text; `path` stands in messages, and meshes are looked for as if the text came from there.
 base::Result<scene::Scene> parse_scene(const std::string& text, const std::string& path, const scene::ReadOptions& options = {});

@@ -20,16 +20,17 @@ using description::CountedUnit;
 using description::Design;
 using description::Tolerance;
 using Json = nlohmann::ordered_json;
+using studies::confidence;
 using studies::Contribution;
+using studies::FoundExtreme;
 using studies::has_bounds;
+using studies::MadeSample;
 using studies::Response;
 using studies::SampledResponse;
 using studies::ToleranceReport;
 using tolerances::CapabilityIndex;
 using tolerances::CountedYield;
 using tolerances::Yield;
-
-constexpr double confidence = 0.95;
 
 const char* word_of(Response::Kind kind) {
     return kind == Response::Kind::objective ? "objective" : kind == Response::Kind::constraint ? "constraint" : "relation";
@@ -50,6 +51,25 @@ Json index_json(const std::optional<CapabilityIndex>& index) {
     return {{"value", index->value}, {"error", index->error}};
 }
 
+Json deviations_json(const Design& design, const std::vector<Tolerance>& tolerances, const VectorX& deviations) {
+    Json json = Json::object();
+    for (int k = 0; k < count_of(tolerances); ++k)
+        json[tolerances[k].of] = deviations[k] / to_si(1, design.parameters[tolerances[k].parameter].unit);
+    return json;
+}
+
+Json found_json(const Design& design, const std::vector<Tolerance>& tolerances, const std::optional<FoundExtreme>& found) {
+    if (!found) return {};
+    const auto at = [&](const VectorX& deviations) {
+        return deviations.size() == 0 ? Json() : deviations_json(design, tolerances, deviations);
+    };
+    return {{"value", finite_or_null(found->value)},
+            {"deviations", at(found->deviations)},
+            {"settled", found->settled},
+            {"simulations", found->simulations},
+            {"failure", found->failure.empty() ? Json() : Json({{"reason", found->failure}, {"deviations", at(found->failed_at)}})}};
+}
+
 Json sampled_json(const Response& response, const ToleranceReport& report) {
     if (!response.sampled) return {};
     const SampledResponse& s = *response.sampled;
@@ -67,16 +87,22 @@ Json sampled_json(const Response& response, const ToleranceReport& report) {
                  {"farthest_from_prediction", s.farthest},
                  {"farthest_sample", s.farthest_sample},
                  {"unexplained", s.unexplained}};
+    json["controlled_mean"] = nullptr;
+    if (s.controlled_mean)
+        json["controlled_mean"] = {
+            {"value", s.controlled_mean->mean}, {"error", s.controlled_mean->error}, {"correlation", s.controlled_mean->correlation}};
     if (has_bounds(response)) {
         json["met"] = s.met;
-        json["yield"] = yield_json(tolerances::counted_yield(s.met, report.samples, confidence));
+        json["yield"] = yield_json(tolerances::counted_yield(s.met, count_of(report.samples), confidence));
+        json["controlled_yield"] = s.controlled_yield ? yield_json(*s.controlled_yield) : Json();
         json["cp"] = index_json(s.capability.cp);
         json["cpk"] = index_json(s.capability.cpk);
     }
     return json;
 }
 
-Json response_json(const Design& design, const Response& response, const ToleranceReport& report) {
+Json response_json(const Design& design, const std::vector<Tolerance>& tolerances, const Response& response,
+                   const ToleranceReport& report) {
     Json json = {{"name", response.name},
                  {"of", word_of(response.kind)},
                  {"unit", unit_of(design, response).name},
@@ -87,10 +113,10 @@ Json response_json(const Design& design, const Response& response, const Toleran
                       {"standard_deviation", response.linear.standard_deviation},
                       {"worst_least", response.worst.least},
                       {"worst_most", response.worst.most}};
-    json["worst_found"] = nullptr;
-    if (response.least_found)
-        json["worst_found"] = {{"least", finite_or_null(*response.least_found)}, {"most", finite_or_null(*response.most_found)}};
+    json["least_found"] = found_json(design, tolerances, response.least_found);
+    json["most_found"] = found_json(design, tolerances, response.most_found);
     if (has_bounds(response)) json["linear"]["yield"] = yield_json(response.linear_yield);
+    json["is_rough"] = response.is_rough;
     json["second_order"] = nullptr;
     if (response.second_order) {
         json["second_order"] = {{"mean", response.second_order->mean},
@@ -121,6 +147,26 @@ Json tolerance_json(const Design& design, const Tolerance& tolerance) {
             {"standard_deviation", in_unit(moments.standard_deviation)},
             {"group", tolerance.group.empty() ? Json() : Json(tolerance.group)},
             {"correlation", tolerance.group.empty() ? Json() : Json(tolerance.correlation)}};
+}
+
+Json switched_json(const ToleranceReport& report, const studies::SwitchedContacts& switched) {
+    Json json = {{"sample", switched.sample}, {"responses", Json::array()}, {"changes", Json::array()}};
+    for (const int i : switched.responses) json["responses"].push_back(report.responses[i].name);
+    for (const gradient_audit::ContactChange& change : switched.changes)
+        json["changes"].push_back({{"event", to_string(change.at.event)},
+                                   {"scenario", change.scenario.empty() ? Json() : Json(change.scenario)},
+                                   {"body_a", change.body_a},
+                                   {"body_b", change.body_b},
+                                   {"time", change.time},
+                                   {"count", change.count}});
+    return json;
+}
+
+std::vector<const MadeSample*> failed_of(const ToleranceReport& report) {
+    std::vector<const MadeSample*> out;
+    for (const MadeSample& sample : report.samples)
+        if (sample.failed()) out.push_back(&sample);
+    return out;
 }
 
 std::string status_of(const ToleranceReport& report) {
@@ -178,21 +224,37 @@ private:
         if (response.second_order)
             row("second order", spread(response.second_order->mean, response.second_order->standard_deviation),
                 response.second_order_yield ? yield_text(*response.second_order_yield) : "not known, far from normal");
+        if (response.is_rough)
+            row("", "its derivatives change too much within a standard deviation for a prediction, as where a contact begins: take samples",
+                "");
         if (response.sampled) {
             const SampledResponse& s = *response.sampled;
             row("sampled", spread(s.moments.moments.mean, s.moments.moments.standard_deviation),
-                yield_text(tolerances::counted_yield(s.met, report_.samples, confidence)));
+                yield_text(tolerances::counted_yield(s.met, count_of(report_.samples), confidence)));
+            if (s.controlled_mean)
+                row("",
+                    "with the prediction as control: mean " + amount(s.controlled_mean->mean) + " +- " + amount(s.controlled_mean->error),
+                    s.controlled_yield ? yield_text(*s.controlled_yield) : "");
             row("", "from " + amount(s.least) + " to " + amount(s.most) + capability(s), "");
-            if (s.unexplained > 0.05)
+            if (s.unexplained > studies::much_unexplained)
                 row("",
                     "predictions miss the samples by " + percent(s.unexplained) + " of their sigma, most (" + amount(s.farthest) +
                         ") in sample " + std::to_string(s.farthest_sample),
                     "");
         }
         row("worst case", amount(response.worst.least) + " to " + amount(response.worst.most) + ", linear", "");
-        if (response.least_found) {
-            const auto found = [&](double value) { return std::isfinite(value) ? amount(value) : std::string("what cannot be simulated"); };
-            row("", found(*response.least_found) + " to " + found(*response.most_found) + ", simulated at these corners", "");
+        if (response.least_found && response.most_found) {
+            const auto found = [&](const FoundExtreme& extreme) {
+                const std::string value =
+                    std::isfinite(extreme.value) ? amount(extreme.value) : std::string("nothing that can be simulated");
+                return value + (extreme.settled ? "" : " (the search ended early)");
+            };
+            row("", found(*response.least_found) + " to " + found(*response.most_found) + ", found by simulations", "");
+            for (const auto* extreme : {&*response.least_found, &*response.most_found})
+                if (!extreme->failure.empty()) {
+                    row("", "within the limits there is one that cannot be simulated: " + extreme->failure, "");
+                    break;
+                }
         }
         return text + "  by " + contributors(response, amount) + "\n";
     }
@@ -217,17 +279,34 @@ private:
     }
 
     std::string of_samples() const {
-        if (report_.samples == 0) return report_.interrupted ? "interrupted\n" : "";
-        std::string text = core::base::counted(static_cast<std::size_t>(report_.samples), "sample") + ": " +
-                           std::to_string(report_.met_all) + " meet every requirement, " +
-                           yield_text(tolerances::counted_yield(report_.met_all, report_.samples, confidence)) +
+        constexpr std::size_t most_told = 5;
+        if (report_.samples.empty()) return report_.interrupted ? "interrupted\n" : "";
+        std::string text = core::base::counted(report_.samples.size(), "sample") + ": " + std::to_string(report_.met_all) +
+                           " meet every requirement, " +
+                           yield_text(tolerances::counted_yield(report_.met_all, count_of(report_.samples), confidence)) +
                            formatted(" at %.0f%% confidence\n", 100 * confidence);
-        if (!report_.failed.empty()) {
-            text += core::base::counted(report_.failed.size(), "sample") + " could not be made or simulated, and count as misses:\n";
-            for (std::size_t k = 0; k < std::min<std::size_t>(report_.failed.size(), 5); ++k)
-                text += "  sample " + std::to_string(report_.failed[k].sample) + ": " + report_.failed[k].reason + "\n";
-        }
+        if (report_.controlled_yield) text += "  with the predictions as control: " + yield_text(*report_.controlled_yield) + "\n";
+        const std::vector<const MadeSample*> failed = failed_of(report_);
+        if (!failed.empty())
+            text += core::base::counted(failed.size(), "sample") + " could not be made or simulated, and count as misses:\n";
+        for (std::size_t k = 0; k < std::min(failed.size(), most_told); ++k)
+            text += "  sample " + std::to_string(failed[k]->number) + ": " + failed[k]->reason + "\n";
+        for (const studies::SwitchedContacts& switched : report_.switched) text += of_contacts(switched);
         return report_.interrupted ? text + "interrupted\n" : text;
+    }
+
+    std::string of_contacts(const studies::SwitchedContacts& switched) const {
+        constexpr std::size_t most_told = 5;
+        std::vector<std::string> names;
+        for (const int i : switched.responses) names.push_back(report_.responses[i].name);
+        std::string text =
+            "sample " + std::to_string(switched.sample) + ", the farthest from the prediction of " + core::base::joined(names);
+        if (switched.changes.empty()) return text + ", has the contacts of the design as drawn\n";
+        text += ", has other contacts than the design as drawn:\n";
+        for (std::size_t k = 0; k < std::min(switched.changes.size(), most_told); ++k)
+            text += "  " + sentence_of(switched.changes[k]) + "\n";
+        if (switched.changes.size() > most_told) text += formatted("  and %zu more\n", switched.changes.size() - most_told);
+        return text;
     }
 
     std::string advice() const {
@@ -266,10 +345,12 @@ Json tolerance_json(const Design& design, const std::vector<Tolerance>& toleranc
     for (const Tolerance& tolerance : tolerances) json["tolerances"].push_back(tolerance_json(design, tolerance));
     json["responses"] = Json::array();
     if (report.reason.empty())
-        for (const Response& response : report.responses) json["responses"].push_back(response_json(design, response, report));
-    json["samples"] = {{"count", report.samples}, {"met", report.met_all}, {"failed", report.failed.size()}};
-    json["samples"]["yield"] =
-        report.samples > 0 ? yield_json(tolerances::counted_yield(report.met_all, report.samples, confidence)) : Json();
+        for (const Response& response : report.responses) json["responses"].push_back(response_json(design, tolerances, response, report));
+    const std::vector<const MadeSample*> failed = failed_of(report);
+    const int samples = count_of(report.samples);
+    json["samples"] = {{"count", samples}, {"met", report.met_all}, {"failed", failed.size()}};
+    json["samples"]["yield"] = samples > 0 ? yield_json(tolerances::counted_yield(report.met_all, samples, confidence)) : Json();
+    json["samples"]["controlled_yield"] = report.controlled_yield ? yield_json(*report.controlled_yield) : Json();
     json["tighten"] = Json::array();
     for (const studies::Tightening& t : studies::what_to_tighten(report))
         json["tighten"].push_back({{"name", report.responses[t.response].name},
@@ -279,12 +360,12 @@ Json tolerance_json(const Design& design, const std::vector<Tolerance>& toleranc
     json["loosen"] = Json::array();
     for (const int k : studies::what_may_be_loosened(report, tolerances)) json["loosen"].push_back(tolerances[k].of);
     json["failed"] = Json::array();
-    for (const studies::FailedSample& failed : report.failed) {
-        Json deviations;
-        for (int k = 0; k < count_of(tolerances); ++k)
-            deviations[tolerances[k].of] = failed.deviations[k] / to_si(1, design.parameters[tolerances[k].parameter].unit);
-        json["failed"].push_back({{"sample", failed.sample}, {"reason", failed.reason}, {"deviations", deviations}});
-    }
+    for (const MadeSample* sample : failed)
+        json["failed"].push_back({{"sample", sample->number},
+                                  {"reason", sample->reason},
+                                  {"deviations", deviations_json(design, tolerances, sample->deviations)}});
+    json["switched_contacts"] = Json::array();
+    for (const studies::SwitchedContacts& switched : report.switched) json["switched_contacts"].push_back(switched_json(report, switched));
     return json;
 }
 

@@ -160,7 +160,7 @@ Errors adopt_history(const std::filesystem::path& folder, const std::filesystem:
     if (!history) return history.errors();
     const Result<std::string> earlier = core::files::read_file(folder / "history.jsonl");
     if (earlier && history->compare(0, earlier->size(), *earlier) != 0) {
-        const Result<studies::History> fresh = studies::History::open(folder.string(), {}, studies::HistoryMode::fresh);
+        const Result<studies::History> fresh = studies::History::open(folder.string(), {}, studies::LineFileMode::fresh);
         if (!fresh) return fresh.errors();
         console.narrate("the history of an earlier run is kept as " + fresh->kept_as());
     }

@@ -6,7 +6,7 @@
 
 #include "fettle/design/answers/tolerance_json.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/studies/tolerance_study.hpp"
+#include "fettle/design/studies/tolerance_file.hpp"
 
 namespace fettle::design::cli {
 
@@ -17,13 +17,8 @@ struct Options {
     int samples = 0;
     int seed = 1;
     bool first_order = false, worst_case = false;
+    std::string samples_file;
 };
-
-Error no_tolerances(const std::string& path) {
-    return {ErrorCode::missing_key, path,
-            "it has no `tolerances`: say, for instance, \"tolerances\": {\"pin_radius\": \"+-0.05 mm\"}, by names of parameters or of the "
-            "scene's variables, or by places (\"/bodies/pin/shape/dimensions/radius\")"};
-}
 
 int run_tolerance(const Options& options, const CommonOptions& common, Console& console) {
     begin_to_read(options.path);
@@ -32,9 +27,6 @@ int run_tolerance(const Options& options, const CommonOptions& common, Console& 
     Result<reading::DesignFile> file = reading::read_design(options.path, read);
     if (!file) return console.input_errors(file.errors());
     tell_warnings(console, file->warnings, options.path);
-    if (file->tolerances.empty()) return console.input_errors({no_tolerances(options.path)});
-    const Result<problem::DesignProblem> problem = problem::DesignProblem::create(file->design);
-    if (!problem) return console.input_errors(problem.errors());
     studies::ToleranceOptions study;
     study.samples = options.samples;
     study.seed = static_cast<std::uint64_t>(options.seed);
@@ -42,11 +34,12 @@ int run_tolerance(const Options& options, const CommonOptions& common, Console& 
     study.worst_case = options.worst_case;
     study.should_stop = interrupted;
     study.on_simulation = [&](int done, int of) { console.progress("simulating", done, of); };
-    const studies::ToleranceReport report = studies::study_tolerances(*problem, file->tolerances, study);
+    const Result<studies::ToleranceReport> report = studies::study_tolerances(*file, options.samples_file, study);
     console.end_progress();
-    console.result(answers::tolerance_json(problem->design(), file->tolerances, report),
-                   answers::tolerance_text(problem->design(), file->tolerances, report));
-    return report.reason.empty() && report.no_second_order.empty() && !report.interrupted ? exit_done : exit_undecided;
+    if (!report) return console.input_errors(report.errors());
+    console.result(answers::tolerance_json(file->design, file->tolerances, *report),
+                   answers::tolerance_text(file->design, file->tolerances, *report));
+    return report->reason.empty() && report->no_second_order.empty() && !report->interrupted ? exit_done : exit_undecided;
 }
 
 }  // namespace
@@ -57,8 +50,10 @@ Command add_tolerance(CommandLine& program, const CommonOptions& common) {
     app.option("DESIGN", options->path, "Design with `tolerances`, taken at its values").required();
     app.option("--samples", options->samples, "Whole simulations of made mechanisms (default 0: predictions alone)").between(0, 1000000);
     app.option("--seed", options->seed, "Of the samples (default 1)").at_least(0);
+    app.option("--samples-file", options->samples_file,
+               "Where the samples are kept, a line each: those that are there are not simulated again, so that a run can be interrupted");
     app.flag("--first-order", options->first_order, "Predict from one simulation, without the 2 per tolerance that the second order takes");
-    app.flag("--worst-case", options->worst_case, "Simulate the worst cases that the derivatives name too: two for each requirement");
+    app.flag("--worst-case", options->worst_case, "Search for the worst cases by simulations: two searches for each requirement");
     app.closing_words(
         "Example:  fettle tolerance examples/slider_crank/slider_crank.design.json --samples 256\n"
         "Predicts, from the derivatives, how far each number that the design asks for spreads over the tolerances, and which of them make\n"

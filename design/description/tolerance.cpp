@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/expression/parse_formula.hpp"
+#include "fettle/core/expression/formula.hpp"
 #include "fettle/core/scene/place.hpp"
 
 namespace fettle::design::description {
@@ -14,28 +14,20 @@ namespace {
 using core::expression::Formula;
 using core::scene::BoundNumber;
 
-// nominal + input.
-Formula sum_of(const Formula& nominal, const std::string& input, Dimension dimension) {
-    const auto powers = core::expression::powers_of(dimension);
-    core::expression::Scope scope;
-    scope.names = {{"nominal", powers}, {"deviation", powers}};
-    const Formula sum = core::expression::parse_formula("nominal + deviation", scope).value();
-    return core::expression::substituted(sum, {{"nominal", nominal}, {"deviation", core::expression::input_formula(input, powers)}});
-}
-
 void add_to(const core::scene::Scene& scene, std::vector<BoundNumber>& numbers, const core::scene::Place& place, const std::string& input) {
     const std::string pointer = core::scene::pointer_to(scene, place);
-    const Dimension dimension = core::scene::dimension_at(scene, place);
+    const auto dimension = core::expression::powers_of(core::scene::dimension_at(scene, place));
+    const Formula deviation = core::expression::input_formula(input, dimension);
     const auto found = std::find_if(numbers.begin(), numbers.end(), [&](const BoundNumber& number) {
         const auto other = core::scene::find_place(scene, number.place);
         return other && *other == place;
     });
     if (found != numbers.end()) {
-        found->formula = sum_of(found->formula, input, dimension);
+        found->formula = core::expression::sum_of(found->formula, deviation);
         return;
     }
-    const Formula nominal = core::expression::constant_formula(core::scene::value_at(scene, place), core::expression::powers_of(dimension));
-    numbers.push_back({pointer, sum_of(nominal, input, dimension)});
+    const Formula nominal = core::expression::constant_formula(core::scene::value_at(scene, place), dimension);
+    numbers.push_back({pointer, core::expression::sum_of(nominal, deviation)});
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ void bind_clearance(pybind11::module_& module);   ///< clearances, certificates
 void bind_design(pybind11::module_& module);      ///< shapes, quantities, designs, read
 void bind_problem(pybind11::module_& module);     ///< DesignProblem
 void bind_studies(pybind11::module_& module);     ///< audits, optimisation
+void bind_tolerances(pybind11::module_& module);  ///< designs as made
 void bind_exports(pybind11::module_& module);     ///< models out, pictures, reports
 
 }  // namespace fettle::design::python

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/reading/design_formulas.hpp"
 
+#include <algorithm>
+
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/scene_files/scene_reader.hpp"
 
 namespace fettle::design::reading {
 
@@ -45,6 +48,28 @@ void DesignFormulas::add_parameters(const JsonNode& node, const std::vector<desc
     take_scene_variables();
 }
 
+void DesignFormulas::add_deviations(const std::map<std::string, std::string>& names, core::files::JsonDocument& scene) {
+    own_deviations_ = names;
+    for (const core::scene::Variable& variable : scene_variables_) {
+        const auto found = own_deviations_.find(variable.name);
+        if (found == own_deviations_.end()) continue;
+        take_deviation(found->second, variable.formula.dimension, variable.name);
+        own_deviations_.erase(found);
+    }
+    scene_variables_ = core::scene_files::variables_of(scene, deviations_);
+    std::erase_if(scope_.names, [&](const Scope::Name& name) {
+        return values_.count(name.name) == 0;  // the scene's, as they were
+    });
+    take_scene_variables();
+}
+
+void DesignFormulas::take_deviation(const std::string& name, const core::expression::DimensionPowers& dimension,
+                                    const std::string& variable) {
+    deviations_.push_back({name, dimension, 0, {}, variable});
+    scope_.names.push_back({name, dimension});
+    values_[name] = 0;
+}
+
 void DesignFormulas::read_variables(const JsonNode& node) {
     std::map<std::string, std::string> texts;
     for (const auto& [name, value] : node.members()) {
@@ -61,6 +86,10 @@ void DesignFormulas::read_variables(const JsonNode& node) {
     }
     std::erase_if(scope_.names, [&](const Scope::Name& name) { return texts.count(name.name) != 0; });  // its own are meant
     const Errors errors = core::expression::define_variables(texts, scope_, [&](const std::string& name, Formula formula) {
+        if (const auto deviation = own_deviations_.find(name); deviation != own_deviations_.end()) {
+            take_deviation(deviation->second, formula.dimension, {});
+            formula = core::expression::sum_of(formula, core::expression::input_formula(deviation->second, formula.dimension));
+        }
         own_.push_back({name, formula.dimension, 0, formula});
         return Scope::Name{name, formula.dimension, std::move(formula)};
     });
@@ -70,7 +99,8 @@ void DesignFormulas::read_variables(const JsonNode& node) {
 std::vector<core::scene::FormulaInput> DesignFormulas::inputs_of_scene() const {
     std::vector<core::scene::FormulaInput> out;
     for (const auto& name : scope_.names)
-        if (!name.meaning) out.push_back({name.name, name.dimension, values_.at(name.name)});
+        if (!name.meaning && !is_deviation(name.name)) out.push_back({name.name, name.dimension, values_.at(name.name)});
+    out.insert(out.end(), deviations_.begin(), deviations_.end());
     out.insert(out.end(), own_.begin(), own_.end());
     return out;
 }
@@ -85,6 +115,10 @@ std::optional<Formula> DesignFormulas::followed(const JsonNode& node, Dimension 
     return std::move(formula).value();
 }
 
+bool DesignFormulas::is_deviation(const std::string& name) const {
+    return std::any_of(deviations_.begin(), deviations_.end(), [&](const core::scene::FormulaInput& input) { return input.name == name; });
+}
+
 double DesignFormulas::value_of(const Formula& formula) const {
     std::vector<double> inputs;
     for (const std::string& name : formula.inputs) inputs.push_back(values_.at(name));
@@ -95,7 +129,8 @@ std::optional<double> DesignFormulas::read(const JsonNode& node, const std::stri
     const Result<Formula> formula = core::expression::parse_formula_of(text, scope_, dimension, si_per_number);
     for (const Error& error : formula.errors()) node.fail(error.code, error.message);
     if (!formula) return std::nullopt;
-    if (formula->is_constant()) return core::expression::value_of<double>(*formula, {});
+    if (std::all_of(formula->inputs.begin(), formula->inputs.end(), [&](const std::string& name) { return is_deviation(name); }))
+        return value_of(*formula);
     node.fail(ErrorCode::unsupported, "this number cannot follow from parameters; use only variables that no parameter changes");
     return std::nullopt;
 }

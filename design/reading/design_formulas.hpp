@@ -33,6 +33,10 @@ public:
 
     /// Formulas may name these parameters from here on; they replace the scene's variables of their names. Faults go to the node.
     void add_parameters(const core::files::JsonNode& node, const std::vector<description::Parameter>& parameters);
+    /// From here on a number is added to a variable of the design or of the scene: how far it is off as made. The design's own formulas
+    /// follow from it; numbers of the file that can follow from nothing are what they are where it is 0.
+    /// @param names  Of the added numbers, by variable. @param scene  Whose variables are read again.
+    void add_deviations(const std::map<std::string, std::string>& names, core::files::JsonDocument& scene);
     /// The design's own `variables`.
     void read_variables(const core::files::JsonNode& node);
 
@@ -50,12 +54,16 @@ public:
 private:
     std::optional<double> read(const core::files::JsonNode& node, const std::string& text, Dimension dimension, double si_per_number);
     void take_scene_variables();
+    void take_deviation(const std::string& name, const core::expression::DimensionPowers& dimension, const std::string& variable);
+    bool is_deviation(const std::string& name) const;
 
     core::files::JsonDocument& document_;
     std::vector<core::scene::Variable> scene_variables_;
     core::expression::Scope scope_;
     std::map<std::string, double> values_;  // of parameters, where they are references
     std::vector<core::scene::FormulaInput> own_;
+    std::map<std::string, std::string> own_deviations_;  // to come, by variable
+    std::vector<core::scene::FormulaInput> deviations_;  // that are in the scope
 };
 
 }  // namespace fettle::design::reading

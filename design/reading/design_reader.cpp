@@ -58,10 +58,9 @@ public:
         DesignFormulas formulas(document_, to_si(1, file_.length_unit), core::scene_files::variables_of(*scene));
         design_.parameters = read_parameters(root.require("parameters"), formulas.scene_variables(), file_.length_unit);
         std::vector<description::Parameter> as_made = design_.parameters;
-        std::vector<ToleranceEntry> entries = read_tolerances(root["tolerances"], formulas.scene_variables(), file_.length_unit, as_made);
-        refuse_set_variables(root, entries);
-        if (options_.as_made) design_.parameters = as_made;
+        std::vector<ToleranceEntry> entries = find_tolerances(root["tolerances"], variable_names(root, formulas), as_made);
         formulas.add_parameters(root["parameters"], design_.parameters);
+        if (options_.as_made) formulas.add_deviations(deviations_of(entries, as_made), *scene);
         formulas.read_variables(root["variables"]);
         if (!has_parameters()) return all_errors();
         const std::optional<Setting> setting = read_setting(*scene, {root["set"]}, formulas);
@@ -72,7 +71,7 @@ public:
         read_simulation(root["simulation"]);
         const ScenarioNames scenarios = read_scenarios(root["scenarios"], root["set"], formulas);
         if (!scene_errors_.empty()) return all_errors();  // of one of them
-        take_tolerances(entries);
+        take_tolerances(entries, formulas, as_made);
         std::vector<quantities::NamedQuantity> named;
         const ReadContext context{design_.scene, to_si(1, file_.length_unit), design_.steps * design_.scene.timestep, formulas, named,
                                   scenarios};
@@ -105,27 +104,27 @@ private:
         });
     }
 
-    // A variable with a tolerance is a parameter, which would replace what is set.
-    static void refuse_set_variables(const JsonNode& root, const std::vector<ToleranceEntry>& entries) {
-        std::vector<JsonNode> sets{root["set"]};
-        for (const JsonNode& scenario : root["scenarios"].elements()) sets.push_back(scenario["set"]);
-        for (const ToleranceEntry& entry : entries)
-            if (std::any_of(sets.begin(), sets.end(),
-                            [&](const JsonNode& set) { return set["/variables/" + entry.tolerance.of].exists(); }))
-                entry.node.fail(ErrorCode::unsupported, "the design, or one of its scenarios, sets variable `" + entry.tolerance.of +
-                                                            "`: give the tolerance to the places that it is used at");
+    static VariableNames variable_names(const JsonNode& root, const DesignFormulas& formulas) {
+        VariableNames out;
+        for (const core::scene::Variable& variable : formulas.scene_variables()) out.scene.push_back(variable.name);
+        for (const auto& [name, value] : root["variables"].members())
+            if (!name.starts_with('#')) out.design.push_back(name);
+        return out;
     }
 
-    // Of a design as drawn they are checked, and left.
-    void take_tolerances(std::vector<ToleranceEntry>& entries) {
-        const bool has_places = std::any_of(entries.begin(), entries.end(), [](const ToleranceEntry& entry) { return entry.is_place; });
-        if (options_.as_made) {
-            read_place_tolerances(entries, file_.length_unit, design_);
-            for (ToleranceEntry& entry : entries) file_.tolerances.push_back(std::move(entry.tolerance));
-        } else if (has_places) {
+    // Of a design as drawn they are checked, and left. @param parameters  As made, but for those of places.
+    void take_tolerances(std::vector<ToleranceEntry>& entries, const DesignFormulas& formulas,
+                         const std::vector<description::Parameter>& parameters) {
+        if (entries.empty()) return;
+        if (!options_.as_made) {
             description::Design checked = design_;
-            read_place_tolerances(entries, file_.length_unit, checked);
+            checked.parameters = parameters;
+            read_tolerances(entries, formulas, file_.length_unit, checked);
+            return;
         }
+        design_.parameters = parameters;
+        read_tolerances(entries, formulas, file_.length_unit, design_);
+        for (ToleranceEntry& entry : entries) file_.tolerances.push_back(std::move(entry.tolerance));
     }
 
     std::optional<JsonDocument> open_scene_file(const JsonNode& node) {
@@ -311,13 +310,15 @@ private:
         for (const description::Constraint& constraint : design_.constraints) look_at(*constraint.quantity);
         const std::vector<JsonNode> nodes = parameters.elements();
         for (std::size_t k = 0; k < design_.parameters.size(); ++k)
-            if (used.count(design_.parameters[k].name) == 0)
-                (k < nodes.size() ? nodes[k] : document_.root()["tolerances"])
-                    .fail(ErrorCode::inconsistent,
-                          "no number of the scene follows from parameter \"" + design_.parameters[k].name +
-                              "\": use it in a formula there, or in the design's `set`, such as \"/bodies/" +
-                              (design_.scene.bodies.empty() ? std::string("0") : design_.scene.bodies.front().name) +
-                              "/position/0\": \"= " + core::expression::quoted_if_needed(design_.parameters[k].name) + "\"");
+            if (k >= nodes.size() && used.count(design_.parameters[k].name) == 0)
+                document_.root()["tolerances"].fail(ErrorCode::inconsistent, "nothing of the design follows from the " +
+                                                                                 design_.parameters[k].name + ": leave its tolerance out");
+            else if (used.count(design_.parameters[k].name) == 0)
+                nodes[k].fail(ErrorCode::inconsistent,
+                              "no number of the scene follows from parameter \"" + design_.parameters[k].name +
+                                  "\": use it in a formula there, or in the design's `set`, such as \"/bodies/" +
+                                  (design_.scene.bodies.empty() ? std::string("0") : design_.scene.bodies.front().name) +
+                                  "/position/0\": \"= " + core::expression::quoted_if_needed(design_.parameters[k].name) + "\"");
     }
 
     void check_scaled_parts(const Setting& setting) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/expression/parse_formula.hpp"
 #include "fettle/core/files/nearest_word.hpp"
@@ -148,75 +149,110 @@ private:
     const Nominal& nominal_;
 };
 
-std::vector<std::string_view> names_of(const std::vector<Parameter>& parameters, const std::vector<core::scene::Variable>& variables) {
+constexpr std::string_view deviation_of = "deviation of ";
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::vector<std::string_view> all_names(const std::vector<Parameter>& parameters, const VariableNames& variables) {
     std::vector<std::string_view> names;
     for (const Parameter& parameter : parameters) names.push_back(parameter.name);
-    for (const core::scene::Variable& variable : variables) names.push_back(variable.name);
+    names.insert(names.end(), variables.design.begin(), variables.design.end());
+    names.insert(names.end(), variables.scene.begin(), variables.scene.end());
     return names;
 }
 
-// The parameter of this name; a variable becomes one. Nothing: there is none, which is told.
-std::optional<int> parameter_of(const JsonNode& node, const std::string& name, const std::vector<core::scene::Variable>& variables,
-                                const Unit& length_unit, std::vector<Parameter>& parameters) {
-    const auto is_named = [&](const auto& each) { return each.name == name; };
-    const auto known = std::find_if(parameters.begin(), parameters.end(), is_named);
-    if (known != parameters.end()) return static_cast<int>(known - parameters.begin());
-    const auto variable = std::find_if(variables.begin(), variables.end(), is_named);
-    if (variable == variables.end()) {
-        node.fail(ErrorCode::out_of_range, "there is no parameter and no variable of the scene `" + name + "`; " +
-                                               core::files::did_you_mean(name, names_of(parameters, variables), '`') +
-                                               "; a place of the scene begins with \"/\"");
-        return std::nullopt;
+// At the parameters' values; what else it follows from are variables of the scene.
+double value_of(const core::expression::Formula& formula, const description::Design& design) {
+    std::vector<double> inputs;
+    for (const std::string& name : formula.inputs) {
+        const auto is_named = [&](const auto& each) { return each.name == name; };
+        const auto parameter = std::find_if(design.parameters.begin(), design.parameters.end(), is_named);
+        const auto variable = std::find_if(design.scene.variables.begin(), design.scene.variables.end(), is_named);
+        const bool is_parameter = parameter != design.parameters.end();
+        FETTLE_ASSERT(is_parameter || variable != design.scene.variables.end(), "a variable's formula names what there is");
+        inputs.push_back(is_parameter ? parameter->value : variable->value);
     }
-    if (!variable->formula.is_constant()) {
-        node.fail(ErrorCode::unsupported,
-                  "variable `" + name +
-                      "` follows from others, so that it has no size of its own: give the tolerance to these, or to "
-                      "the place that it is used at");
-        return std::nullopt;
-    }
-    Parameter parameter;
-    parameter.name = name;
-    parameter.value = parameter.lower = parameter.upper = variable->value;
-    parameter.unit = usual_unit(named_dimension(variable->formula.dimension).value_or(Dimension::number), length_unit);
-    parameters.push_back(parameter);
-    return count_of(parameters) - 1;
+    return core::expression::value_of<double>(formula, inputs);
+}
+
+// The variable as the design and its scene have it, with what the design sets; nothing: it has a fault, which is told.
+std::optional<Nominal> nominal_of(const std::string& name, const DesignFormulas& formulas, const Unit& length_unit,
+                                  const description::Design& design) {
+    const auto& variables = design.scene.variables;
+    const auto of_scene = std::find_if(variables.begin(), variables.end(), [&](const auto& each) { return each.name == name; });
+    const core::expression::Scope::Name* of_design = formulas.scope().find(name);
+    const bool is_of_scene = of_scene != variables.end();
+    if (!is_of_scene && (of_design == nullptr || !of_design->meaning)) return std::nullopt;
+    const core::expression::Formula& formula = is_of_scene ? of_scene->formula : *of_design->meaning;
+    const Dimension dimension = named_dimension(formula.dimension).value_or(Dimension::number);
+    return Nominal{value_of(formula, design), usual_unit(dimension, length_unit)};
 }
 
 }  // namespace
 
-std::vector<ToleranceEntry> read_tolerances(const JsonNode& node, const std::vector<core::scene::Variable>& variables,
-                                            const Unit& length_unit, std::vector<Parameter>& parameters) {
+std::vector<ToleranceEntry> find_tolerances(const JsonNode& node, const VariableNames& variables, std::vector<Parameter>& parameters) {
+    using Kind = ToleranceEntry::Kind;
     std::vector<ToleranceEntry> entries;
+    const std::vector<Parameter> own = parameters;
     for (const auto& [name, entry] : node.members()) {
         Tolerance tolerance;
         tolerance.of = name;
+        const auto parameter =
+            std::find_if(own.begin(), own.end(), [&, &wanted = name](const Parameter& each) { return each.name == wanted; });
         if (name.starts_with("/")) {
-            entries.push_back({std::move(tolerance), entry, true});
-            continue;
+            entries.push_back({std::move(tolerance), entry, Kind::place});
+        } else if (parameter != own.end()) {
+            tolerance.parameter = static_cast<int>(parameter - own.begin());
+            entries.push_back({std::move(tolerance), entry, Kind::parameter});
+        } else if (has(variables.scene, name) || has(variables.design, name)) {
+            Parameter deviation;
+            deviation.name = std::string(deviation_of) + name;
+            parameters.push_back(deviation);
+            tolerance.parameter = count_of(parameters) - 1;
+            entries.push_back({std::move(tolerance), entry, Kind::variable});
+        } else {
+            entry.fail(ErrorCode::out_of_range, "there is no parameter and no variable `" + name + "`; " +
+                                                    core::files::did_you_mean(name, all_names(own, variables), '`') +
+                                                    "; a place of the scene begins with \"/\"");
         }
-        const std::optional<int> parameter = parameter_of(entry, name, variables, length_unit, parameters);
-        if (!parameter) continue;
-        tolerance.parameter = *parameter;
-        EntryReader(entry, {parameters[*parameter].value, parameters[*parameter].unit}).read(tolerance);
-        entries.push_back({std::move(tolerance), entry, false});
     }
     return entries;
 }
 
-void read_place_tolerances(std::vector<ToleranceEntry>& entries, const Unit& length_unit, description::Design& design) {
+std::map<std::string, std::string> deviations_of(const std::vector<ToleranceEntry>& entries, const std::vector<Parameter>& parameters) {
+    std::map<std::string, std::string> out;
+    for (const ToleranceEntry& entry : entries)
+        if (entry.kind == ToleranceEntry::Kind::variable) out[entry.tolerance.of] = parameters[entry.tolerance.parameter].name;
+    return out;
+}
+
+void read_tolerances(std::vector<ToleranceEntry>& entries, const DesignFormulas& formulas, const Unit& length_unit,
+                     description::Design& design) {
+    using Kind = ToleranceEntry::Kind;
     for (ToleranceEntry& entry : entries) {
-        if (!entry.is_place) continue;
-        const core::scene::Scene scene = description::described_scene(design);
-        const auto place = core::scene::find_place(scene, entry.tolerance.of);
-        for (const Error& error : place.errors()) entry.node.fail(error.code, error.message);
-        if (!place) continue;
-        const Nominal nominal{core::scene::value_at(scene, *place), usual_unit(core::scene::dimension_at(scene, *place), length_unit)};
-        const Result<int> parameter = description::add_deviation(design, entry.tolerance.of, nominal.unit);
-        for (const Error& error : parameter.errors()) entry.node.fail(error.code, error.message);
-        if (!parameter) continue;
-        entry.tolerance.parameter = *parameter;
-        EntryReader(entry.node, nominal).read(entry.tolerance);
+        Tolerance& tolerance = entry.tolerance;
+        if (entry.kind == Kind::parameter) {
+            const Parameter& parameter = design.parameters[tolerance.parameter];
+            EntryReader(entry.node, {parameter.value, parameter.unit}).read(tolerance);
+        } else if (entry.kind == Kind::variable) {
+            const std::optional<Nominal> nominal = nominal_of(tolerance.of, formulas, length_unit, design);
+            if (!nominal) continue;
+            design.parameters[tolerance.parameter].unit = nominal->unit;
+            EntryReader(entry.node, *nominal).read(tolerance);
+        } else {
+            const core::scene::Scene scene = description::described_scene(design);
+            const auto place = core::scene::find_place(scene, tolerance.of);
+            for (const Error& error : place.errors()) entry.node.fail(error.code, error.message);
+            if (!place) continue;
+            const Nominal nominal{core::scene::value_at(scene, *place), usual_unit(core::scene::dimension_at(scene, *place), length_unit)};
+            const Result<int> parameter = description::add_deviation(design, tolerance.of, nominal.unit);
+            for (const Error& error : parameter.errors()) entry.node.fail(error.code, error.message);
+            if (!parameter) continue;
+            tolerance.parameter = *parameter;
+            EntryReader(entry.node, nominal).read(tolerance);
+        }
     }
 }
 

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/studies/history.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -16,11 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
-#include <string_view>
-#include <thread>
 
 #include "fettle/core/base/version.hpp"
-#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_text.hpp"
 
 namespace fettle::design::studies {
@@ -92,7 +83,7 @@ std::string header_line(const HistoryHeader& header) {
     json["program"] = core::base::version();
     json["parameters"] = header.parameters;
     json["constraints"] = header.constraints;
-    return json.dump() + "\n";
+    return json.dump();
 }
 
 std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, int number) {
@@ -125,7 +116,7 @@ std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, i
     }
     json["forward_seconds"] = entry.forward_seconds;
     json["backward_seconds"] = entry.backward_seconds;
-    return json.dump() + "\n";
+    return json.dump();
 }
 
 HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) {
@@ -183,33 +174,10 @@ Errors header_errors(const std::string& line, const HistoryHeader& header, const
     return {};
 }
 
-std::string system_message() { return std::strerror(errno); }
-
-// A link that somebody laid there is not followed.
-int open_history(const fs::path& path) { return ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0666); }
-
 std::string bits_of(const VectorX& x) {
     std::string key(static_cast<size_t>(x.size()) * sizeof(double), '\0');
     std::memcpy(key.data(), x.data(), key.size());
     return key;
-}
-
-// @return its new name
-Result<std::string> rename_away(const fs::path& path) {
-    const fs::path target = core::files::free_name(path);
-    std::error_code failure;
-    fs::rename(path, target, failure);
-    if (failure) return Error{ErrorCode::file_unwritable, path.string(), "cannot be renamed: " + failure.message()};
-    return target.string();
-}
-
-// A run that was killed may take a moment to let go of its file.
-bool lock(int file) {
-    for (int tries = 0; ::flock(file, LOCK_EX | LOCK_NB) != 0; ++tries) {
-        if (tries == 10) return false;
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-    return true;
 }
 
 }  // namespace
@@ -235,103 +203,40 @@ Errors history_faults(const std::string& text, const std::string& path) {
     return {};
 }
 
-Result<History> History::open(const std::string& directory, const HistoryHeader& header, HistoryMode mode) {
-    History history;
-    history.header_ = header;
-    const fs::path path = fs::path(directory) / "history.jsonl";
-    history.path_ = path.string();
-    std::error_code failure;
-    fs::create_directories(directory, failure);
-    if (failure) return Error{ErrorCode::file_unwritable, directory, "cannot be made: " + failure.message()};
-    // Locked before it is renamed or read: a history that another run is still writing is left alone.
-    history.file_ = open_history(path);
-    if (history.file_ < 0) return Error{ErrorCode::file_unwritable, path.string(), "cannot be opened for writing: " + system_message()};
-    if (!lock(history.file_)) {
-        return Error{ErrorCode::file_unreadable, path.string(),
-                     "another process is writing this history; wait for it, or give --out another folder"};
-    }
-    if (mode == HistoryMode::fresh && fs::file_size(path, failure) > 0) {
-        const Result<std::string> kept = rename_away(path);
-        if (!kept) return kept.errors();
-        history.kept_as_ = *kept;
-        ::close(history.file_);
-        history.file_ = open_history(path);
-        if (history.file_ < 0 || ::flock(history.file_, LOCK_EX | LOCK_NB) != 0) {
-            return Error{ErrorCode::file_unwritable, path.string(), "cannot be opened for writing: " + system_message()};
-        }
-    }
-    Errors errors = history.read_existing(path.string());
+Result<History> History::open(const std::string& directory, const HistoryHeader& header, LineFileMode mode) {
+    const std::string path = (fs::path(directory) / "history.jsonl").string();
+    Result<LineFile> file = LineFile::open(path, mode, "history");
+    if (!file) return file.errors();
+    History history(std::move(file).value(), header);
+    Errors errors = history.read_existing(path);
     if (!errors.empty()) return errors;
     return history;
 }
 
 Errors History::read_existing(const std::string& path) {
-    const Result<std::string> text = core::files::read_file(path);
-    if (!text) return text.errors();
-    size_t begin = 0;
-    for (int line_number = 1;; ++line_number) {
-        const size_t end = text->find('\n', begin);
-        if (end == std::string::npos) break;  // what follows was cut off by a kill
-        const std::string line = text->substr(begin, end - begin);
-        if (line_number == 1) {
-            Errors errors = header_errors(line, header_, path);
-            if (!errors.empty()) return errors;
-        } else {
-            try {
-                replayed_.push_back(parsed_entry(line, header_));
-            } catch (const std::exception& e) {
-                // A last line can be whole and yet damaged, when a machine lost power; earlier ones cannot.
-                if (end + 1 == text->size()) break;
-                return {{ErrorCode::parse, path + ": line " + std::to_string(line_number), std::string("damaged: ") + e.what()}};
-            }
+    const std::vector<std::string>& lines = file_.found();
+    if (!lines.empty()) {
+        Errors errors = header_errors(lines.front(), header_, path);
+        if (!errors.empty()) return errors;
+    }
+    for (std::size_t k = 1; k < lines.size(); ++k) {
+        try {
+            replayed_.push_back(parsed_entry(lines[k], header_));
+        } catch (const std::exception& e) {
+            // A last line can be whole and yet damaged, when a machine lost power; earlier ones cannot.
+            if (k + 1 == lines.size()) break;
+            return {{ErrorCode::parse, path + ": line " + std::to_string(k + 1), std::string("damaged: ") + e.what()}};
         }
-        begin = end + 1;
     }
     entries_ = count_of(replayed_);
-    if (begin < text->size() && ::ftruncate(file_, static_cast<off_t>(begin)) != 0) {
-        return {{ErrorCode::file_unwritable, path, "cannot be cut back to its last whole line: " + system_message()}};
-    }
-    if (begin > 0) return {};
-    waiting_ = header_line(header_);
-    write_waiting();
+    if (!lines.empty()) return file_.keep(1 + replayed_.size());
+    Errors errors = file_.keep(0);
+    if (!errors.empty()) return errors;
+    file_.append(header_line(header_));
     return unwritten();
 }
 
-// A part of a line may have got there; the rest of it comes first the next time.
-void History::write_waiting() {
-    std::string_view left = waiting_;
-    write_error_ = core::files::write_all(file_, left);
-    waiting_.erase(0, waiting_.size() - left.size());
-    if (write_error_ == 0 && ::fsync(file_) != 0 && errno != EINVAL) write_error_ = errno;
-}
-
-void History::append(const HistoryEntry& entry) {
-    waiting_ += entry_line(entry, header_, ++entries_);
-    write_waiting();
-}
-
-Errors History::unwritten() const {
-    if (write_error_ == 0) return {};
-    return {{ErrorCode::file_unwritable, path_, std::string("the history cannot be written: ") + std::strerror(write_error_)}};
-}
-
-History::~History() {
-    if (file_ >= 0) ::close(file_);
-}
-
-History::History(History&& other) noexcept { *this = std::move(other); }
-
-History& History::operator=(History&& other) noexcept {
-    std::swap(file_, other.file_);
-    std::swap(path_, other.path_);
-    std::swap(waiting_, other.waiting_);
-    std::swap(write_error_, other.write_error_);
-    std::swap(entries_, other.entries_);
-    std::swap(header_, other.header_);
-    std::swap(replayed_, other.replayed_);
-    std::swap(kept_as_, other.kept_as_);
-    return *this;
-}
+void History::append(const HistoryEntry& entry) { file_.append(entry_line(entry, header_, ++entries_)); }
 
 std::function<optimisers::Evaluation(const VectorX&)> recorded(History& history, std::function<HistoryEntry(const VectorX&)> evaluate,
                                                                const std::string& model, Recorded wanted) {

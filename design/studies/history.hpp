@@ -18,6 +18,7 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/design/optimisers/problem.hpp"
+#include "fettle/design/studies/line_file.hpp"
 
 namespace fettle::design::studies {
 
@@ -35,23 +36,13 @@ struct HistoryEntry {
     double forward_seconds = 0, backward_seconds = 0;
 };
 
-enum class HistoryMode {
-    fresh,  ///< an existing history is kept under another name (history.1.jsonl, ...)
-    resume  ///< an existing history is replayed; none is a fresh start
-};
-
 /// What is damaged in the text of a history, whose last line is whole, by itself: with the line's number (parse). None in an empty one.
 Errors history_faults(const std::string& text, const std::string& path);
 
-/// Owns the open file, which it locks against a second process.
 class History {
 public:
-    /// Errors: a history of another design (inconsistent), one that is in use by another process (file_unreadable) or cannot be written
-    /// (file_unwritable), a damaged line other than the last (parse). A last line cut off by a kill is dropped.
-    static Result<History> open(const std::string& directory, const HistoryHeader& header, HistoryMode mode);
-    ~History();
-    History(History&&) noexcept;
-    History& operator=(History&&) noexcept;
+    /// Errors: a history of another design (inconsistent), a damaged line other than the last (parse), those of LineFile::open.
+    static Result<History> open(const std::string& directory, const HistoryHeader& header, LineFileMode mode);
 
     /// What an earlier run left, in its order.
     const std::vector<HistoryEntry>& replayed() const { return replayed_; }
@@ -60,24 +51,19 @@ public:
     void append(const HistoryEntry& entry);
 
     /// Why what was appended is not all on the disk (file_unwritable); nothing where it is.
-    Errors unwritten() const;
+    Errors unwritten() const { return file_.unwritten(); }
 
     /// Name of the file that `fresh` renamed away; empty if there was none.
-    const std::string& kept_as() const { return kept_as_; }
+    const std::string& kept_as() const { return file_.kept_as(); }
 
 private:
-    History() = default;
-    void write_waiting();
+    History(LineFile file, const HistoryHeader& header) : file_(std::move(file)), header_(header) {}
     Errors read_existing(const std::string& path);
 
-    int file_ = -1;
-    std::string path_;
-    std::string waiting_;  ///< lines that are not on the disk yet
-    int write_error_ = 0;  ///< why
+    LineFile file_;
     int entries_ = 0;
     HistoryHeader header_;
     std::vector<HistoryEntry> replayed_;
-    std::string kept_as_;
 };
 
 enum class Recorded { with_derivatives, values };

@@ -6,7 +6,6 @@
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/design/tolerances/normal_distribution.hpp"
-#include "fettle/design/tolerances/sobol.hpp"
 
 namespace fettle::design::studies {
 
@@ -46,16 +45,18 @@ IndependentInputs independent_inputs(const std::vector<Tolerance>& tolerances) {
     return out;
 }
 
-VectorX deviations_of_sample(const std::vector<Tolerance>& tolerances, std::uint64_t seed, int sample) {
-    const IndependentInputs inputs = independent_inputs(tolerances);
-    const VectorX u = tolerances::SobolPoints(inputs.count(), seed).point(static_cast<std::uint32_t>(sample));
-    VectorX x(inputs.count());
-    for (int k = 0; k < inputs.count(); ++k) {
-        const bool is_own = k < count_of(tolerances) && !is_shared(tolerances[k]);
-        x[k] = is_own ? quantile(tolerances[k].deviation, u[k])
-                      : inputs.moments[k].mean + inputs.moments[k].standard_deviation * tolerances::normal_quantile(u[k]);
+DeviationSamples::DeviationSamples(const std::vector<Tolerance>& tolerances, std::uint64_t seed)
+    : tolerances_(tolerances), inputs_(independent_inputs(tolerances)), points_(inputs_.count(), seed) {}
+
+VectorX DeviationSamples::at(int k) const {
+    const VectorX u = points_.point(static_cast<std::uint32_t>(k));
+    VectorX x(inputs_.count());
+    for (int j = 0; j < inputs_.count(); ++j) {
+        const bool is_own = j < count_of(tolerances_) && !is_shared(tolerances_[j]);
+        x[j] = is_own ? quantile(tolerances_[j].deviation, u[j])
+                      : inputs_.moments[j].mean + inputs_.moments[j].standard_deviation * tolerances::normal_quantile(u[j]);
     }
-    return inputs.map * x;
+    return inputs_.map * x;
 }
 
 }  // namespace fettle::design::studies

@@ -12,6 +12,7 @@
 
 #include "fettle/design/description/tolerance.hpp"
 #include "fettle/design/tolerances/moments.hpp"
+#include "fettle/design/tolerances/sobol.hpp"
 
 namespace fettle::design::studies {
 
@@ -26,7 +27,19 @@ struct IndependentInputs {
 /// Contract: what is in a group is normal.
 IndependentInputs independent_inputs(const std::vector<description::Tolerance>& tolerances);
 
-/// The deviations of a sample, one per tolerance: at a point of a scrambled Sobol sequence (tolerances/sobol.hpp).
-VectorX deviations_of_sample(const std::vector<description::Tolerance>& tolerances, std::uint64_t seed, int sample);
+/// Samples of the deviations: at the points of a scrambled Sobol sequence (tolerances/sobol.hpp).
+class DeviationSamples {
+public:
+    /// Contract: `tolerances` outlives this, and is not empty.
+    DeviationSamples(const std::vector<description::Tolerance>& tolerances, std::uint64_t seed);
+
+    /// One per tolerance, of sample k = 0, 1, ...; the same however many are asked for.
+    VectorX at(int k) const;
+
+private:
+    const std::vector<description::Tolerance>& tolerances_;
+    const IndependentInputs inputs_;
+    const tolerances::SobolPoints points_;
+};
 
 }  // namespace fettle::design::studies

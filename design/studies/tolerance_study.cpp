@@ -4,158 +4,122 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/design/gradient_audit/contact_states.hpp"
 
 namespace fettle::design::studies {
 
 namespace {
 
-using description::Design;
 using description::Tolerance;
 using problem::DesignEvaluation;
 using problem::DesignProblem;
 using tolerances::Moments;
 
-// Objective, constraints, relations, as all of them are in one column.
-VectorX values_of(const DesignEvaluation& evaluation) {
-    VectorX y(1 + count_of(evaluation.constraints) + evaluation.relations.values.size());
-    y[0] = evaluation.objective;
-    for (int i = 0; i < count_of(evaluation.constraints); ++i) y[1 + i] = evaluation.constraints[i].value;
-    y.tail(evaluation.relations.values.size()) = evaluation.relations.values;
-    return y;
-}
+constexpr int predicted_samples = 1 << 17;  // of the second order alone, whose yield the control variate takes as known
 
 class ToleranceStudy {
 public:
     ToleranceStudy(const DesignProblem& problem, const std::vector<Tolerance>& tolerances, const ToleranceOptions& options)
-        : problem_(problem), design_(problem.design()), tolerances_(tolerances), options_(options), n_(count_of(tolerances)) {
+        : tolerances_(tolerances),
+          options_(options),
+          made_(problem, tolerances, options.should_stop, [this] { count(); }),
+          n_(count_of(tolerances)) {
         for (const Tolerance& tolerance : tolerances) deviations_.push_back(moments_of(tolerance.deviation));
-        to_do_ = 1 + (options.second_order ? 2 * n_ : 0) + options.samples;
+        to_do_ = 1 + (options.second_order ? 2 * n_ : 0);
+        for (int k = 0; k < options.samples; ++k)
+            if (options.file == nullptr || options.file->find(k) == nullptr) ++to_do_;
     }
 
     ToleranceReport run() {
-        take_requirements();
-        const DesignEvaluation nominal = evaluated(VectorX::Zero(n_), true);
+        for (const AskedNumber& number : made_.numbers()) {
+            Response response;
+            static_cast<AskedNumber&>(response) = number;
+            report_.responses.push_back(std::move(response));
+        }
+        const MadeEvaluation nominal = made_.evaluate(VectorX::Zero(n_), true);
         if (!nominal.usable) {
             report_.interrupted = nominal.interrupted;
             report_.reason = "the design as drawn cannot be simulated: " + nominal.reason;
             return std::move(report_);
         }
-        take_nominal(nominal);
-        if (options_.second_order) take_curvatures();
+        for (int i = 0; i < count_of(report_.responses); ++i) {
+            report_.responses[i].nominal = nominal.values[i];
+            report_.responses[i].gradient = nominal.jacobian.row(i).transpose();
+        }
+        if (options_.second_order) take_curvatures(nominal.jacobian);
         for (Response& response : report_.responses) predict(response);
         if (options_.worst_case && !report_.interrupted) find_worst_cases();
         if (options_.samples > 0 && !report_.interrupted) sample();
+        if (!report_.interrupted) find_switched_contacts();
         return std::move(report_);
     }
 
 private:
-    DesignEvaluation evaluated(const VectorX& deviations, bool gradients) {
-        problem::EvaluateOptions options;
-        options.gradients = gradients;
-        options.should_stop = options_.should_stop;
-        DesignEvaluation out = problem_.evaluate(with_deviations(design_, tolerances_, deviations), options);
-        const std::lock_guard lock(mutex_);
+    void count() {
         ++done_;
-        if (options_.on_simulation) options_.on_simulation(done_, to_do_);
-        return out;
-    }
-
-    void take_requirements() {
-        using Kind = Response::Kind;
-        const auto add = [&](const std::string& name, Kind kind, int index, const description::Bounds& bounds) {
-            Response response;
-            response.name = name;
-            response.kind = kind;
-            response.index = index;
-            response.bounds = bounds;
-            report_.responses.push_back(std::move(response));
-        };
-        add("objective", Kind::objective, 0, {});
-        for (int i = 0; i < count_of(design_.constraints); ++i)
-            add(design_.constraints[i].name, Kind::constraint, i, design_.constraints[i].bounds);
-        for (int i = 0; i < count_of(design_.relations); ++i)
-            add(design_.relations[i].name, Kind::relation, i, design_.relations[i].bounds);
-    }
-
-    // Rows as of values_of, a column per tolerance.
-    MatrixX gradients_of(const DesignEvaluation& evaluation) const {
-        MatrixX out(count_of(report_.responses), n_);
-        for (int k = 0; k < n_; ++k) {
-            const int p = tolerances_[k].parameter;
-            out(0, k) = evaluation.gradient[p];
-            out.block(1, k, evaluation.jacobian.rows(), 1) = evaluation.jacobian.col(p);
-            out.block(1 + evaluation.jacobian.rows(), k, evaluation.relations.jacobian.rows(), 1) = evaluation.relations.jacobian.col(p);
-        }
-        return out;
-    }
-
-    void take_nominal(const DesignEvaluation& nominal) {
-        const VectorX y = values_of(nominal);
-        const MatrixX g = gradients_of(nominal);
-        for (int i = 0; i < count_of(report_.responses); ++i) {
-            report_.responses[i].nominal = y[i];
-            report_.responses[i].gradient = g.row(i).transpose();
-        }
+        if (options_.on_simulation) options_.on_simulation(done_, std::max(done_, to_do_));
     }
 
     // By central differences of gradients at one standard deviation of each tolerance; a tolerance of no width has none.
-    void take_curvatures() {
-        std::vector<DesignEvaluation> at(2 * n_);
+    void take_curvatures(const MatrixX& here) {
+        std::vector<MadeEvaluation> at(2 * n_);
         core::base::parallel_for(2 * n_, 1, [&](int task) {
             const int k = task / 2;
             if (deviations_[k].standard_deviation == 0) return;
             VectorX deviations = VectorX::Zero(n_);
             deviations[k] = (task % 2 == 0 ? 1 : -1) * deviations_[k].standard_deviation;
-            at[task] = evaluated(deviations, true);
+            at[task] = made_.evaluate(deviations, true);
         });
-        const MatrixX here = all_gradients();
         std::vector<MatrixX> curvatures(report_.responses.size(), MatrixX::Zero(n_, n_)), thirds = curvatures;
         for (int k = 0; k < n_; ++k) {
             if (deviations_[k].standard_deviation == 0) continue;
-            const DesignEvaluation &up = at[2 * k], &down = at[2 * k + 1];
+            const MadeEvaluation &up = at[2 * k], &down = at[2 * k + 1];
             if (!up.usable || !down.usable) {
                 report_.interrupted = report_.interrupted || up.interrupted || down.interrupted;
                 report_.no_second_order = "with `" + tolerances_[k].of + "` one standard deviation " + (up.usable ? "smaller" : "larger") +
                                           ": " + (up.usable ? down : up).reason;
                 return;
             }
-            const MatrixX above = gradients_of(up), below = gradients_of(down);
             const double step = deviations_[k].standard_deviation;
             for (int i = 0; i < count_of(curvatures); ++i) {
-                curvatures[i].row(k) = (above.row(i) - below.row(i)) / (2 * step);
-                thirds[i].row(k) = (above.row(i) - 2 * here.row(i) + below.row(i)) / (step * step);
+                curvatures[i].row(k) = (up.jacobian.row(i) - down.jacobian.row(i)) / (2 * step);
+                thirds[i].row(k) = (up.jacobian.row(i) - 2 * here.row(i) + down.jacobian.row(i)) / (step * step);
             }
         }
         for (std::size_t i = 0; i < curvatures.size(); ++i) {
             report_.responses[i].curvature = 0.5 * (curvatures[i] + curvatures[i].transpose());
-            report_.responses[i].second_order = second_order_of(report_.responses[i], thirds[i]);
+            take_second_order(report_.responses[i], thirds[i]);
         }
     }
 
-    MatrixX all_gradients() const {
-        MatrixX out(count_of(report_.responses), n_);
-        for (int i = 0; i < count_of(report_.responses); ++i) out.row(i) = report_.responses[i].gradient.transpose();
-        return out;
+    Moments quadratic_of(const Response& response) const {
+        return tolerances::predict_quadratically(response.nominal, inputs_.map.transpose() * response.gradient,
+                                                 inputs_.map.transpose() * response.curvature * inputs_.map, inputs_.moments);
     }
 
     // With the third derivatives that the same gradients show, d^3 y / dd_j^2 dd_l, if they are those at the means of deviations that are
-    // independent; in three different deviations they are not known.
-    Moments second_order_of(const Response& response, const MatrixX& third) const {
+    // independent; in three different deviations they are not known. Where they would change the variance by more than half, as where a
+    // contact begins within the tolerances, they are no derivatives of anything.
+    void take_second_order(Response& response, const MatrixX& third) const {
+        constexpr double much = 0.5;
+        response.second_order = quadratic_of(response);
         const bool at_means = std::all_of(deviations_.begin(), deviations_.end(), [](const Moments& d) { return d.mean == 0; });
-        if (!at_means || !inputs_.groups.empty())
-            return tolerances::predict_quadratically(response.nominal, inputs_.map.transpose() * response.gradient,
-                                                     inputs_.map.transpose() * response.curvature * inputs_.map, inputs_.moments);
+        if (!at_means || !inputs_.groups.empty()) return;
         VectorX v = response.gradient;
         for (int j = 0; j < n_; ++j) v[j] *= deviations_[j].standard_deviation * deviations_[j].standard_deviation;
         double along = 0;
         for (int j = 0; j < n_; ++j)
             for (int l = 0; l < n_; ++l) along += (j == l ? 1 : 3) * third(j, l) * v[j] * v[j] * v[l];
-        return tolerances::predict_with_third_derivatives(response.nominal, response.gradient, response.curvature, {third, along},
-                                                          deviations_);
+        const Moments all = tolerances::predict_with_third_derivatives(response.nominal, response.gradient, response.curvature,
+                                                                       {third, along}, deviations_);
+        const double before = std::pow(response.second_order->standard_deviation, 2), after = std::pow(all.standard_deviation, 2);
+        response.is_rough = std::abs(after - before) > much * before;
+        if (!response.is_rough) response.second_order = all;
     }
 
     double predicted(const Response& response, const VectorX& deviations) const {
@@ -184,133 +148,184 @@ private:
         response.second_order_yield = tolerances::cornish_fisher_yield(*response.second_order, limits_of(response));
     }
 
-    // Corners that several responses name are simulated once.
+    // All searches share their simulations.
     void find_worst_cases() {
-        std::vector<VectorX> corners;
-        const auto place_of = [&](const VectorX& corner) {
-            const auto known = std::find(corners.begin(), corners.end(), corner);
-            if (known != corners.end()) return static_cast<int>(known - corners.begin());
-            corners.push_back(corner);
-            return count_of(corners) - 1;
-        };
-        std::vector<std::pair<int, int>> places;  // least, most
-        for (const Response& response : report_.responses)
-            places.push_back(has_bounds(response) ? std::pair(place_of(response.worst.at_least), place_of(response.worst.at_most))
-                                                  : std::pair(-1, -1));
-        to_do_ += count_of(corners);
-        std::vector<VectorX> values(corners.size());
+        WorstCaseSearch search(made_);
+        std::vector<int> wanted;
+        for (int i = 0; i < count_of(report_.responses); ++i)
+            if (has_bounds(report_.responses[i])) wanted.push_back(i);
         std::atomic<bool> is_interrupted = false;
-        core::base::parallel_for(count_of(corners), 1, [&](int k) {
-            const DesignEvaluation evaluation = evaluated(corners[k], false);
-            if (evaluation.interrupted) is_interrupted = true;
-            if (evaluation.usable) values[k] = values_of(evaluation);
+        core::base::parallel_for(2 * count_of(wanted), 1, [&](int task) {
+            Response& response = report_.responses[wanted[task / 2]];
+            const bool is_most = task % 2 != 0;
+            if (is_interrupted) return;
+            try {
+                (is_most ? response.most_found : response.least_found) =
+                    search.extreme(wanted[task / 2], is_most ? 1 : -1, {response.nominal, response.gradient, response.curvature});
+            } catch (const optimisers::Interrupted&) {
+                is_interrupted = true;
+            }
         });
         report_.interrupted = report_.interrupted || is_interrupted;
-        for (int i = 0; i < count_of(report_.responses); ++i) {
-            if (places[i].first < 0) continue;
-            const auto found = [&](int k) { return values[k].size() > 0 ? values[k][i] : std::nan(""); };
-            report_.responses[i].least_found = found(places[i].first);
-            report_.responses[i].most_found = found(places[i].second);
-        }
     }
 
-    struct Sample {
-        VectorX deviations, values;  // values empty: it failed, or was not begun
-        std::vector<bool> met;       // per response
-        bool is_done = false;
-        std::string reason;
-    };
-
-    Sample sample_of(int number) {
-        Sample out;
-        out.deviations = deviations_of_sample(tolerances_, options_.seed, number);
-        if (options_.should_stop && options_.should_stop()) return out;
-        const DesignEvaluation evaluation = evaluated(out.deviations, false);
-        if (evaluation.interrupted) return out;
-        out.is_done = true;
-        out.reason = evaluation.reason;
-        if (!evaluation.usable) return out;
-        out.values = values_of(evaluation);
-        for (const Response& response : report_.responses) out.met.push_back(is_met(response, evaluation));
+    // Nothing: not begun, or interrupted.
+    std::optional<MadeSample> sample_of(int number, const DeviationSamples& deviations) {
+        MadeSample out;
+        out.number = number;
+        out.deviations = deviations.at(number);
+        if (const SampleOutcome* known = options_.file != nullptr ? options_.file->find(number) : nullptr; known != nullptr) {
+            static_cast<SampleOutcome&>(out) = *known;
+            return out;
+        }
+        if (made_.should_stop()) return std::nullopt;
+        MadeEvaluation evaluation = made_.evaluate(out.deviations, false);
+        if (evaluation.interrupted) return std::nullopt;
+        out.values = std::move(evaluation.values);
+        out.met = std::move(evaluation.met);
+        out.reason = std::move(evaluation.reason);
+        const std::lock_guard lock(file_mutex_);
+        if (options_.file != nullptr) options_.file->append(number, out);
         return out;
     }
 
-    bool is_met(const Response& response, const DesignEvaluation& evaluation) const {
-        switch (response.kind) {
-            case Response::Kind::constraint:
-                return violation(response.bounds, evaluation.constraints[response.index]) == 0;
-            case Response::Kind::relation:
-                return violation(design_.relations[response.index], evaluation.relations.values[response.index]) == 0;
-            case Response::Kind::objective:
-                break;
-        }
-        return true;
-    }
-
     void sample() {
-        std::vector<Sample> samples(options_.samples);
-        core::base::parallel_for(options_.samples, 1, [&](int k) { samples[k] = sample_of(k); });
-        std::vector<int> simulated;
-        for (int k = 0; k < options_.samples; ++k) {
-            const Sample& sample = samples[k];
-            if (!sample.is_done) {
+        const DeviationSamples deviations(tolerances_, options_.seed);
+        std::vector<std::optional<MadeSample>> samples(options_.samples);
+        core::base::parallel_for(options_.samples, 1, [&](int k) { samples[k] = sample_of(k, deviations); });
+        for (std::optional<MadeSample>& sample : samples) {
+            if (!sample) {
                 report_.interrupted = true;
                 continue;
             }
-            ++report_.samples;
-            if (sample.values.size() == 0) {
-                report_.failed.push_back({k, sample.deviations, sample.reason});
-                continue;
-            }
-            simulated.push_back(k);
-            if (std::all_of(sample.met.begin(), sample.met.end(), [](bool met) { return met; })) ++report_.met_all;
+            const bool met_all = !sample->failed() && std::all_of(sample->met.begin(), sample->met.end(), [](bool met) { return met; });
+            if (met_all) ++report_.met_all;
+            report_.samples.push_back(std::move(*sample));
         }
+        std::vector<const MadeSample*> simulated;
+        for (const MadeSample& sample : report_.samples)
+            if (!sample.failed()) simulated.push_back(&sample);
         if (simulated.size() < 2) return;
-        for (int i = 0; i < count_of(report_.responses); ++i) describe(i, samples, simulated);
+        for (int i = 0; i < count_of(report_.responses); ++i) describe(i, simulated);
+        control_yields();
     }
 
-    void describe(int i, const std::vector<Sample>& samples, const std::vector<int>& simulated) {
+    void describe(int i, const std::vector<const MadeSample*>& simulated) {
         Response& response = report_.responses[i];
         const auto count = static_cast<Eigen::Index>(simulated.size());
-        VectorX values(count), missed(count);
+        VectorX values(count), predictions(count);
         SampledResponse out;
         for (Eigen::Index k = 0; k < count; ++k) {
-            const Sample& sample = samples[simulated[k]];
+            const MadeSample& sample = *simulated[k];
             values[k] = sample.values[i];
-            missed[k] = std::abs(values[k] - predicted(response, sample.deviations));
+            predictions[k] = predicted(response, sample.deviations);
             if (sample.met[i]) ++out.met;
         }
         Eigen::Index at = 0;
         out.least = values.minCoeff(&at);
-        out.least_sample = simulated[at];
+        out.least_sample = simulated[at]->number;
         out.most = values.maxCoeff(&at);
-        out.most_sample = simulated[at];
+        out.most_sample = simulated[at]->number;
+        const VectorX missed = (values - predictions).cwiseAbs();
         out.farthest = missed.maxCoeff(&at);
-        out.farthest_sample = simulated[at];
+        out.farthest_sample = simulated[at]->number;
         out.moments = tolerances::sample_moments(values);
         const Moments& moments = out.moments.moments;
         if (moments.standard_deviation > 0)
             out.unexplained = std::sqrt(missed.squaredNorm() / static_cast<double>(count)) / moments.standard_deviation;
         out.capability =
             tolerances::estimated_capability(moments.mean, moments.standard_deviation, limits_of(response), static_cast<int>(count));
+        if (response.second_order && count >= 3)
+            out.controlled_mean = tolerances::controlled_mean(values, predictions, quadratic_of(response).mean);
         response.sampled = out;
     }
 
-    const DesignProblem& problem_;
-    const Design& design_;
+    bool is_predicted_good(const Response& response, const VectorX& deviations) const {
+        const double value = predicted(response, deviations);
+        return value >= response.bounds.lower && value <= response.bounds.upper;
+    }
+
+    // Samples that failed are lost where they were predicted to be good.
+    void control_yields() {
+        const int m = count_of(report_.responses), all = m;  // the last count is of all responses together
+        if (std::any_of(report_.responses.begin(), report_.responses.end(), [](const Response& r) { return !r.second_order; })) return;
+        const auto goods = [&](const VectorX& deviations) {
+            std::vector<char> good(m + 1, 1);
+            for (int i = 0; i < m; ++i) {
+                good[i] = is_predicted_good(report_.responses[i], deviations) ? 1 : 0;
+                good[all] = good[all] & good[i];
+            }
+            return good;
+        };
+        std::vector<int> predicted_good(m + 1, 0), gained(m + 1, 0), lost(m + 1, 0);
+        const DeviationSamples many(tolerances_, options_.seed + 1);
+        for (int k = 0; k < predicted_samples; ++k) {
+            const std::vector<char> good = goods(many.at(k));
+            for (int i = 0; i <= m; ++i) predicted_good[i] += good[i];
+        }
+        for (const MadeSample& sample : report_.samples) {
+            const std::vector<char> good = goods(sample.deviations);
+            bool met_all = true;
+            for (int i = 0; i <= m; ++i) {
+                const bool met = i == all ? met_all : !sample.failed() && sample.met[i];
+                met_all = met_all && met;
+                if (met && good[i] == 0) ++gained[i];
+                if (!met && good[i] != 0) ++lost[i];
+            }
+        }
+        const auto estimate = [&](int i) {
+            return tolerances::controlled_yield(static_cast<double>(predicted_good[i]) / predicted_samples, gained[i], lost[i],
+                                                count_of(report_.samples), confidence);
+        };
+        for (int i = 0; i < m; ++i)
+            if (has_bounds(report_.responses[i])) report_.responses[i].sampled->controlled_yield = estimate(i);
+        report_.controlled_yield = estimate(all);
+    }
+
+    void find_switched_contacts() {
+        std::map<int, std::vector<int>> farthest;  // responses by sample
+        for (int i = 0; i < count_of(report_.responses); ++i) {
+            const auto& sampled = report_.responses[i].sampled;
+            if (sampled && sampled->unexplained > much_unexplained) farthest[sampled->farthest_sample].push_back(i);
+        }
+        if (farthest.empty()) return;
+        const DesignEvaluation drawn = made_.simulate(VectorX::Zero(n_), false);
+        const DeviationSamples deviations(tolerances_, options_.seed);
+        for (const auto& [number, responses] : farthest) {
+            const DesignEvaluation evaluation = made_.simulate(deviations.at(number), false);
+            if (!drawn.usable || !evaluation.usable) continue;
+            report_.switched.push_back({number, responses, changes_between(drawn, evaluation)});
+        }
+    }
+
+    std::vector<gradient_audit::ContactChange> changes_between(const DesignEvaluation& drawn, const DesignEvaluation& sample) const {
+        std::vector<gradient_audit::ContactChange> out;
+        for (std::size_t s = 0; s < drawn.runs.size(); ++s) {
+            const problem::Run &from = drawn.runs[s], &to = sample.runs[s];
+            const auto contacts = gradient_audit::contact_states(*from.model, from.simulation.trajectory);
+            gradient_audit::ContactWatch watch(contacts);
+            watch.add(1, *to.model, to.simulation.trajectory);
+            for (auto& change : watch.changes({}, 1, 1, *from.model, from.simulation.trajectory)) {
+                if (!made_.design().scenarios.empty()) change.scenario = made_.design().scenarios[s].name;
+                out.push_back(std::move(change));
+            }
+        }
+        std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+        return out;
+    }
+
     const std::vector<Tolerance>& tolerances_;
     const ToleranceOptions& options_;
+    const MadeDesign made_;
     const int n_;
     const IndependentInputs inputs_ = independent_inputs(tolerances_);
     std::vector<Moments> deviations_;  // of each tolerance as a whole
-    std::mutex mutex_;
+    std::mutex file_mutex_;
     int done_ = 0, to_do_ = 0;
     ToleranceReport report_;
 };
 
 }  // namespace
-
-bool has_bounds(const Response& response) { return std::isfinite(response.bounds.lower) || std::isfinite(response.bounds.upper); }
 
 tolerances::RequirementLimits limits_of(const Response& response) { return {response.bounds.lower, response.bounds.upper}; }
 

@@ -4,10 +4,12 @@
 ///
 /// - **Predicted**, from the derivatives of one simulation: y = y0 + sum g_j d_j over the deviations d_j. With second-order terms the
 ///   gradients of 2n simulations more, at +-1 standard deviation of each tolerance.
-/// - **Worst case**: the extremes of the linear prediction over all deviations within their limits, and, if asked for, what simulations at
-///   those corners have. The extremes of a response that is not monotone lie elsewhere.
+/// - **Worst case**: the extremes of the linear prediction over all deviations within their limits, and, if asked for, those that the
+///   optimiser finds by simulations (worst_case.hpp).
 /// - **Sampled**: whole simulations at scrambled Sobol points. The same samples for any number of threads; sample k is the same whether
-///   there are 100 or 1,000. A sample that cannot be made or simulated (a jam) is counted and kept, never dropped.
+///   there are 100 or 1,000. A sample that cannot be made or simulated (a jam) is counted and kept, never dropped. The predictions are
+///   control variates of means and yields (tolerances/control_variate.hpp).
+/// - **Contacts**: where predictions miss the samples, which contacts of the farthest one are not those of the design as drawn.
 ///
 /// All of it is computed. Nothing here is proven, but the clearance of each sample by itself.
 #pragma once
@@ -19,9 +21,14 @@
 #include <vector>
 
 #include "fettle/design/description/tolerance.hpp"
+#include "fettle/design/gradient_audit/contact_changes.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/studies/independent_inputs.hpp"
+#include "fettle/design/studies/made_design.hpp"
+#include "fettle/design/studies/sample_file.hpp"
+#include "fettle/design/studies/worst_case.hpp"
 #include "fettle/design/tolerances/capability.hpp"
+#include "fettle/design/tolerances/control_variate.hpp"
 #include "fettle/design/tolerances/propagation.hpp"
 #include "fettle/design/tolerances/yield.hpp"
 
@@ -31,7 +38,8 @@ struct ToleranceOptions {
     int samples = 0;  ///< whole simulations; 0: none
     std::uint64_t seed = 1;
     bool second_order = true;
-    bool worst_case = false;            ///< simulate the corners that the derivatives name, two per response that has bounds
+    bool worst_case = false;            ///< search for the extremes of each response that has bounds
+    SampleFile* file = nullptr;         ///< optional: samples that it has are taken from it, others are added; outlives the study
     std::function<bool()> should_stop;  ///< optional
     std::function<void(int done, int of)> on_simulation = {};  ///< optional; called from one thread at a time
 };
@@ -55,43 +63,52 @@ struct SampledResponse {
     double farthest = 0;  ///< largest |sampled - predicted|, by the second order where there is one
     int farthest_sample = 0;
     double unexplained = 0;  ///< root mean square of sampled - predicted, over the samples' standard deviation; 0 where nothing varies
+    /// With the prediction as control variate; nothing where there are fewer than 3 samples, or no second order.
+    std::optional<tolerances::ControlledMean> controlled_mean;
+    std::optional<tolerances::CountedYield> controlled_yield;  ///< at `confidence`; nothing too where there are no bounds
 };
+inline constexpr double confidence = 0.95;  ///< of the intervals
 
-/// A number that the design asks for: its objective, a constraint, a relation.
-struct Response {
-    enum class Kind { objective, constraint, relation };
-    std::string name;
-    Kind kind = Kind::constraint;
-    int index = 0;
-    description::Bounds bounds;               ///< the objective has none
+/// More than this much of the samples' standard deviation unexplained: the response is not what its derivatives at the design say.
+inline constexpr double much_unexplained = 0.05;
+
+struct Response : AskedNumber {
     double nominal = 0;                       ///< as designed
     VectorX gradient;                         ///< per tolerance
     std::vector<Contribution> contributions;  ///< the largest share first
     tolerances::LinearPrediction linear;
     tolerances::LinearWorstCase worst;
-    /// Simulated at worst.at_least and worst.at_most; NaN: it cannot be. Nothing: not asked for.
-    std::optional<double> least_found, most_found;
+    std::optional<FoundExtreme> least_found, most_found;  ///< nothing: not asked for
     tolerances::Yield linear_yield;
     MatrixX curvature;  ///< empty: there is no second order
+    /// Its derivatives change so much within a standard deviation, as where a contact begins, that neither order predicts it: samples do.
+    bool is_rough = false;
     std::optional<tolerances::Moments> second_order;
     std::optional<tolerances::Yield> second_order_yield;  ///< nothing too where the moments are of no distribution that is known
     std::optional<SampledResponse> sampled;
 };
-bool has_bounds(const Response& response);
 tolerances::RequirementLimits limits_of(const Response& response);
 
-struct FailedSample {
+/// A mechanism of the samples.
+struct MadeSample : SampleOutcome {
+    int number = 0;
+    VectorX deviations;  ///< per tolerance
+};
+
+/// What is in contact elsewhere, or no longer, in one sample: by bodies and sort of change, the earliest first.
+struct SwitchedContacts {
     int sample = 0;
-    VectorX deviations;
-    std::string reason;
+    std::vector<int> responses;  ///< that the sample is the farthest of, from their predictions
+    std::vector<gradient_audit::ContactChange> changes;
 };
 
 struct ToleranceReport {
     std::vector<Response> responses;  ///< objective, constraints, relations
     std::string no_second_order;      ///< why there is none, though it was asked for; empty: there is, or it was not
-    int samples = 0;                  ///< that came to an end: simulated or failed
+    std::vector<MadeSample> samples;  ///< that came to an end: simulated or failed; in the order of their numbers
     int met_all = 0;                  ///< that meet every requirement
-    std::vector<FailedSample> failed;
+    std::optional<tolerances::CountedYield> controlled_yield;  ///< of all requirements together, as that of one
+    std::vector<SwitchedContacts> switched;
     bool interrupted = false;
     std::string reason;  ///< why there is nothing of it: the design as drawn cannot be simulated; empty: there is
 };

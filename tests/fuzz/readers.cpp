@@ -209,7 +209,7 @@ void read_history(std::string_view bytes) {
     for (const auto& constraint : slider.constraints) header.constraints.push_back(constraint.name);
     (void)design::report::search_curves(std::string(bytes), slider);
     scratch().write("run/history.jsonl", bytes);
-    (void)design::studies::History::open(scratch().file("run"), header, design::studies::HistoryMode::resume);
+    (void)design::studies::History::open(scratch().file("run"), header, design::studies::LineFileMode::resume);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ from .results import (
     RangeCoordinate,
     Rows,
     Simulation,
+    ToleranceReport,
 )
 from .scene import Mesh, Pose, Scene
 
@@ -277,6 +278,17 @@ def optimise_file(
     report: bool = ...,
     progress: Optional[Line] = ...,
 ) -> OptimiseOutcome: ...
+def tolerance(
+    path: Path,
+    samples: int = ...,
+    seed: int = ...,
+    second_order: bool = ...,
+    worst_case: bool = ...,
+    samples_file: str = ...,
+    mesh_dirs: Sequence[Path] = ...,
+    allow_programs: bool = ...,
+    progress: Optional[Count] = ...,
+) -> ToleranceReport: ...
 def sample_of_seed(problem: DesignProblem, seed: int) -> Array: ...
 def start_of_seed(problem: DesignProblem, seed: int) -> Array: ...
 def seeds_of_list(list: int, n: int) -> List[int]: ...

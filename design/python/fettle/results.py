@@ -336,6 +336,63 @@ class ClearanceReport:
         return columns(title, ["pair", "finding", "at least", "at most", "required", "reason"], rows)
 
 
+class ToleranceReport:
+    """What `tolerance` answers: what `fettle tolerance --json` prints (docs/interface.md), and the samples.
+
+    report.status, report["samples"]["yield"], report.response("stroke")["linear"]["standard_deviation"]
+    report.deviations[k], report.values[k]: of sample k, per tolerance and per response [SI]; values NaN where it failed
+    """
+
+    def __init__(self, text: str, deviations: Array, values: Array):
+        self.answer: Dict[str, Any] = json.loads(text)
+        self.deviations = deviations
+        self.values = values
+
+    @property
+    def status(self) -> str:
+        """ "ok", "undecided" or "interrupted"."""
+        return str(self.answer["status"])
+
+    @property
+    def responses(self) -> List[Dict[str, Any]]:
+        """The objective, the constraints, the relations."""
+        return list(self.answer["responses"])
+
+    def __getitem__(self, key: str) -> Any:
+        return self.answer[key]
+
+    def response(self, name: str) -> Dict[str, Any]:
+        for row in self.responses:
+            if row["name"] == name:
+                return row
+        raise KeyError(f"there is no response {name!r}; {did_you_mean(name, [row['name'] for row in self.responses])}")
+
+    def _rows(self) -> List[List[str]]:
+        def percent(value: Optional[Dict[str, Any]]) -> str:
+            return "-" if value is None else f"{100 * value['within']:.4g}%"
+
+        return [
+            [
+                row["name"],
+                f"{row['nominal']:.6g}",
+                f"{row['linear']['standard_deviation']:.3g}",
+                percent(row["linear"].get("yield")),
+                percent((row["sampled"] or {}).get("yield")),
+                row["contributions"][0]["of"] if row["contributions"] else "-",
+            ]
+            for row in self.responses
+        ]
+
+    def __repr__(self) -> str:
+        lines = [f"{self.status}, {len(self.values)} samples"]
+        lines += ["  ".join(row) for row in self._rows()[: MOST_LINES - 1]]
+        return "\n".join(line[:COLUMNS] for line in lines)
+
+    def _repr_html_(self) -> str:
+        title = f"{self.status}, {len(self.values)} samples [SI]"
+        return columns(title, ["response", "as drawn", "sigma", "yield, linear", "yield, sampled", "most by"], self._rows())
+
+
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class CertificateFault(Record):
     where: str = ""

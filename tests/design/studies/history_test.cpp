@@ -63,7 +63,7 @@ struct Run {
 struct Killed : std::exception {};
 
 // A run that dies in the middle of its `kill_at`-th computation (never, if negative).
-Result<Run> run(const Folder& folder, const std::string& name, HistoryMode mode, int kill_at = -1) {
+Result<Run> run(const Folder& folder, const std::string& name, LineFileMode mode, int kill_at = -1) {
     Result<History> history = History::open(folder.path.string(), rosenbrock_header(), mode);
     if (!history) return history.errors();
     Run result;
@@ -90,15 +90,15 @@ TEST_CASE("a run killed anywhere and resumed ends with the same design, bit for 
     for (const std::string& name : optimisers::optimiser_names()) {
         INFO(name);
         const Folder whole;
-        const Result<Run> reference = run(whole, name, HistoryMode::fresh);
+        const Result<Run> reference = run(whole, name, LineFileMode::fresh);
         REQUIRE(reference);
         REQUIRE(reference->computed > 6);
         CHECK(reference->report.feasible);
         for (const int kill_at : {1, 2, 5, reference->computed}) {
             const Folder folder;
-            CHECK_THROWS_AS(run(folder, name, HistoryMode::fresh, kill_at), Killed);
+            CHECK_THROWS_AS(run(folder, name, LineFileMode::fresh, kill_at), Killed);
             overwrite(folder.file(), contents(folder.file()) + "{\"evaluation\": 99, \"usab");  // killed while writing
-            const Result<Run> resumed = run(folder, name, HistoryMode::resume);
+            const Result<Run> resumed = run(folder, name, LineFileMode::resume);
             REQUIRE(resumed);
             CHECK(resumed->computed == reference->computed - (kill_at - 1));
             CHECK(resumed->report.evaluations == reference->report.evaluations);
@@ -119,12 +119,12 @@ TEST_CASE("a history reads back bit for bit") {
     entry.evaluation.constraint_branches = {{0, 0}, Vector2(1.0 / 7, 1e-300), MatrixX{{0.1, -0.0}, {2.0 / 3, 1e300}}};
     entry.evaluation.objective_branches = {{3}, VectorX::Constant(1, 0.3 - 0.1), MatrixX{{1.0 / 11, -5e-324}}};
     {
-        Result<History> history = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::fresh);
+        Result<History> history = History::open(folder.path.string(), rosenbrock_header(), LineFileMode::fresh);
         REQUIRE(history);
         history->append(entry);
         history->append(rosenbrock(Vector2(2, 2)));
     }
-    const Result<History> again = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::resume);
+    const Result<History> again = History::open(folder.path.string(), rosenbrock_header(), LineFileMode::resume);
     REQUIRE(again);
     REQUIRE(again->replayed().size() == 2);
     const HistoryEntry& read = again->replayed()[0];
@@ -146,12 +146,12 @@ TEST_CASE("a history reads back bit for bit") {
 
 TEST_CASE("a history of another design is refused, damage is named, nothing is lost") {
     const Folder folder;
-    { REQUIRE(run(folder, "mma", HistoryMode::fresh)); }
+    { REQUIRE(run(folder, "mma", LineFileMode::fresh)); }
     const std::string first = contents(folder.file());
 
     HistoryHeader other = rosenbrock_header();
     other.design_hash = "fedcba9876543210";
-    const Result<History> refused = History::open(folder.path.string(), other, HistoryMode::resume);
+    const Result<History> refused = History::open(folder.path.string(), other, LineFileMode::resume);
     REQUIRE_FALSE(refused);
     CHECK(refused.errors()[0].code == ErrorCode::inconsistent);
     CHECK(contents(folder.file()) == first);
@@ -159,11 +159,11 @@ TEST_CASE("a history of another design is refused, damage is named, nothing is l
     const std::filesystem::path link = folder.path / "history.1.jsonl";
     std::filesystem::create_symlink("nowhere", link);  // somebody's: not replaced
     {
-        const Result<History> fresh = History::open(folder.path.string(), other, HistoryMode::fresh);
+        const Result<History> fresh = History::open(folder.path.string(), other, LineFileMode::fresh);
         REQUIRE(fresh);
         CHECK(contents(fresh->kept_as()) == first);
         CHECK(std::filesystem::is_symlink(link));
-        const Result<History> second = History::open(folder.path.string(), other, HistoryMode::resume);
+        const Result<History> second = History::open(folder.path.string(), other, LineFileMode::resume);
         REQUIRE_FALSE(second);  // locked
         CHECK(second.errors()[0].message.find("another process") != std::string::npos);
     }
@@ -171,7 +171,7 @@ TEST_CASE("a history of another design is refused, damage is named, nothing is l
     std::string damaged = first;
     damaged[damaged.find("\"usable\"") + 1] = 'X';
     overwrite(folder.file(), damaged);
-    const Result<History> broken = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::resume);
+    const Result<History> broken = History::open(folder.path.string(), rosenbrock_header(), LineFileMode::resume);
     REQUIRE_FALSE(broken);
     CHECK(broken.errors()[0].where.find("line 2") != std::string::npos);
     // Headers that are JSON, but not one of ours.
@@ -180,13 +180,13 @@ TEST_CASE("a history of another design is refused, damage is named, nothing is l
                                "{\"fettle_history\": 1, \"design\": null}", "{\"fettle_history\": 1, \"design\": 5, \"parameters\": {}}"}) {
         overwrite(folder.file(), header + rest);
         CAPTURE(header);
-        CHECK_FALSE(History::open(folder.path.string(), rosenbrock_header(), HistoryMode::resume));
+        CHECK_FALSE(History::open(folder.path.string(), rosenbrock_header(), LineFileMode::resume));
     }
 }
 
 TEST_CASE("a history that cannot be written keeps what it has, and is whole once it can") {
     const Folder folder;
-    Result<History> history = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::fresh);
+    Result<History> history = History::open(folder.path.string(), rosenbrock_header(), LineFileMode::fresh);
     REQUIRE(history);
     struct rlimit limit {};
     REQUIRE(::getrlimit(RLIMIT_FSIZE, &limit) == 0);
@@ -204,8 +204,8 @@ TEST_CASE("a history that cannot be written keeps what it has, and is whole once
     CHECK(fault[0].where == folder.file());
     history->append(rosenbrock(Vector2(2, 2)));
     CHECK(history->unwritten().empty());
-    *history = *History::open((folder.path / "elsewhere").string(), rosenbrock_header(), HistoryMode::fresh);  // lets go of the file
-    const Result<History> again = History::open(folder.path.string(), rosenbrock_header(), HistoryMode::resume);
+    *history = *History::open((folder.path / "elsewhere").string(), rosenbrock_header(), LineFileMode::fresh);  // lets go of the file
+    const Result<History> again = History::open(folder.path.string(), rosenbrock_header(), LineFileMode::resume);
     REQUIRE(again);
     CHECK(again->replayed().size() == 3);
 }

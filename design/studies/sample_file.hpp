@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+/// The samples of made mechanisms as a file, so that they can be made in several goes, and by several machines: a header line, then one
+/// JSON object per sample, in any order. Doubles are written so that they read back bit for bit.
+///   header   fettle_samples 1, design (hash of all that a sample's numbers depend on), program, seed, tolerances and responses (names)
+///   sample   sample (0, 1, ...), reason (why it failed; there: no others), values (SI, per response), met (booleans, per response)
+/// The deviations of a sample follow from seed and number.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "fettle/design/studies/line_file.hpp"
+#include "fettle/design/studies/made_design.hpp"
+
+namespace fettle::design::studies {
+
+struct SampleFileHeader {
+    std::string design_hash;  ///< of everything that a sample's numbers depend on, the program's version included
+    std::uint64_t seed = 1;
+    std::vector<std::string> tolerances, responses;
+};
+
+/// What a sample came to.
+struct SampleOutcome {
+    VectorX values;         ///< per response, SI; empty: it could not be made or simulated
+    std::vector<bool> met;  ///< per response
+    std::string reason;     ///< why it could not
+    bool failed() const { return values.size() == 0; }
+};
+
+class SampleFile {
+public:
+    /// Errors: a file of other samples (inconsistent), a damaged line other than the last (parse), those of LineFile::open.
+    static Result<SampleFile> open(const std::string& path, const SampleFileHeader& header);
+
+    /// What is there of sample k; null: nothing.
+    const SampleOutcome* find(int sample) const;
+    void append(int sample, const SampleOutcome& outcome);
+    Errors unwritten() const { return file_.unwritten(); }
+
+private:
+    SampleFile(LineFile file, const SampleFileHeader& header) : file_(std::move(file)), header_(header) {}
+    Errors read_found(const std::string& path);
+
+    LineFile file_;
+    SampleFileHeader header_;
+    std::map<int, SampleOutcome> known_;
+};
+
+}  // namespace fettle::design::studies

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/studies/tolerance_file.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "fettle/design/reading/design_text.hpp"
+
+namespace fettle::design::studies {
+
+namespace {
+
+Error no_tolerances(const std::string& path) {
+    return {ErrorCode::missing_key, path,
+            "it has no `tolerances`: say, for instance, \"tolerances\": {\"pin_radius\": \"+-0.05 mm\"}, by names of parameters or "
+            "variables, or by places of the scene (\"/bodies/pin/shape/dimensions/radius\")"};
+}
+
+Result<SampleFile> open_samples(const std::string& path, std::uint64_t seed, const reading::DesignFile& file,
+                                const problem::DesignProblem& problem) {
+    SampleFileHeader header{reading::design_hash(file), seed, {}, {}};
+    for (const description::Tolerance& tolerance : file.tolerances) header.tolerances.push_back(tolerance.of);
+    for (const AskedNumber& number : asked_numbers(problem.design())) header.responses.push_back(number.name);
+    return SampleFile::open(path, header);
+}
+
+}  // namespace
+
+Result<ToleranceReport> study_tolerances(const reading::DesignFile& file, const std::string& samples_file, ToleranceOptions options) {
+    if (file.tolerances.empty()) return no_tolerances(file.path);
+    const Result<problem::DesignProblem> problem = problem::DesignProblem::create(file.design);
+    if (!problem) return problem.errors();
+    std::optional<SampleFile> samples;
+    if (!samples_file.empty()) {
+        Result<SampleFile> opened = open_samples(samples_file, options.seed, file, *problem);
+        if (!opened) return opened.errors();
+        options.file = &samples.emplace(std::move(opened).value());
+    }
+    ToleranceReport report = study_tolerances(*problem, file.tolerances, options);
+    if (Errors errors = samples ? samples->unwritten() : Errors{}; !errors.empty()) return errors;
+    return report;
+}
+
+}  // namespace fettle::design::studies

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+/// The tolerances of a design file, studied: what `fettle tolerance` and Python's `tolerance` do.
+#pragma once
+
+#include <string>
+
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/studies/tolerance_study.hpp"
+
+namespace fettle::design::studies {
+
+/// @param file          Read as made (reading::DesignReadOptions::as_made).
+/// @param samples_file  Where the samples are kept (sample_file.hpp); empty: nowhere. `options.file` is set by it.
+/// Errors: no tolerances, the design's (DesignProblem::create), the samples' file.
+Result<ToleranceReport> study_tolerances(const reading::DesignFile& file, const std::string& samples_file, ToleranceOptions options);
+
+}  // namespace fettle::design::studies
