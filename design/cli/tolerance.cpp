@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// fettle tolerance DESIGN: what becomes of it when its parts are made.
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,27 +13,58 @@ namespace fettle::design::cli {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct Options {
-    std::string path;
+    std::string path, process;
     int samples = 0;
     int seed = 1;
     bool first_order = false, worst_case = false;
 };
 
-Error no_tolerances(const std::string& path) {
+Error no_tolerances(const std::string& path, const reading::DesignFile& file) {
+    if (!file.untoleranced.empty()) {
+        std::string all;
+        for (const reading::Untoleranced& each : file.untoleranced) all += (all.empty() ? "" : "; ") + each.name + ": " + each.why;
+        return {ErrorCode::out_of_range, path, "\"*\" of its `tolerances` gives none to any of its numbers (" + all + ")"};
+    }
     return {ErrorCode::missing_key, path,
             "it has no `tolerances`: say, for instance, \"tolerances\": {\"pin_radius\": \"+-0.05 mm\"}, by names of parameters or of the "
-            "scene's variables, or by places (\"/bodies/pin/shape/dimensions/radius\")"};
+            "scene's variables, or by places (\"/bodies/pin/shape/dimensions/radius\"); \"*\": {\"general\": \"m\"} is every length "
+            "without one"};
+}
+
+// What goes by the process that the user names.
+void tell_unused_process(Console& console, const reading::DesignFile& file, const std::string& path) {
+    const auto is_made = [&](const description::Tolerance& tolerance) { return tolerance.stated.starts_with(file.process + " "); };
+    if (std::any_of(file.tolerances.begin(), file.tolerances.end(), is_made)) return;
+    tell_warnings(console,
+                  {"--process " + file.process + " changes nothing: no tolerance of the design says which `feature` it is of (\"hole\")"},
+                  path);
+}
+
+Json untoleranced_json(const std::vector<reading::Untoleranced>& all) {
+    Json list = Json::array();
+    for (const reading::Untoleranced& each : all) list.push_back({{"name", each.name}, {"why", each.why}});
+    return list;
+}
+
+std::string untoleranced_text(const std::vector<reading::Untoleranced>& all) {
+    std::string text = all.empty() ? "" : "without a tolerance (\"*\" leaves them out):\n";
+    for (const reading::Untoleranced& each : all) text += "  " + each.name + ": " + each.why + "\n";
+    return text;
 }
 
 int run_tolerance(const Options& options, const CommonOptions& common, Console& console) {
     begin_to_read(options.path);
     reading::DesignReadOptions read{common.mesh_dirs, programs_of(common)};
     read.as_made = true;
+    read.process = options.process;
     Result<reading::DesignFile> file = reading::read_design(options.path, read);
     if (!file) return console.input_errors(file.errors());
     tell_warnings(console, file->warnings, options.path);
-    if (file->tolerances.empty()) return console.input_errors({no_tolerances(options.path)});
+    if (!options.process.empty()) tell_unused_process(console, *file, options.path);
+    if (file->tolerances.empty()) return console.input_errors({no_tolerances(options.path, *file)});
     const Result<problem::DesignProblem> problem = problem::DesignProblem::create(file->design);
     if (!problem) return console.input_errors(problem.errors());
     studies::ToleranceOptions study;
@@ -44,8 +76,10 @@ int run_tolerance(const Options& options, const CommonOptions& common, Console& 
     study.on_simulation = [&](int done, int of) { console.progress("simulating", done, of); };
     const studies::ToleranceReport report = studies::study_tolerances(*problem, file->tolerances, study);
     console.end_progress();
-    console.result(answers::tolerance_json(problem->design(), file->tolerances, report),
-                   answers::tolerance_text(problem->design(), file->tolerances, report));
+    Json json = answers::tolerance_json(problem->design(), file->tolerances, report);
+    json["process"] = file->process.empty() ? Json() : Json(file->process);
+    json["untoleranced"] = untoleranced_json(file->untoleranced);
+    console.result(json, answers::tolerance_text(problem->design(), file->tolerances, report) + untoleranced_text(file->untoleranced));
     return report.reason.empty() && report.no_second_order.empty() && !report.interrupted ? exit_done : exit_undecided;
 }
 
@@ -56,6 +90,10 @@ Command add_tolerance(CommandLine& program, const CommonOptions& common) {
     auto options = std::make_shared<Options>();
     app.option("DESIGN", options->path, "Design with `tolerances`, taken at its values").required();
     app.option("--samples", options->samples, "Whole simulations of made mechanisms (default 0: predictions alone)").between(0, 1000000);
+    app.option(
+        "--process", options->process,
+        "What makes the features that entries name (\"hole\"), in place of the design's: fdm, sla, sls, mjf, cnc, laser, or your own "
+        "NAME.process.json");
     app.option("--seed", options->seed, "Of the samples (default 1)").at_least(0);
     app.flag("--first-order", options->first_order, "Predict from one simulation, without the 2 per tolerance that the second order takes");
     app.flag("--worst-case", options->worst_case, "Simulate the worst cases that the derivatives name too: two for each requirement");
