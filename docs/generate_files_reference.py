@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Makes docs/files.md, the reference of scene, design and part files, from their schemas.
+"""Makes docs/files.md, the reference of scene, design, part and process files, from their schemas.
 
 Usage: generate_files_reference.py            writes docs/files.md beside this script
        generate_files_reference.py --check    exit code 1 if it is not what would be written (tests/docs_check asks so)
@@ -13,12 +13,12 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 REFERENCE = HERE / "files.md"
 SCHEMAS = (("Scene", "core/scene_files/scene.schema.json"), ("Design", "design/reading/design.schema.json"),
-           ("Part", "core/part_files/part.schema.json"))
-HEAD = """# Files: scene, design and part
+           ("Part", "core/part_files/part.schema.json"), ("Process", "design/reading/process.schema.json"))
+HEAD = """# Files: scene, design, part and process
 
 <!-- Made by docs/generate_files_reference.py from the schemas: change those, then run it. -->
 
-Every key of the three files that people write. An editor can check them with the same schemas
+Every key of the four files that people write. An editor can check them with the same schemas
 ({links}).
 What they mean together: [concepts.md](concepts.md); whole files: [examples/](../examples); how scenes are read, and the source paper's format:
 [core/scene_files/README.md](../core/scene_files/README.md). All other files: [interface.md](interface.md#files).

@@ -14,7 +14,8 @@
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/quantities/in_scenario.hpp"
-#include "fettle/design/quantities/process_presets.hpp"
+#include "fettle/design/reading/process_file.hpp"
+#include "fettle/design/tolerances/process_clearance.hpp"
 
 namespace fettle::design::clearance {
 
@@ -287,12 +288,12 @@ private:
     }
 
     void require() {
-        std::optional<quantities::ProcessPreset> preset;
+        std::optional<tolerances::Process> process;
         if (!options_.process.empty()) {
-            const auto found = quantities::process_preset(options_.process, "--process");
+            const auto found = reading::find_process(options_.process, "", "--process");
             errors_.insert(errors_.end(), found.errors().begin(), found.errors().end());
             if (!found) return;
-            preset = *found;
+            process = *found;
         }
         for (PairSpec& pair : selection_.pairs) {
             if (!pair.required_by.empty()) continue;
@@ -302,8 +303,8 @@ private:
             if (options_.minimum) {
                 pair.minimum = *options_.minimum;
                 pair.required_by = "--minimum";
-            } else if (preset) {
-                const Result<double> required = quantities::required_clearance(*preset, size_of(pair.a), size_of(pair.b), "pair " + name);
+            } else if (process) {
+                const Result<double> required = tolerances::required_clearance(*process, size_of(pair.a), size_of(pair.b), "pair " + name);
                 errors_.insert(errors_.end(), required.errors().begin(), required.errors().end());
                 pair.minimum = required ? *required : 0;
                 pair.required_by = "--process " + options_.process;

@@ -27,7 +27,7 @@ struct PairOptions {
     std::string pairs, ignore;
     std::vector<std::string> groups, touches;
     std::optional<double> minimum;  ///< [m], per side
-    std::string process;            ///< a preset (process_presets.hpp); `minimum` goes before it, which the report says
+    std::string process;            ///< a name or a file (reading/process_file.hpp); `minimum` goes before it, which the report says
 };
 
 /// A body, or a group.

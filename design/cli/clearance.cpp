@@ -16,7 +16,7 @@
 #include "fettle/design/cli/clearance_folder.hpp"
 #include "fettle/design/cli/clearance_text.hpp"
 #include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/quantities/process_presets.hpp"
+#include "fettle/design/tolerances/process_clearance.hpp"
 
 namespace fettle::design::cli {
 
@@ -168,17 +168,12 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     return exit_code(report.status);
 }
 
-std::vector<std::string> process_names() {
-    std::vector<std::string> names;
-    for (const quantities::ProcessPreset& preset : quantities::process_presets()) names.emplace_back(preset.name);
-    return names;
-}
-
 void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("FILE", options.files, "Scene, design (at its values), or trajectory; or meshes and folders of meshes, in place").required();
     app.option("--unit", options.subject.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
     app.option("--minimum", options.minimum, "Required clearance per side, with its unit: 0.3mm (without any: distances and clashes)");
-    app.option("--process", options.pairs.process, "Required clearance by process and size of the parts (below)").one_of(process_names());
+    app.option("--process", options.pairs.process,
+               "Required clearance by process (below, or your own NAME.process.json) and size of the parts");
     app.option("--pairs", options.pairs.pairs,
                "Pairs A:B,C:D by names of bodies or groups, `*` for any letters, A:B=0.4mm with a minimum of its own (default: every pair "
                "as assembled, every pair that may collide over a motion)");
@@ -228,7 +223,7 @@ Command add_clearance(CommandLine& program, const CommonOptions& common) {
     auto options = std::make_shared<ClearanceArguments>();
     add_options(app, *options);
     app.closing_words(
-        quantities::process_table() +
+        tolerances::clearance_table() +
         "Example:  fettle clearance bracket.stl lid.stl --unit mm --minimum 0.3mm     exit code 1: closer than that\n"
         "          fettle clearance examples/slider_crank/slider_crank.scene.json --minimum 0.3mm --pairs crank:rod,rod:piston\n"
         "          fettle clearance examples/slider_crank/slider_crank.scene.json --process fdm --motion --steps 40 --explain");

@@ -37,6 +37,7 @@ struct Command {
 Command add_check_resolution(CommandLine& program, const CommonOptions& common);
 Command add_clearance(CommandLine& program, const CommonOptions& common);
 Command add_completion(CommandLine& program);
+Command add_coupon(CommandLine& program);
 Command add_draw(CommandLine& program, const CommonOptions& common);
 Command add_export(CommandLine& program, const CommonOptions& common);
 Command add_import(CommandLine& program, const CommonOptions& common);
@@ -44,6 +45,7 @@ Command add_joints(CommandLine& program);
 Command add_manual(CommandLine& program);
 Command add_new(CommandLine& program);
 Command add_optimisers(CommandLine& program);
+Command add_process(CommandLine& program);
 Command add_quantities(CommandLine& program);
 Command add_shapes(CommandLine& program);
 Command add_validate(CommandLine& program, const CommonOptions& common);

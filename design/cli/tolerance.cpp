@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// fettle tolerance DESIGN: what becomes of it when its parts are made.
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,21 +13,46 @@ namespace fettle::design::cli {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct Options {
-    std::string path;
+    std::string path, process;
     int samples = 0;
     int seed = 1;
     bool first_order = false, worst_case = false;
     std::string samples_file;
 };
 
+// What goes by the process that the user names.
+void tell_unused_process(Console& console, const reading::DesignFile& file, const std::string& path) {
+    const auto is_made = [&](const description::Tolerance& tolerance) { return tolerance.stated.starts_with(file.process + " "); };
+    if (std::any_of(file.tolerances.begin(), file.tolerances.end(), is_made)) return;
+    tell_warnings(console,
+                  {"--process " + file.process + " changes nothing: no tolerance of the design says which `feature` it is of (\"hole\")"},
+                  path);
+}
+
+Json untoleranced_json(const std::vector<reading::Untoleranced>& all) {
+    Json list = Json::array();
+    for (const reading::Untoleranced& each : all) list.push_back({{"name", each.name}, {"why", each.why}});
+    return list;
+}
+
+std::string untoleranced_text(const std::vector<reading::Untoleranced>& all) {
+    std::string text = all.empty() ? "" : "without a tolerance (\"*\" leaves them out):\n";
+    for (const reading::Untoleranced& each : all) text += "  " + each.name + ": " + each.why + "\n";
+    return text;
+}
+
 int run_tolerance(const Options& options, const CommonOptions& common, Console& console) {
     begin_to_read(options.path);
     reading::DesignReadOptions read{common.mesh_dirs, programs_of(common)};
     read.as_made = true;
+    read.process = options.process;
     Result<reading::DesignFile> file = reading::read_design(options.path, read);
     if (!file) return console.input_errors(file.errors());
     tell_warnings(console, file->warnings, options.path);
+    if (!options.process.empty()) tell_unused_process(console, *file, options.path);
     studies::ToleranceOptions study;
     study.samples = options.samples;
     study.seed = static_cast<std::uint64_t>(options.seed);
@@ -37,8 +63,10 @@ int run_tolerance(const Options& options, const CommonOptions& common, Console& 
     const Result<studies::ToleranceReport> report = studies::study_tolerances(*file, options.samples_file, study);
     console.end_progress();
     if (!report) return console.input_errors(report.errors());
-    console.result(answers::tolerance_json(file->design, file->tolerances, *report),
-                   answers::tolerance_text(file->design, file->tolerances, *report));
+    Json json = answers::tolerance_json(file->design, file->tolerances, *report);
+    json["process"] = file->process.empty() ? Json() : Json(file->process);
+    json["untoleranced"] = untoleranced_json(file->untoleranced);
+    console.result(json, answers::tolerance_text(file->design, file->tolerances, *report) + untoleranced_text(file->untoleranced));
     return report->reason.empty() && report->no_second_order.empty() && !report->interrupted ? exit_done : exit_undecided;
 }
 
@@ -49,6 +77,10 @@ Command add_tolerance(CommandLine& program, const CommonOptions& common) {
     auto options = std::make_shared<Options>();
     app.option("DESIGN", options->path, "Design with `tolerances`, taken at its values").required();
     app.option("--samples", options->samples, "Whole simulations of made mechanisms (default 0: predictions alone)").between(0, 1000000);
+    app.option(
+        "--process", options->process,
+        "What makes the features that entries name (\"hole\"), in place of the design's: fdm, sla, sls, mjf, cnc, laser, or your own "
+        "NAME.process.json");
     app.option("--seed", options->seed, "Of the samples (default 1)").at_least(0);
     app.option("--samples-file", options->samples_file,
                "Where the samples are kept, a line each: those that are there are not simulated again, so that a run can be interrupted");

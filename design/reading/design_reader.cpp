@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -21,11 +22,11 @@
 #include "fettle/design/reading/constraint_reader.hpp"
 #include "fettle/design/reading/design_formulas.hpp"
 #include "fettle/design/reading/parameter_reader.hpp"
+#include "fettle/design/reading/process_file.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
 #include "fettle/design/reading/relation_reader.hpp"
 #include "fettle/design/reading/same_parts.hpp"
 #include "fettle/design/reading/scenario_choice.hpp"
-#include "fettle/design/reading/tolerance_reader.hpp"
 
 namespace fettle::design::reading {
 
@@ -40,12 +41,14 @@ std::vector<std::string_view> views(const std::vector<std::string>& names) { ret
 /// Reads one file. Faults go to the document; values read after a fault are never used.
 class DesignReader {
 public:
-    DesignReader(JsonDocument& document, const DesignReadOptions& options) : document_(document), options_(options) {}
+    /// @param fixed  Variables that "*" of the tolerances gives no deviation, each with its reason.
+    DesignReader(JsonDocument& document, const DesignReadOptions& options, const std::map<std::string, std::string>& fixed)
+        : document_(document), options_(options), fixed_(fixed) {}
 
     Result<DesignFile> read() {
         const JsonNode root = document_.root();
         root.allow_keys({"$schema", "fettle_design", "description", "scene", "units", "parameters", "variables", "set", "scenarios",
-                         "simulation", "quantities", "objective", "constraints", "tolerances", "optimiser", "output"});
+                         "simulation", "quantities", "objective", "constraints", "tolerances", "process", "optimiser", "output"});
         root["$schema"].string();
         root["description"].string();
         core::files::is_version(root.require("fettle_design"), 1);
@@ -58,9 +61,17 @@ public:
         DesignFormulas formulas(document_, to_si(1, file_.length_unit), core::scene_files::variables_of(*scene));
         design_.parameters = read_parameters(root.require("parameters"), formulas.scene_variables(), file_.length_unit);
         std::vector<description::Parameter> as_made = design_.parameters;
+        const ToleranceUnits units{file_.length_unit, read_processes(root["process"])};
+        if (units.processes.is_missing) return all_errors();  // each feature would ask for it
         std::vector<ToleranceEntry> entries = find_tolerances(root["tolerances"], variable_names(root, formulas), as_made);
+        file_.untoleranced = add_default_tolerances(root["tolerances"], formulas.scene_variables(), units, why_fixed(), as_made, entries);
         formulas.add_parameters(root["parameters"], design_.parameters);
-        if (options_.as_made) formulas.add_deviations(deviations_of(entries, as_made), *scene);
+        if (options_.as_made) {
+            for (const ToleranceEntry& entry : entries)
+                if (entry.is_default && entry.kind == ToleranceEntry::Kind::variable)
+                    default_variables_[as_made[entry.tolerance.parameter].name] = entry.tolerance.of;
+            formulas.add_deviations(deviations_of(entries, as_made), *scene);
+        }
         formulas.read_variables(root["variables"]);
         if (!has_parameters()) return all_errors();
         const std::optional<Setting> setting = read_setting(*scene, {root["set"]}, formulas);
@@ -71,7 +82,7 @@ public:
         read_simulation(root["simulation"]);
         const ScenarioNames scenarios = read_scenarios(root["scenarios"], root["set"], formulas);
         if (!scene_errors_.empty()) return all_errors();  // of one of them
-        take_tolerances(entries, formulas, as_made);
+        take_tolerances(entries, units, formulas, as_made);
         std::vector<quantities::NamedQuantity> named;
         const ReadContext context{design_.scene, to_si(1, file_.length_unit), design_.steps * design_.scene.timestep, formulas, named,
                                   scenarios};
@@ -95,6 +106,10 @@ public:
         return std::move(file_);
     }
 
+    /// Variables that "*" has given a tolerance, by their deviations' names; those of them that nothing of the design follows from.
+    const std::map<std::string, std::string>& default_variables() const { return default_variables_; }
+    const std::vector<std::string>& unused_variables() const { return unused_variables_; }
+
 private:
     // Can the scene be read with them? Values that are out of their bounds can be set, faults of the form cannot.
     bool has_parameters() const {
@@ -102,6 +117,37 @@ private:
         return std::all_of(errors.begin(), errors.end(), [](const Error& error) {
             return error.code == ErrorCode::inconsistent || error.code == ErrorCode::out_of_range || error.code == ErrorCode::unsupported;
         });
+    }
+
+    // What makes the parts, unless the caller says what does.
+    ProcessChoice read_processes(const JsonNode& node) {
+        ProcessChoice choice;
+        choice.folder = fs::path(file_.path).parent_path().string();
+        const auto name = node.string();
+        if (name && options_.process.empty()) take_process(find_process(*name, choice.folder, node.where()), &node, choice);
+        if (!options_.process.empty()) take_process(find_process(options_.process, "", "--process"), nullptr, choice);
+        return choice;
+    }
+
+    // @param node  Which names it; null: the caller.
+    void take_process(const Result<tolerances::Process>& process, const JsonNode* node, ProcessChoice& choice) {
+        for (const Error& error : process.errors()) {
+            if (node != nullptr)
+                node->fail(error.code, (error.where == node->where() ? "" : error.where + ": ") + error.message);
+            else
+                process_errors_.push_back(error);
+        }
+        choice.is_missing = !process;
+        if (!process) return;
+        choice.usual = *process;
+        file_.process = process->name;
+    }
+
+    std::function<std::string(const std::string&)> why_fixed() const {
+        return [this](const std::string& variable) {
+            const auto known = fixed_.find(variable);
+            return known == fixed_.end() ? std::string() : known->second;
+        };
     }
 
     static VariableNames variable_names(const JsonNode& root, const DesignFormulas& formulas) {
@@ -113,17 +159,17 @@ private:
     }
 
     // Of a design as drawn they are checked, and left. @param parameters  As made, but for those of places.
-    void take_tolerances(std::vector<ToleranceEntry>& entries, const DesignFormulas& formulas,
+    void take_tolerances(std::vector<ToleranceEntry>& entries, const ToleranceUnits& units, const DesignFormulas& formulas,
                          const std::vector<description::Parameter>& parameters) {
         if (entries.empty()) return;
         if (!options_.as_made) {
             description::Design checked = design_;
             checked.parameters = parameters;
-            read_tolerances(entries, formulas, file_.length_unit, checked);
+            read_tolerances(entries, formulas, units, checked, file_.untoleranced);
             return;
         }
         design_.parameters = parameters;
-        read_tolerances(entries, formulas, file_.length_unit, design_);
+        read_tolerances(entries, formulas, units, design_, file_.untoleranced);
         for (ToleranceEntry& entry : entries) file_.tolerances.push_back(std::move(entry.tolerance));
     }
 
@@ -296,7 +342,7 @@ private:
     }
 
     // A parameter that nothing follows from is a mistake: no number of the scene, and nothing that is wanted or required.
-    void check_use(const JsonNode& parameters) const {
+    void check_use(const JsonNode& parameters) {
         if (!document_.errors().empty()) return;  // what could not be read may name it
         std::set<std::string> used;
         for (int s = 0; s < description::scenario_count(design_); ++s)
@@ -309,16 +355,21 @@ private:
         for (const description::ObjectiveTerm& term : design_.objective) look_at(*term.quantity);
         for (const description::Constraint& constraint : design_.constraints) look_at(*constraint.quantity);
         const std::vector<JsonNode> nodes = parameters.elements();
-        for (std::size_t k = 0; k < design_.parameters.size(); ++k)
-            if (k >= nodes.size() && used.count(design_.parameters[k].name) == 0)
-                document_.root()["tolerances"].fail(ErrorCode::inconsistent, "nothing of the design follows from the " +
-                                                                                 design_.parameters[k].name + ": leave its tolerance out");
-            else if (used.count(design_.parameters[k].name) == 0)
+        for (std::size_t k = 0; k < design_.parameters.size(); ++k) {
+            const std::string& name = design_.parameters[k].name;
+            if (used.count(name) > 0) continue;
+            if (const auto variable = default_variables_.find(name); variable != default_variables_.end())
+                unused_variables_.push_back(variable->second);
+            else if (k >= nodes.size())
+                document_.root()["tolerances"].fail(ErrorCode::inconsistent,
+                                                    "nothing of the design follows from the " + name + ": leave its tolerance out");
+            else
                 nodes[k].fail(ErrorCode::inconsistent,
-                              "no number of the scene follows from parameter \"" + design_.parameters[k].name +
+                              "no number of the scene follows from parameter \"" + name +
                                   "\": use it in a formula there, or in the design's `set`, such as \"/bodies/" +
                                   (design_.scene.bodies.empty() ? std::string("0") : design_.scene.bodies.front().name) +
-                                  "/position/0\": \"= " + core::expression::quoted_if_needed(design_.parameters[k].name) + "\"");
+                                  "/position/0\": \"= " + core::expression::quoted_if_needed(name) + "\"");
+        }
     }
 
     void check_scaled_parts(const Setting& setting) {
@@ -429,17 +480,74 @@ private:
 
     Errors all_errors() const {
         Errors errors = document_.errors();
+        errors.insert(errors.end(), process_errors_.begin(), process_errors_.end());
         errors.insert(errors.end(), scene_errors_.begin(), scene_errors_.end());
         return errors;
     }
 
     JsonDocument& document_;
     const DesignReadOptions& options_;
+    const std::map<std::string, std::string>& fixed_;
+    std::map<std::string, std::string> default_variables_;
+    std::vector<std::string> unused_variables_;
     DesignFile file_;
     description::Design& design_ = file_.design;
     Errors scene_errors_;
+    Errors process_errors_;  // of the caller's
     std::shared_ptr<std::vector<MadePart>> parts_ = options_.made ? options_.made : std::make_shared<std::vector<MadePart>>();
     std::vector<Remark> remarks_;
+};
+
+/// Reads a design as made, of whose scene's variables "*" of the tolerances gives those a deviation that can have one: some are used where
+/// no parameter may be (a time step, a number of facets), or nowhere.
+class DefaultVariables {
+public:
+    DefaultVariables(const std::string& text, const std::string& path, const DesignReadOptions& options)
+        : text_(text), path_(path), options_(options) {
+        if (!options_.made) options_.made = std::make_shared<std::vector<MadePart>>();  // for each reading
+    }
+
+    Result<DesignFile> read() {
+        Result<DesignFile> file = read_once();
+        if (!file && !variables_.empty()) {
+            const std::vector<std::string> all = variables_;
+            fix(all, "not tried yet");
+            Result<DesignFile> without = read_once();
+            if (!without) return without;
+            for (const std::string& one : all) {
+                fixed_.erase(one);
+                if (!read_once()) fix({one}, "something follows from it that no deviation can change");
+            }
+            file = read_once();
+        }
+        if (file && !unused_.empty()) {
+            fix(unused_, "nothing of the scene follows from it");
+            file = read_once();
+        }
+        return file;
+    }
+
+private:
+    void fix(const std::vector<std::string>& names, const std::string& why) {
+        for (const std::string& name : names) fixed_[name] = why;
+    }
+
+    Result<DesignFile> read_once() {
+        Result<JsonDocument> document = JsonDocument::parse(text_, path_);
+        if (!document) return document.errors();
+        DesignReader reader(*document, options_, fixed_);
+        Result<DesignFile> file = reader.read();
+        variables_.clear();
+        for (const auto& [deviation, variable] : reader.default_variables()) variables_.push_back(variable);
+        unused_ = reader.unused_variables();
+        return file;
+    }
+
+    const std::string& text_;
+    const std::string& path_;
+    DesignReadOptions options_;
+    std::map<std::string, std::string> fixed_;
+    std::vector<std::string> variables_, unused_;
 };
 
 }  // namespace
@@ -457,7 +565,7 @@ Result<DesignFile> parse_design(const std::string& text, const std::string& path
                          : "not a design: `fettle_design` (its version, 1) is not there" +
                                core::files::misspelt_key(root, {"fettle_scene", "fettle_design"})};
     }
-    Result<DesignFile> file = DesignReader(*document, options).read();
+    Result<DesignFile> file = DefaultVariables(text, path, options).read();
     if (file) file->text = text;
     return file;
 }

@@ -12,6 +12,7 @@
 #include "fettle/design/description/tolerance.hpp"
 #include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
+#include "fettle/design/reading/tolerance_reader.hpp"
 
 namespace fettle::design::reading {
 
@@ -25,6 +26,8 @@ struct DesignFile {
     std::vector<std::string> warnings;
     std::vector<quantities::NamedQuantity> quantities = {};  ///< of its `quantities`
     std::vector<description::Tolerance> tolerances = {};     ///< of a design read as made
+    std::vector<Untoleranced> untoleranced = {};             ///< what "*" of its tolerances leaves out
+    std::string process = {};                                ///< that makes what entries say no other of; empty: none
 };
 
 /// How many times as fine as the files say. Contract: both at least 1.
@@ -39,6 +42,7 @@ struct DesignReadOptions {
     Resolution resolution = {};
     /// Each number with a tolerance becomes a parameter, after the design's own (description/tolerance.hpp).
     bool as_made = false;
+    std::string process = {};  ///< in place of the design's: a name, or a file, from the working directory; empty: the design's
     /// Parts that need not be made again; gets those that are made. Null: there are none.
     std::shared_ptr<std::vector<MadePart>> made = {};
 };

@@ -9,6 +9,7 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
 #include "fettle/core/part_files/part_file.hpp"
+#include "fettle/design/reading/process_file.hpp"
 
 namespace fettle::design::reading {
 
@@ -26,6 +27,17 @@ void make_numbers_equal(nlohmann::json& json) {
 // Everything of a scene that is not in its own text: meshes, which come from files or are made from dimensions, and part files, which say
 // what becomes of them at other dimensions.
 void append_bytes(std::string& text, const void* data, size_t size) { text.append(static_cast<const char*>(data), size); }
+
+// Names of processes that are files, which stay where they are.
+void move_processes(nlohmann::ordered_json& json, const std::string& folder, const std::string& other) {
+    const auto move = [&](nlohmann::ordered_json& holder) {
+        if (holder.is_object() && holder.contains("process"))
+            holder["process"] = process_name_from(holder["process"].get<std::string>(), folder, other);
+    };
+    move(json);
+    if (!json.contains("tolerances")) return;
+    for (auto& entry : json["tolerances"]) move(entry);
+}
 
 }  // namespace
 
@@ -46,6 +58,7 @@ std::string design_text(const DesignFile& file, const VectorX& values, const std
     std::error_code failure;
     const fs::path scene = fs::relative(fs::absolute(file.scene_path), fs::absolute(directory), failure);
     json["scene"] = failure || scene.empty() ? fs::absolute(file.scene_path).string() : scene.generic_string();
+    move_processes(json, fs::path(file.path).parent_path().string(), directory);
     json.erase("output");  // it was relative to the first file's folder
     return json.dump(2) + "\n";
 }

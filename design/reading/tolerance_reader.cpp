@@ -6,13 +6,9 @@
 #include <optional>
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/expression/parse_formula.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/scene/place.hpp"
 #include "fettle/design/reading/parameter_reader.hpp"
-#include "fettle/design/tolerances/iso2768.hpp"
-#include "fettle/design/tolerances/iso286.hpp"
 
 namespace fettle::design::reading {
 
@@ -21,135 +17,9 @@ namespace {
 using core::files::JsonNode;
 using description::Parameter;
 using description::Tolerance;
-using tolerances::Distribution;
-
-/// What a tolerance is of.
-struct Nominal {
-    double value = 0;  ///< SI
-    Unit unit;
-};
-
-class EntryReader {
-public:
-    EntryReader(const JsonNode& node, const Nominal& nominal) : node_(node), nominal_(nominal) {}
-
-    void read(Tolerance& tolerance) const {
-        if (node_.is_string()) {
-            read_text(*node_.string(), tolerance);
-            return;
-        }
-        node_.allow_keys({"lower", "upper", "class", "of", "general", "distribution", "sigma_level", "shift", "group", "correlation"});
-        if (!node_.is_object()) return;
-        const int ways = (node_["lower"].exists() || node_["upper"].exists()) + node_["class"].exists() + node_["general"].exists();
-        if (ways != 1)
-            node_.fail(ErrorCode::inconsistent,
-                       "a tolerance has `lower` and `upper`, or a `class` (\"H7\"), or `general` (\"m\"): one of these");
-        if (node_["of"].exists() && !node_["class"].exists()) node_["of"].fail(ErrorCode::inconsistent, "`of` goes with `class`");
-        if (node_["class"].exists()) read_class(tolerance);
-        if (node_["general"].exists()) read_general(tolerance);
-        if (node_["lower"].exists() || node_["upper"].exists()) read_limits(tolerance);
-        read_distribution(tolerance.deviation);
-        read_group(tolerance);
-    }
-
-private:
-    std::optional<double> amount(const JsonNode& node) const { return node.quantity(nominal_.unit.dimension, to_si(1, nominal_.unit)); }
-    std::string in_unit(double si) const {
-        return core::base::formatted("%.6g", description::from_si(si, nominal_.unit)) +
-               (nominal_.unit.dimension == Dimension::number ? "" : " " + std::string(nominal_.unit.name));
-    }
-
-    // "+-0.05 mm", "H7".
-    void read_text(const std::string& text, Tolerance& tolerance) const {
-        if (!text.starts_with("+-")) {
-            take_class(node_, text, 1, tolerance);
-            return;
-        }
-        core::expression::Scope scope;
-        const auto formula = core::expression::parse_formula_of(text.substr(2), scope, nominal_.unit.dimension, to_si(1, nominal_.unit));
-        for (const Error& error : formula.errors()) node_.fail(error.code, error.message + "; a tolerance is \"+-0.05 mm\", or \"H7\"");
-        if (!formula) return;
-        const double size = core::expression::value_of<double>(*formula, {});
-        if (!(size >= 0 && std::isfinite(size))) node_.fail(ErrorCode::out_of_range, "a tolerance is a number of at least 0");
-        set_limits(size > 0 ? -size : 0, size, text, tolerance);
-    }
-
-    static void set_limits(double lower, double upper, const std::string& stated, Tolerance& tolerance) {
-        tolerance.deviation.lower = lower;
-        tolerance.deviation.upper = upper;
-        tolerance.stated = stated;
-    }
-
-    void read_limits(Tolerance& tolerance) const {
-        const auto lower = amount(node_["lower"]), upper = amount(node_["upper"]);
-        for (const char* key : {"lower", "upper"})
-            if (!node_[key].exists())
-                node_.fail(ErrorCode::missing_key, "the other limit, `" + std::string(key) + "`, is missing (0 is one)");
-        if (lower && upper && *lower > *upper)
-            node_["lower"].fail(ErrorCode::inconsistent,
-                                "the lower limit is above the upper one; both are deviations from the nominal value");
-        set_limits(lower.value_or(0), upper.value_or(0), in_unit(lower.value_or(0)) + " to " + in_unit(upper.value_or(0)), tolerance);
-    }
-
-    void read_class(Tolerance& tolerance) const {
-        const auto name = node_["class"].string();
-        const double times = node_["of"].choice({"diameter", "radius"}).value_or("diameter") == "radius" ? 2 : 1;
-        if (name) take_class(node_["class"], *name, times, tolerance);
-    }
-
-    // @param times  The diameter over the number.
-    void take_class(const JsonNode& at, const std::string& name, double times, Tolerance& tolerance) const {
-        if (nominal_.unit.dimension != Dimension::length) {
-            at.fail(ErrorCode::wrong_type, "`" + name + "`: a class of ISO 286 is of a length; other tolerances are \"+-0.5 deg\"");
-            return;
-        }
-        const auto limits = tolerances::iso286_limits(name, times * nominal_.value, at.where());
-        for (const Error& error : limits.errors()) at.fail(error.code, error.message);
-        if (limits) set_limits(limits->lower / times, limits->upper / times, name, tolerance);
-    }
-
-    void read_general(Tolerance& tolerance) const {
-        const JsonNode at = node_["general"];
-        const auto name = at.choice({"f", "m", "c", "v"});
-        if (!name) return;
-        if (nominal_.unit.dimension != Dimension::length) {
-            at.fail(ErrorCode::wrong_type, "a general tolerance is of a length here; of an angle say \"+-0.5 deg\"");
-            return;
-        }
-        const auto limits = tolerances::iso2768_linear(*name, nominal_.value, at.where());
-        for (const Error& error : limits.errors()) at.fail(error.code, error.message);
-        if (limits) set_limits(limits->lower, limits->upper, "ISO 2768-" + std::string(*name), tolerance);
-    }
-
-    void read_distribution(Distribution& deviation) const {
-        using Kind = tolerances::DistributionKind;
-        const auto kind = node_["distribution"].choice({"normal", "truncated", "uniform", "triangular"});
-        if (kind)
-            deviation.kind = *kind == "normal"      ? Kind::normal
-                             : *kind == "truncated" ? Kind::truncated
-                             : *kind == "uniform"   ? Kind::uniform
-                                                    : Kind::triangular;
-        deviation.sigma_level = node_["sigma_level"].number(core::files::positive).value_or(deviation.sigma_level);
-        deviation.shift = amount(node_["shift"]).value_or(0);
-        if (const std::string fault = fault_of(deviation); !fault.empty()) node_.fail(ErrorCode::out_of_range, fault);
-    }
-
-    void read_group(Tolerance& tolerance) const {
-        tolerance.group = node_["group"].string().value_or("");
-        tolerance.correlation = node_["correlation"].number({-1, 1}).value_or(tolerance.correlation);
-        if (node_["group"].is_string() && tolerance.group.empty()) node_["group"].fail(ErrorCode::out_of_range, "a group has a name");
-        if (node_["correlation"].exists() && !node_["group"].exists())
-            node_["correlation"].fail(ErrorCode::inconsistent, "`correlation` goes with `group`");
-        if (!tolerance.group.empty() && tolerance.deviation.kind != tolerances::DistributionKind::normal)
-            node_["group"].fail(ErrorCode::unsupported,
-                                "what varies with a group is normal; this one is " + std::string(to_string(tolerance.deviation.kind)));
-    }
-
-    const JsonNode& node_;
-    const Nominal& nominal_;
-};
 
 constexpr std::string_view deviation_of = "deviation of ";
+constexpr const char* default_name = "*";
 
 bool has(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -161,6 +31,13 @@ std::vector<std::string_view> all_names(const std::vector<Parameter>& parameters
     names.insert(names.end(), variables.design.begin(), variables.design.end());
     names.insert(names.end(), variables.scene.begin(), variables.scene.end());
     return names;
+}
+
+int add_deviation(const std::string& variable, std::vector<Parameter>& parameters) {
+    Parameter deviation;
+    deviation.name = std::string(deviation_of) + variable;
+    parameters.push_back(deviation);
+    return count_of(parameters) - 1;
 }
 
 // At the parameters' values; what else it follows from are variables of the scene.
@@ -190,6 +67,20 @@ std::optional<Nominal> nominal_of(const std::string& name, const DesignFormulas&
     return Nominal{value_of(formula, design), usual_unit(dimension, length_unit)};
 }
 
+// A place of the scene gets its parameter. Nothing: it has a fault, which is told.
+std::optional<Nominal> add_place(ToleranceEntry& entry, const Unit& length_unit, description::Design& design) {
+    const core::scene::Scene scene = description::described_scene(design);
+    const auto place = core::scene::find_place(scene, entry.tolerance.of);
+    for (const Error& error : place.errors()) entry.node.fail(error.code, error.message);
+    if (!place) return std::nullopt;
+    const Nominal nominal{core::scene::value_at(scene, *place), usual_unit(core::scene::dimension_at(scene, *place), length_unit)};
+    const Result<int> parameter = description::add_deviation(design, entry.tolerance.of, nominal.unit);
+    for (const Error& error : parameter.errors()) entry.node.fail(error.code, error.message);
+    if (!parameter) return std::nullopt;
+    entry.tolerance.parameter = *parameter;
+    return nominal;
+}
+
 }  // namespace
 
 std::vector<ToleranceEntry> find_tolerances(const JsonNode& node, const VariableNames& variables, std::vector<Parameter>& parameters) {
@@ -197,6 +88,7 @@ std::vector<ToleranceEntry> find_tolerances(const JsonNode& node, const Variable
     std::vector<ToleranceEntry> entries;
     const std::vector<Parameter> own = parameters;
     for (const auto& [name, entry] : node.members()) {
+        if (name == default_name) continue;
         Tolerance tolerance;
         tolerance.of = name;
         const auto parameter =
@@ -207,10 +99,7 @@ std::vector<ToleranceEntry> find_tolerances(const JsonNode& node, const Variable
             tolerance.parameter = static_cast<int>(parameter - own.begin());
             entries.push_back({std::move(tolerance), entry, Kind::parameter});
         } else if (has(variables.scene, name) || has(variables.design, name)) {
-            Parameter deviation;
-            deviation.name = std::string(deviation_of) + name;
-            parameters.push_back(deviation);
-            tolerance.parameter = count_of(parameters) - 1;
+            tolerance.parameter = add_deviation(name, parameters);
             entries.push_back({std::move(tolerance), entry, Kind::variable});
         } else {
             entry.fail(ErrorCode::out_of_range, "there is no parameter and no variable `" + name + "`; " +
@@ -221,6 +110,59 @@ std::vector<ToleranceEntry> find_tolerances(const JsonNode& node, const Variable
     return entries;
 }
 
+std::vector<Untoleranced> add_default_tolerances(const JsonNode& node, const std::vector<core::scene::Variable>& variables,
+                                                 const ToleranceUnits& units,
+                                                 const std::function<std::string(const std::string&)>& why_fixed,
+                                                 std::vector<Parameter>& parameters, std::vector<ToleranceEntry>& entries) {
+    using Kind = ToleranceEntry::Kind;
+    if (!node.is_object() || !node[default_name].exists()) return {};
+    const JsonNode entry = node[default_name];
+    const bool is_feature = entry.is_string() && tolerances::feature_kind(*entry.string());
+    const bool is_known = entry.is_object() && (entry["general"].exists() || entry["feature"].exists() || entry["process"].exists());
+    if (!is_feature && !is_known) {
+        entry.fail(
+            ErrorCode::inconsistent,
+            "what holds for every other length is {\"general\": \"m\"} (ISO 2768), or what a process makes: \"length\", {\"feature\": "
+            "\"length\", \"process\": \"fdm\"}");
+        return {};
+    }
+    // Faults of the entry itself, once.
+    const std::size_t before = entry.error_count();
+    Tolerance checked;
+    read_entry(entry, {10e-3, units.length}, units, checked);
+    if (entry.error_count() > before) return {};
+    std::vector<Untoleranced> left_out;
+    const auto is_free = [&](const std::string& name, const Nominal& nominal, const std::string& fixed) {
+        const auto has_entry = [&](const ToleranceEntry& each) { return each.tolerance.of == name; };
+        if (std::any_of(entries.begin(), entries.end(), has_entry)) return false;
+        std::string why = why_no_tolerance(entry, nominal, units);
+        if (why.empty()) why = fixed;
+        if (!why.empty()) left_out.push_back({name, why});
+        return why.empty();
+    };
+    const auto add = [&](const std::string& name, int parameter, Kind kind) {
+        Tolerance tolerance;
+        tolerance.of = name;
+        tolerance.parameter = parameter;
+        entries.push_back({std::move(tolerance), entry, kind, true});
+    };
+    const std::vector<Parameter> own = parameters;
+    const auto is_parameter = [&](const std::string& name) {
+        return std::any_of(own.begin(), own.end(), [&](const Parameter& parameter) { return parameter.name == name; });
+    };
+    for (int k = 0; k < count_of(own); ++k) {
+        const bool is_deviation = own[k].name.starts_with(deviation_of);
+        if (!is_deviation && is_free(own[k].name, {std::abs(own[k].value), own[k].unit}, "")) add(own[k].name, k, Kind::parameter);
+    }
+    for (const core::scene::Variable& variable : variables) {
+        if (!variable.formula.is_constant() || is_parameter(variable.name)) continue;
+        const Unit unit = usual_unit(named_dimension(variable.formula.dimension).value_or(Dimension::number), units.length);
+        if (is_free(variable.name, {std::abs(variable.value), unit}, why_fixed(variable.name)))
+            add(variable.name, add_deviation(variable.name, parameters), Kind::variable);
+    }
+    return left_out;
+}
+
 std::map<std::string, std::string> deviations_of(const std::vector<ToleranceEntry>& entries, const std::vector<Parameter>& parameters) {
     std::map<std::string, std::string> out;
     for (const ToleranceEntry& entry : entries)
@@ -228,32 +170,34 @@ std::map<std::string, std::string> deviations_of(const std::vector<ToleranceEntr
     return out;
 }
 
-void read_tolerances(std::vector<ToleranceEntry>& entries, const DesignFormulas& formulas, const Unit& length_unit,
-                     description::Design& design) {
+void read_tolerances(std::vector<ToleranceEntry>& entries, const DesignFormulas& formulas, const ToleranceUnits& units,
+                     description::Design& design, std::vector<Untoleranced>& left_out) {
     using Kind = ToleranceEntry::Kind;
+    std::vector<ToleranceEntry> kept;
     for (ToleranceEntry& entry : entries) {
         Tolerance& tolerance = entry.tolerance;
+        std::optional<Nominal> nominal;
         if (entry.kind == Kind::parameter) {
-            const Parameter& parameter = design.parameters[tolerance.parameter];
-            EntryReader(entry.node, {parameter.value, parameter.unit}).read(tolerance);
+            nominal = {design.parameters[tolerance.parameter].value, design.parameters[tolerance.parameter].unit};
         } else if (entry.kind == Kind::variable) {
-            const std::optional<Nominal> nominal = nominal_of(tolerance.of, formulas, length_unit, design);
-            if (!nominal) continue;
-            design.parameters[tolerance.parameter].unit = nominal->unit;
-            EntryReader(entry.node, *nominal).read(tolerance);
+            nominal = nominal_of(tolerance.of, formulas, units.length, design);
+            if (nominal) design.parameters[tolerance.parameter].unit = nominal->unit;
         } else {
-            const core::scene::Scene scene = description::described_scene(design);
-            const auto place = core::scene::find_place(scene, tolerance.of);
-            for (const Error& error : place.errors()) entry.node.fail(error.code, error.message);
-            if (!place) continue;
-            const Nominal nominal{core::scene::value_at(scene, *place), usual_unit(core::scene::dimension_at(scene, *place), length_unit)};
-            const Result<int> parameter = description::add_deviation(design, tolerance.of, nominal.unit);
-            for (const Error& error : parameter.errors()) entry.node.fail(error.code, error.message);
-            if (!parameter) continue;
-            tolerance.parameter = *parameter;
-            EntryReader(entry.node, nominal).read(tolerance);
+            nominal = add_place(entry, units.length, design);
         }
+        if (!nominal) continue;
+        if (entry.is_default) {
+            nominal->value = std::abs(nominal->value);
+            const std::string why = why_no_tolerance(entry.node, *nominal, units);
+            if (!why.empty()) {
+                left_out.push_back({tolerance.of, why});
+                continue;
+            }
+        }
+        read_entry(entry.node, *nominal, units, tolerance);
+        kept.push_back(std::move(entry));
     }
+    entries = std::move(kept);
 }
 
 }  // namespace fettle::design::reading

@@ -10,10 +10,16 @@ namespace fettle::design::studies {
 
 namespace {
 
-Error no_tolerances(const std::string& path) {
-    return {ErrorCode::missing_key, path,
+Error no_tolerances(const reading::DesignFile& file) {
+    if (!file.untoleranced.empty()) {
+        std::string all;
+        for (const reading::Untoleranced& each : file.untoleranced) all += (all.empty() ? "" : "; ") + each.name + ": " + each.why;
+        return {ErrorCode::out_of_range, file.path, "\"*\" of its `tolerances` gives none to any of its numbers (" + all + ")"};
+    }
+    return {ErrorCode::missing_key, file.path,
             "it has no `tolerances`: say, for instance, \"tolerances\": {\"pin_radius\": \"+-0.05 mm\"}, by names of parameters or "
-            "variables, or by places of the scene (\"/bodies/pin/shape/dimensions/radius\")"};
+            "variables, or by places of the scene (\"/bodies/pin/shape/dimensions/radius\"); \"*\": {\"general\": \"m\"} is every length "
+            "without one"};
 }
 
 Result<SampleFile> open_samples(const std::string& path, std::uint64_t seed, const reading::DesignFile& file,
@@ -27,7 +33,7 @@ Result<SampleFile> open_samples(const std::string& path, std::uint64_t seed, con
 }  // namespace
 
 Result<ToleranceReport> study_tolerances(const reading::DesignFile& file, const std::string& samples_file, ToleranceOptions options) {
-    if (file.tolerances.empty()) return no_tolerances(file.path);
+    if (file.tolerances.empty()) return no_tolerances(file);
     const Result<problem::DesignProblem> problem = problem::DesignProblem::create(file.design);
     if (!problem) return problem.errors();
     std::optional<SampleFile> samples;

@@ -24,8 +24,10 @@
 #include "fettle/core/solids/mesh_judgement.hpp"
 #include "fettle/core/solids/mesh_repair.hpp"
 #include "fettle/core/solids/mesh_validity.hpp"
+#include "fettle/design/coupons/coupon_form.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/reading/process_file.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 #include "fettle/design/report/exploration_report.hpp"
 #include "fettle/design/report/report_folder.hpp"
@@ -163,6 +165,13 @@ void read_poses_as(const char* name, std::string_view bytes) {
     (void)core::records::read_poses(scratch().write(name, bytes), sample("path").model);
 }
 
+void read_process(std::string_view bytes) { static_cast<void>(design::reading::parse_process(std::string(bytes), "a.process.json")); }
+
+void read_form(std::string_view bytes) {
+    const auto features = design::coupons::parse_form(std::string(bytes), "a.csv");
+    if (features) static_cast<void>(design::tolerances::fit_process(*features, "a.csv"));
+}
+
 void read_urdf(std::string_view bytes) {
     const auto robot = design::urdf::parse_urdf(bytes, "a.urdf");
     if (!robot) return;
@@ -229,6 +238,8 @@ const std::vector<Reader>& readers() {
         {"poses", [](std::string_view bytes) { read_poses_as("a.csv", bytes); }},
         {"poses_json", [](std::string_view bytes) { read_poses_as("a.poses.json", bytes); }},
         {"urdf", read_urdf},
+        {"process", read_process},
+        {"coupon", read_form},
         {"expression", read_expression},
         {"part", read_part},
         {"ccd", read_ccd},

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+/// fettle process FORM --name NAME: a process from what was measured of a coupon (tolerances/process_fit.hpp).
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "fettle/core/base/text.hpp"
+#include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/nearest_word.hpp"
+#include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/cli/session.hpp"
+#include "fettle/design/coupons/coupon_form.hpp"
+#include "fettle/design/reading/process_file.hpp"
+#include "fettle/design/tolerances/known_processes.hpp"
+
+namespace fettle::design::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using core::base::formatted;
+using Json = nlohmann::ordered_json;
+using tolerances::KindFit;
+using tolerances::Process;
+using tolerances::ProcessFit;
+
+struct ProcessArguments {
+    std::string form, name, base = "fdm", folder = ".";
+    bool replace = false;
+};
+
+Json interval_json(const tolerances::Interval& interval) {
+    return {{"value", interval.value}, {"least", interval.least}, {"most", interval.most}};
+}
+
+Json kind_json(const KindFit& kind) {
+    Json outliers = Json::array();
+    for (const auto& outlier : kind.outliers)
+        outliers.push_back({{"feature", outlier.name}, {"residual", outlier.residual}, {"studentised", outlier.studentised}});
+    return {{"kind", to_string(kind.kind)},
+            {"features", kind.features},
+            {"measurements", kind.measurements},
+            {"from", kind.from},
+            {"up_to", kind.up_to},
+            {"mean_size", kind.mean_size},
+            {"bias", interval_json(kind.bias)},
+            {"bias_per_size", kind.has_slope ? interval_json(kind.bias_per_size) : Json()},
+            {"spread", interval_json(kind.spread)},
+            {"spread_without_measuring", kind.process_spread},
+            {"spread_bound", kind.spread_bound},
+            {"degrees_of_freedom", kind.degrees_of_freedom},
+            {"outliers", std::move(outliers)}};
+}
+
+Json fit_json(const ProcessFit& fit, const std::string& file, const std::string& base) {
+    Json kinds = Json::array(), too_few = Json::array();
+    for (const KindFit& kind : fit.kinds) kinds.push_back(kind_json(kind));
+    for (const auto& few : fit.too_few) too_few.push_back({{"kind", to_string(few.kind)}, {"features", few.features}});
+    return {{"status", "ok"},
+            {"file", file},
+            {"based_on", base},
+            {"confidence", 0.95},
+            {"repeatability", fit.repeats > 0 ? Json(fit.repeatability) : Json()},
+            {"repeats", fit.repeats},
+            {"kinds", std::move(kinds)},
+            {"too_few", std::move(too_few)}};
+}
+
+std::string in_mm(double metres) { return formatted("%.3f", metres * 1e3); }
+
+std::string kind_text(const KindFit& kind) {
+    std::string text = formatted("%-7s %2d, %.3g to %.3g mm: ", to_string(kind.kind), kind.features, kind.from * 1e3, kind.up_to * 1e3);
+    text += formatted("bias %+.3f mm (%+.3f to %+.3f)", kind.bias.value * 1e3, kind.bias.least * 1e3, kind.bias.most * 1e3);
+    if (kind.has_slope)
+        text += formatted(" at %.3g mm, %+.2f%% of the size (%+.2f to %+.2f)", kind.mean_size * 1e3, kind.bias_per_size.value * 100,
+                          kind.bias_per_size.least * 100, kind.bias_per_size.most * 100);
+    text += "; spread " + in_mm(kind.spread.value) + " mm (" + in_mm(kind.spread.least) + " to " + in_mm(kind.spread.most) +
+            "), taken as " + in_mm(kind.spread_bound) + "\n";
+    for (const auto& outlier : kind.outliers)
+        text += "        " + outlier.name + " lies " + formatted("%+.3f", outlier.residual * 1e3) + " mm off the others' line (" +
+                formatted("%.1f", std::abs(outlier.studentised)) + " of their spreads): measure it again; it is in the fit as it is\n";
+    return text;
+}
+
+std::string fit_text(const ProcessFit& fit, const Process& base, const std::string& file) {
+    std::string text =
+        file + "\nhow much larger than drawn it comes out, and one standard deviation; in brackets where 95 of 100 such coupons have it:\n";
+    for (const KindFit& kind : fit.kinds) text += kind_text(kind);
+    for (const auto& few : fit.too_few)
+        text += std::string(to_string(few.kind)) + ": " + std::to_string(few.features) + " measured, which takes at least " +
+                std::to_string(tolerances::least_features) + "; as " + base.name + "\n";
+    text += fit.repeats > 0 ? "measuring itself spreads by " + in_mm(fit.repeatability) + " mm, which is in the spreads above\n"
+                            : std::string("no feature was measured twice: how much of the spread is the caliper's is not known\n");
+    return text + "tolerances take the larger spread, which the true one is below with 95% confidence: more features bring it down\n" +
+           "one print does not show how prints differ: that its features share " + formatted("%.0f%%", base.correlation * 100) +
+           " of their variance (`correlation`) is taken from " + base.name + "\n";
+}
+
+Errors name_errors(const ProcessArguments& arguments, const fs::path& file) {
+    if (tolerances::find_known_process(arguments.name) != nullptr)
+        return {{ErrorCode::inconsistent, "--name",
+                 "\"" + arguments.name + "\" is a known process; give yours another name: my_" + arguments.name}};
+    if (arguments.name.empty() || arguments.name.find('/') != std::string::npos || !core::base::name_fault(arguments.name).empty())
+        return {{ErrorCode::out_of_range, "--name", "a process has a name that a file can have, without folders (--in FOLDER)"}};
+    std::error_code code;
+    if (!arguments.replace && fs::exists(file, code))
+        return {{ErrorCode::inconsistent, file.string(), "is there already, and is left as it is; --replace replaces it"}};
+    return {};
+}
+
+int run_process(const ProcessArguments& arguments, Console& console) {
+    const fs::path file = (fs::path(arguments.folder) / (arguments.name + reading::process_ending)).lexically_normal();
+    if (const Errors errors = name_errors(arguments, file); !errors.empty()) return console.input_errors(errors);
+    const auto features = coupons::read_form(arguments.form);
+    if (!features) return console.input_errors(features.errors());
+    const Result<ProcessFit> fit = tolerances::fit_process(*features, arguments.form);
+    if (!fit) return console.input_errors(fit.errors());
+    const Process& base = *tolerances::find_known_process(arguments.base);
+    const Process fitted = fitted_process(*fit, arguments.name, base);
+    if (const Errors errors = core::files::write_file_atomically(file, reading::process_text(*fit, fitted, base.name)); !errors.empty())
+        return console.input_errors(errors);
+    console.result(fit_json(*fit, file.string(), base.name),
+                   fit_text(*fit, base, file.string()) + "next: fettle tolerance DESIGN --process " + arguments.name + "\n");
+    return exit_done;
+}
+
+std::vector<std::string> known_names() {
+    const auto names = tolerances::known_process_names();
+    return {names.begin(), names.end()};
+}
+
+}  // namespace
+
+Command add_process(CommandLine& program) {
+    CommandLine app = program.command("process", "Makes a process of what you measured of a coupon: bias and spread by kind of feature");
+    auto options = std::make_shared<ProcessArguments>();
+    app.option("FORM", options->form, "The coupon's form with what you measured, X.csv").required();
+    app.option("--name", options->name, "What it is called: NAME.process.json is written").required();
+    app.option("--based-on", options->base, "What holds for kinds that are not measured (default fdm)").one_of(known_names());
+    app.option("--in", options->folder, "Folder to write into (default: this one)");
+    app.flag("--replace", options->replace, "Replace a process of this name");
+    app.closing_words(
+        "Example:  fettle process coupon.csv --name mine && fettle tolerance made.design.json --process mine\n"
+        "Fits, for each kind of feature, how much larger than drawn it comes out (by size, from five features of three sizes on) and how\n"
+        "much it spreads, with 95% intervals. Rows that are empty are left out; rows may be added. Tolerances take the upper bound of\n"
+        "the spread, not the estimate, which from few features is often too small.");
+    return {app, [options](Console& console) { return run_process(*options, console); }};
+}
+
+}  // namespace fettle::design::cli

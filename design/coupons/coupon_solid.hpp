@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+/// A coupon (coupon.hpp) as geometry, made by the kernel of parts.
+#pragma once
+
+#include <string>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/geometry/mesh.hpp"
+#include "fettle/core/parts/profile.hpp"
+#include "fettle/design/coupons/coupon.hpp"
+
+namespace fettle::design::coupons {
+
+/// The plate with all that stands on it: one closed surface, without self-intersection, round sides within 2 um. Contract: printed.
+Result<core::geometry::Mesh> coupon_mesh(const Coupon& coupon);
+
+/// Outline, holes and slots of a cut coupon. Contract: cut.
+Result<core::parts::Profile> coupon_outline(const Coupon& coupon);
+
+/// What to cut (black) and what to engrave (blue: the labels, as lines in the middle of their bars), in millimetres. Contract: cut.
+Result<std::string> coupon_svg(const Coupon& coupon);
+
+/// [m^3]
+double volume_of(const core::geometry::Mesh& mesh);
+
+}  // namespace fettle::design::coupons
