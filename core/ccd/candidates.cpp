@@ -9,6 +9,7 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/ccd/leaf_search.hpp"
+#include "fettle/core/ccd/plane_edges.hpp"
 #include "fettle/core/ccd/swept_pair.hpp"
 
 namespace fettle::core::ccd {
@@ -79,6 +80,11 @@ double deviation(const std::array<PathSegment, 2>& from, const PathSegment& a, c
         if (std::isnan(largest)) break;
     }
     return slack * largest;
+}
+
+// How far the surface that is in contact may be from the body's mesh.
+double reach_of(const model::Model& model, const model::Body& body) {
+    return model.round_reach > 0 && body.round ? body.round->largest_height : 0;
 }
 
 // World-axis box of a whole body along its segment.
@@ -156,8 +162,15 @@ struct Search {
     const model::Model& model;
     const std::vector<PathSegment>& segments;
     const std::vector<SweptBody>& swept;
-    double activation, allowance;
-    SweptPair of(const BodyPairCandidates& pair) const { return swept_pair(swept[pair.a], swept[pair.b], activation + allowance); }
+    double allowance;
+    SweptPair of(const BodyPairCandidates& pair) const {
+        const model::Body &a = model.bodies[pair.a], &b = model.bodies[pair.b];
+        SweptPair out =
+            swept_pair(swept[pair.a], swept[pair.b], model.dmin + model.dhat + allowance + reach_of(model, a) + reach_of(model, b));
+        out.plane_a = plane_features_of(model, a);
+        out.plane_b = plane_features_of(model, b);
+        return out;
+    }
 };
 
 // A part of a pair's work: what a thread does in one go.
@@ -170,7 +183,8 @@ struct Task {
 // Large meshes in parts where there are few pairs: enough for two threads or more.
 std::vector<Task> make_tasks(const std::vector<BodyPairCandidates*>& searched, const Search& along) {
     constexpr std::size_t large = 512, most_parts = 16, wanted = 64;  // `large`: nodes of both bodies
-    const std::size_t parts = std::min(most_parts, wanted / std::max<std::size_t>(searched.size(), 1));
+    // What is found is sorted: in how many parts it was changes nothing.
+    const std::size_t parts = base::thread_count() > 1 ? std::min(most_parts, wanted / std::max<std::size_t>(searched.size(), 1)) : 1;
     std::vector<Task> tasks;
     tasks.reserve(searched.size());
     const auto size_of = [&](int body) { return along.swept[body].body->hierarchy->nodes().size(); };
@@ -238,7 +252,7 @@ int Candidates::pairs_at_once() const {
 }
 
 void cover(const model::Model& model, const std::vector<PathSegment>& segments, double allowance, Candidates& candidates) {
-    const double activation = model.dmin + model.dhat + model.round_reach;
+    const double half_margin = 0.5 * (model.dmin + model.dhat + allowance);
     static thread_local std::vector<SweptBody> swept_memory;  // stays from call to call
     static thread_local std::vector<geometry::Box> box_memory;
     std::vector<SweptBody>& swept = swept_memory;
@@ -247,7 +261,7 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
     boxes.resize(segments.size());
     base::parallel_for(count_of(segments), pairs_a_query, [&](int i) {
         swept[i] = swept_body(model.bodies[i], segments[i]);
-        boxes[i] = swept_box(swept[i], 0.5 * (activation + allowance));
+        boxes[i] = swept_box(swept[i], half_margin + reach_of(model, model.bodies[i]));
     });
     take_over(close_bodies(model, boxes, allowance, candidates.near), candidates);
 
@@ -266,7 +280,7 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
         candidates.fresh.push_back(static_cast<int>(k));
         searched.push_back(&candidates.pairs[k]);
     }
-    search({model, segments, swept, activation, allowance}, searched);
+    search({model, segments, swept, allowance}, searched);
 }
 
 void settle(const std::vector<Pose>& poses, Candidates& candidates) {

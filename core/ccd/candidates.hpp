@@ -53,9 +53,10 @@ struct BodyDistance {
 };
 
 /// Makes the candidates complete along the segments: lists every pair of primitives whose distance somewhere on them is at most
-/// dmin + dhat, and what round surfaces reach beyond their meshes (model::Model::round_reach). Pairs of bodies that are covered already are
-/// left alone, the others are searched along the segments. The bodies may then be anywhere on the segments, the same fraction for all; say
-/// with settle() where they went. A body whose segment is not finite is near all others, with all primitives.
+/// dmin + dhat, and what the two bodies' round surfaces reach beyond their meshes (geometry::RoundSurfaces::largest_height), but for pairs
+/// of edges of which one is plane (plane_edges.hpp). Pairs of bodies that are covered already are left alone, the others are searched along
+/// the segments. The bodies may then be anywhere on the segments, the same fraction for all; say with settle() where they went. A body
+/// whose segment is not finite is near all others, with all primitives.
 /// @param allowance  how much more the points of two bodies may approach one another than they do along the segments before the two need
 ///                   another search, [m]. Dear where large: this one must look that much farther.
 void cover(const model::Model& model, const std::vector<kinematics::PathSegment>& segments, double allowance, Candidates& candidates);

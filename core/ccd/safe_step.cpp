@@ -9,6 +9,7 @@
 #include "fettle/core/base/rounding.hpp"
 #include "fettle/core/base/stop.hpp"
 #include "fettle/core/ccd/linear_ccd.hpp"
+#include "fettle/core/ccd/plane_edges.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::ccd {
@@ -77,13 +78,15 @@ public:
 
 private:
     void visit(const BodyPairCandidates& list, SafeStep& shortest) {
-        if (list.empty() || are_surely_free(list)) return;
+        if (list.empty()) return;
+        const double least_kept = model_.dmin + lost_by_plane_edges(model_, model_.bodies[list.a], model_.bodies[list.b]);
+        if (are_surely_free(list, least_kept)) return;
         const double reach = model_.dmin + limits_.kept_most + motion_over(model_, list, segments_, starts_[list.a], starts_[list.b]);
         const model::Body &a = model_.bodies[list.a], &b = model_.bodies[list.b];
         const auto& va = a.mesh.vertices;
         const auto& vb = b.mesh.vertices;
         const auto check = [&](geometry::PairType type, int first, int second, const geometry::PairVertices& X) {
-            const double fraction = free_fraction(type, first, second, X);
+            const double fraction = free_fraction(type, first, second, X, least_kept);
             if (fraction < shortest.fraction) shortest = {fraction, first, second};
         };
         for (const auto& [v, t, distance] : list.vertex_triangle) {
@@ -111,7 +114,7 @@ private:
     // Told from the bodies' least distance at the start, where it is known: primitives that are farther apart keep no more beside it. Off
     // by the rounding of distances (64 u of their vertices' distances, geometry/distance.hpp) and of places, here and there, and by what
     // flat edges are nearer.
-    bool are_surely_free(const BodyPairCandidates& list) const {
+    bool are_surely_free(const BodyPairCandidates& list, double least_kept) const {
         if (start_ == nullptr) return false;
         const auto before = [](const BodyDistance& x, const std::pair<int, int>& key) { return std::pair(x.a, x.b) < key; };
         const std::pair key(list.a, list.b);
@@ -124,7 +127,7 @@ private:
         const double lost = heights + 256 * unit_roundoff * (size + known->distance) + 4 * usual_rounding * place +
                             start_roundings_[list.a].of(a.radius) + start_roundings_[list.b].of(b.radius);
         const double distance = std::min(known->distance, model_.dmin + model_.dhat) - lost;
-        return distance > kept_of(distance) + travel_of(sa, sb, a.radius, b.radius);
+        return kept_of(distance) >= least_kept && distance > kept_of(distance) + travel_of(sa, sb, a.radius, b.radius);
     }
 
     // Bound of how far points of two bodies, so far from their reference points, move relative to one another.
@@ -133,8 +136,9 @@ private:
                               b.rotation_vector_step.norm() * radius_b);
     }
 
-    // The pair's fraction, or some larger one than the least of all.
-    double free_fraction(geometry::PairType type, int first, int second, const geometry::PairVertices& X) {
+    // The pair's fraction, or some larger one than the least of all. @param least_kept  what speaks for the plane edges too
+    // (plane_edges.hpp)
+    double free_fraction(geometry::PairType type, int first, int second, const geometry::PairVertices& X, double least_kept) {
         const PathSegment &sa = segments_[first], &sb = segments_[second];
         geometry::PairVertices x;
         double radius_a = 0, radius_b = 0;
@@ -151,6 +155,10 @@ private:
         const double needed = 8 * unit_roundoff * seen + start_roundings_[first].of(radius_a) + start_roundings_[second].of(radius_b);
         const double distance = seen - std::max(usual_rounding * (x[0].norm() + x[3].norm()), needed);
         const double kept = kept_of(distance), travel = travel_of(sa, sb, radius_a, radius_b);
+        if (!(kept >= least_kept)) {
+            least_ = 0;
+            return 0;
+        }
         if (distance > kept + travel) return 1;
         const double surely_free = distance > kept ? (1 - 1e-12) * (distance - kept) / travel : 0;
         if (surely_free > least_) return 1;

@@ -31,18 +31,20 @@ struct SweptBody {
 
 SweptBody swept_body(const model::Body& body, const kinematics::PathSegment& segment);
 
-/// One separating direction, in the frames of both bodies at both ends.
-struct SweptAxis {
-    std::array<Vector3, 2> a, b;          ///< the direction in the body's frame at the start and at the end
-    std::array<Vector3, 2> abs_a, abs_b;  ///< magnitudes of its components
-    std::array<double, 2> offset;         ///< n . (q_b - q_a)
+/// Separating directions n at one end of the segments: those of both bodies' boxes at the start, the last two twice.
+struct SweptAxes {
+    using Numbers = std::array<double, 8>;  // of each direction
+    std::array<Numbers, 3> a, b;            ///< components of n in the body's frame there
+    std::array<Numbers, 3> abs_a, abs_b;    ///< their magnitudes
+    Numbers offset;                         ///< n . (q_b - q_a)
 };
 
 struct SweptPair {
     const SweptBody *a = nullptr, *b = nullptr;
     double margin = 0;                 ///< nodes and primitives farther apart than this, besides deviations, do not matter [m]
-    std::array<SweptAxis, 6> axes;     ///< of both bodies' boxes at the start
+    std::array<SweptAxes, 2> axes;     ///< at both ends
     double reach = 0, world_size = 0;  ///< of positions [m], for rounding: relative to one another, with radii; in the world
+    const geometry::FlatFeatures *plane_a = nullptr, *plane_b = nullptr;  ///< whose plane edges are left out (plane_edges.hpp)
     double deviation(double radius_a, double radius_b) const { return a->deviation(radius_a) + b->deviation(radius_b); }
 };
 

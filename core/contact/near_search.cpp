@@ -6,18 +6,14 @@
 #include <new>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/ccd/plane_edges.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::contact {
 namespace {
 
+using ccd::flat_features_of;
 using kinematics::Pose;
-
-// Null where nothing of the body is flat enough to be left out beside the activation distance.
-const geometry::FlatFeatures* flat_features_of(const model::Model& model, const model::Body& body) {
-    constexpr double negligible = 1e-2;  // of dhat: what is left out is nearer than what stays by no more
-    return body.flat && body.flat->any() && body.flat->height <= negligible * model.dhat ? body.flat.get() : nullptr;
-}
 
 // Surely at least so far apart. Not so what is not finite: that stays a contact, of infinite potential.
 bool is_beyond(double distance_squared, double limit_squared) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "fettle/core/base/rounding.hpp"
 #include "fettle/core/geometry/half_edges.hpp"
 
 namespace fettle::core::geometry {
@@ -39,17 +40,21 @@ public:
         hinges_.reserve(halves.size() / 2);
         visit_edges(halves, [&](std::size_t first, std::size_t last) { add_hinge(halves, first, last); });
         facet_.assign(mesh.triangles.size(), -1);
+        on_plane_.assign(mesh.triangles.size(), 0);
+        size_ = mesh.vertices.size() > 0 ? mesh.vertices.colwise().norm().maxCoeff() : 0;
         for (const int seed : by_area()) grow(seed);
     }
 
-    // Calls visit(first half edge) for each edge within a facet, in their order.
+    // Calls visit(first half edge, is plane) for each edge within a facet, in their order.
     template <class Visit>
     void visit_flat_edges(const Visit& visit) const {
         for (const Hinge& hinge : hinges_)
-            if (facet_[at(hinge.triangle[0])] == facet_[at(hinge.triangle[1])]) visit(hinge.edge);
+            if (facet_[at(hinge.triangle[0])] == facet_[at(hinge.triangle[1])])
+                visit(hinge.edge, on_plane_[at(hinge.triangle[0])] != 0 && on_plane_[at(hinge.triangle[1])] != 0);
     }
 
     double height() const { return height_; }
+    double plane_height() const { return plane_height_ + rounding(); }
 
 private:
     static std::size_t at(int k) { return static_cast<std::size_t>(k); }
@@ -80,11 +85,31 @@ private:
         return triangles;
     }
 
+    // Of distances from planes.
+    double rounding() const { return 16 * base::unit_roundoff * size_; }
+
+    // Is the triangle on the plane, and wide enough to lie along it, not across?
+    void mark_on_plane(int t, const Vector3& normal, const Vector3& origin) {
+        constexpr double wide = 100;  // a triangle on the plane is tilted by no more than a fiftieth
+        double height = 0, longest = 0;
+        for (int k = 0; k < 3; ++k) {
+            const auto x = mesh_.vertices.col(mesh_.triangles[at(t)][at(k)]),
+                       y = mesh_.vertices.col(mesh_.triangles[at(t)][at((k + 1) % 3)]);
+            height = std::max(height, std::abs(normal.dot(x - origin)));
+            longest = std::max(longest, (y - x).norm());
+        }
+        const double limit = plane * flatness_ + rounding();
+        if (!(height <= limit) || !(area_vector(mesh_, at(t)).norm() >= wide * limit * longest)) return;
+        on_plane_[at(t)] = 1;
+        plane_height_ = std::max(plane_height_, height);
+    }
+
     void grow(int seed) {
         if (facet_[at(seed)] >= 0) return;
         facet_[at(seed)] = seed;
         const Vector3 normal = area_vector(mesh_, at(seed)).normalized();
         const Vector3 origin = mesh_.vertices.col(mesh_.triangles[at(seed)][0]);
+        mark_on_plane(seed, normal, origin);
         open_.assign(1, seed);
         while (!open_.empty()) {
             const int t = open_.back();
@@ -97,16 +122,18 @@ private:
                 if (facet_[at(hinge.triangle[at(side)])] >= 0 || !(height <= flatness_)) continue;
                 facet_[at(hinge.triangle[at(side)])] = seed;
                 height_ = std::max(height_, height);
+                mark_on_plane(hinge.triangle[at(side)], normal, origin);
                 open_.push_back(hinge.triangle[at(side)]);
             }
         }
     }
 
     const Mesh& mesh_;
-    double flatness_, height_ = 0;
+    double flatness_, height_ = 0, plane_height_ = 0, size_ = 0;
     std::vector<Hinge> hinges_;
     std::vector<std::array<int, 3>> hinges_of_;  // [triangle]; -1: no more
     std::vector<int> facet_;                     // [triangle] the one it has grown from; -1: none yet
+    std::vector<std::uint8_t> on_plane_;         // [triangle] 1: it lies on the plane of its facet
     std::vector<int> open_;                      // triangles of the facet that grows, whose hinges are still to be crossed
 };
 
@@ -114,20 +141,27 @@ private:
 
 FlatFeatures flat_features(const Mesh& mesh, double flatness) {
     FlatFeatures out;
-    std::vector<std::pair<int, int>> flat;  // edges, sorted as the half edges are
+    std::vector<std::pair<int, int>> flat, plane_edges;  // sorted as the half edges are
     const std::vector<HalfEdge> halves = sorted_half_edges(mesh);
     const Facets facets(mesh, halves, flatness);
-    facets.visit_flat_edges([&](std::size_t first) { flat.emplace_back(halves[first].low, halves[first].high); });
+    facets.visit_flat_edges([&](std::size_t first, bool is_plane) {
+        flat.emplace_back(halves[first].low, halves[first].high);
+        if (is_plane) plane_edges.push_back(flat.back());
+    });
     if (flat.empty()) return out;
     out.height = facets.height();
-    const auto is_flat = [&flat](int a, int b) {
-        return std::binary_search(flat.begin(), flat.end(), std::pair(std::min(a, b), std::max(a, b)));
+    out.plane_height = facets.plane_height();
+    const auto is_in = [](const std::vector<std::pair<int, int>>& edges, int a, int b) {
+        return std::binary_search(edges.begin(), edges.end(), std::pair(std::min(a, b), std::max(a, b)));
     };
+    const auto is_flat = [&](int a, int b) { return is_in(flat, a, b); };
     std::vector<std::uint8_t> flat_vertex(mesh.vertices.cols(), 1);
     out.edge.resize(mesh.edges.size());
+    out.plane_edge.resize(mesh.edges.size());
     for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
         const auto [a, b] = mesh.edges[e];
         out.edge[e] = is_flat(a, b) ? 1 : 0;
+        out.plane_edge[e] = is_in(plane_edges, a, b) ? 1 : 0;
         if (out.edge[e] == 0) flat_vertex[a] = flat_vertex[b] = 0;
     }
     out.face.resize(mesh.triangles.size());

@@ -62,8 +62,8 @@ double& entry(PathSegment& s, int k) {
 constexpr int entries = 21;
 
 // Vertices against triangles either way, and edges: of two boxes.
-constexpr int vertex_triangle_pairs = 8 * 12, edge_pairs = 18 * 18;
-constexpr int border_pairs = 12 * 12;  // edges that are no diagonals of faces
+constexpr int vertex_triangle_pairs = 8 * 12, edge_pairs = 12 * 12;  // without the diagonals of the faces (plane_edges.hpp)
+constexpr int border_pairs = 12 * 12;                                // edges that are no diagonals of faces
 
 }  // namespace
 

@@ -89,4 +89,32 @@ TEST_CASE("a fold is not flat, nor an edge of three triangles", "[flat_features]
     CHECK_FALSE(flat_features(make_mesh("three", x, {{0, 1, 2}, {1, 0, 4}, {0, 1, 3}}), 1e-9).any());
 }
 
+TEST_CASE("edges are plane where all lies on the plane but for the last digits, and nothing is a sliver", "[flat_features]") {
+    const auto plane_edges = [](const FlatFeatures& flat) { return std::count(flat.plane_edge.begin(), flat.plane_edge.end(), 1); };
+    Mesh box = tests::support::box_mesh(Vector3(0, 0, 0), Vector3(3, 1, 2));
+    CHECK(plane_edges(flat_features(box, 1e-5)) == 6);
+    box.vertices = tests::support::make_pose(Vector3(0.3, -1.1, 0.7), Vector3::Zero()).rotation * box.vertices;
+    const FlatFeatures turned = flat_features(box, 1e-5);
+    CHECK(plane_edges(turned) == 6);
+    CHECK(turned.plane_height > 0);
+    CHECK(turned.plane_height < 2e-14);
+    box.vertices = box.vertices.cast<float>().cast<double>();
+    const FlatFeatures rounded = flat_features(box, 1e-5);
+    CHECK(flat_edges(rounded) == 6);
+    CHECK(plane_edges(rounded) == 0);
+    CHECK(rounded.height > 1e-9);
+    // A corner of the square a little off it, and smaller triangles there: their three edges inside are flat, but not plane.
+    Mesh bent = sheet(2);
+    bent.vertices.col(8) = Vector3(0.9, 0.9, 1e-8);
+    const FlatFeatures flat = flat_features(bent, 1e-5);
+    CHECK(flat_edges(flat) == 8);
+    CHECK(plane_edges(flat) == 5);
+    CHECK(flat.plane_height < 1e-14);
+    CHECK(flat.height > 0.99e-8);
+    // The middle vertex 1e-12 from another: so wide are the triangles at both.
+    Mesh sliver = sheet(2);
+    sliver.vertices.col(4) = sliver.vertices.col(3) + Vector3(0, 1e-12, 0);
+    CHECK(plane_edges(flat_features(sliver, 1e-5)) < flat_edges(flat_features(sliver, 1e-5)));
+}
+
 }  // namespace fettle::core::geometry::flat_features_test
