@@ -148,7 +148,7 @@ KindFit fit_kind(FeatureKind kind, const std::vector<const MeasuredFeature*>& fe
     fit.spread_bound = s * std::sqrt(f / chi_square_quantile(f, 1 - confidence));
     const double measuring = repeatability * repeatability * data.measurements.cwiseInverse().mean();
     fit.process_spread = std::sqrt(std::max(0.0, s * s - measuring));
-    fit.outliers = outliers_of(features, data, line, f);
+    if (has_spread(fit)) fit.outliers = outliers_of(features, data, line, f);
     return fit;
 }
 
