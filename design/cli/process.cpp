@@ -68,14 +68,17 @@ Json fit_json(const ProcessFit& fit, const std::string& file, const std::string&
 
 std::string in_mm(double metres) { return formatted("%.3f", metres * 1e3); }
 
-std::string kind_text(const KindFit& kind) {
+std::string kind_text(const KindFit& kind, const std::string& base) {
     std::string text = formatted("%-7s %2d, %.3g to %.3g mm: ", to_string(kind.kind), kind.features, kind.from * 1e3, kind.up_to * 1e3);
     text += formatted("bias %+.3f mm (%+.3f to %+.3f)", kind.bias.value * 1e3, kind.bias.least * 1e3, kind.bias.most * 1e3);
     if (kind.has_slope)
         text += formatted(" at %.3g mm, %+.2f%% of the size (%+.2f to %+.2f)", kind.mean_size * 1e3, kind.bias_per_size.value * 100,
                           kind.bias_per_size.least * 100, kind.bias_per_size.most * 100);
-    text += "; spread " + in_mm(kind.spread.value) + " mm (" + in_mm(kind.spread.least) + " to " + in_mm(kind.spread.most) +
-            "), taken as " + in_mm(kind.spread_bound) + "\n";
+    if (has_spread(kind))
+        text += "; spread " + in_mm(kind.spread.value) + " mm (" + in_mm(kind.spread.least) + " to " + in_mm(kind.spread.most) +
+                "), taken as " + in_mm(kind.spread_bound) + "\n";
+    else
+        text += "; no spread is seen, since all are off by the same: limits about the bias as " + base + "; measure in finer steps\n";
     for (const auto& outlier : kind.outliers)
         text += "        " + outlier.name + " lies " + formatted("%+.3f", outlier.residual * 1e3) + " mm off the others' line (" +
                 formatted("%.1f", std::abs(outlier.studentised)) + " of their spreads): measure it again; it is in the fit as it is\n";
@@ -85,7 +88,7 @@ std::string kind_text(const KindFit& kind) {
 std::string fit_text(const ProcessFit& fit, const Process& base, const std::string& file) {
     std::string text =
         file + "\nhow much larger than drawn it comes out, and one standard deviation; in brackets where 95 of 100 such coupons have it:\n";
-    for (const KindFit& kind : fit.kinds) text += kind_text(kind);
+    for (const KindFit& kind : fit.kinds) text += kind_text(kind, base.name);
     for (const auto& few : fit.too_few)
         text += std::string(to_string(few.kind)) + ": " + std::to_string(few.features) + " measured, which takes at least " +
                 std::to_string(tolerances::least_features) + "; as " + base.name + "\n";

@@ -290,7 +290,8 @@ void bind_question(py::module_& module) {
         py::arg("progress") = py::none(),
         "What `fettle clearance` asks and answers, a ClearanceReport: as assembled, over the trajectory, or, with ranges (True, or "
         "JointRanges), over all positions of the joints. minimum: None reports distances and clashes. process: \"fdm\", \"sla\", \"sls\", "
-        "\"mjf\". pairs, ignore: \"A:B\", \"pin*:plate=0.4mm\" or a list of such; by default every pair as assembled, else those that may "
+        "\"mjf\", or your own: NAME or a file of NAME.process.json. pairs, ignore: \"A:B\", \"pin*:plate=0.4mm\" or a list of such; by "
+        "default every pair as assembled, else those that may "
         "collide. allow_touch: \"lid:base\". groups: {\"frame\": [\"a\", \"b\"]}, bodies that are one rigid set. tolerance: None is 1 um "
         "or "
         "0.1% of the least minimum. witnesses: all that come as close. baseline: an earlier report's file. proof: with its certificate.");

@@ -147,7 +147,15 @@ double rounded(double ratio) { return std::round(ratio * 1e9) / 1e9; }
 Json feature_json(const FeatureSpread& feature, const tolerances::KindFit& fit) {
     Json json = {{"bias", in_mm(feature.bias)}};
     if (fit.has_slope) json["bias_per_size"] = rounded(feature.bias_per_size);
-    json["spread"] = in_mm(fit.spread_bound);
+    if (has_spread(fit)) {
+        json["spread"] = in_mm(feature.tolerance / 3);
+    } else if (!feature.general_class.empty()) {
+        json["general"] = feature.general_class;
+    } else {
+        json["tolerance"] = in_mm(feature.tolerance);
+        json["tolerance_per_size"] = feature.tolerance_per_size;
+        json["per_size_over"] = in_mm(feature.per_size_over);
+    }
     json["from"] = in_mm(feature.from);
     json["up_to"] = in_mm(feature.up_to);
     json["source"] = feature.source;

@@ -148,11 +148,13 @@ KindFit fit_kind(FeatureKind kind, const std::vector<const MeasuredFeature*>& fe
     fit.spread_bound = s * std::sqrt(f / chi_square_quantile(f, 1 - confidence));
     const double measuring = repeatability * repeatability * data.measurements.cwiseInverse().mean();
     fit.process_spread = std::sqrt(std::max(0.0, s * s - measuring));
-    fit.outliers = outliers_of(features, data, line, f);
+    if (has_spread(fit)) fit.outliers = outliers_of(features, data, line, f);
     return fit;
 }
 
 }  // namespace
+
+bool has_spread(const KindFit& fit) { return fit.spread.value > 1e-9; }
 
 double bias_at_no_size(const KindFit& fit) { return fit.bias.value - fit.bias_per_size.value * fit.mean_size; }
 
@@ -187,6 +189,12 @@ Process fitted_process(const ProcessFit& fit, const std::string& name, const Pro
         feature.up_to = kind.up_to;
         feature.source = core::base::counted(static_cast<std::size_t>(kind.features), "feature") + ", " +
                          core::base::counted(static_cast<std::size_t>(kind.measurements), "measurement");
+        if (const FeatureSpread* usual = find_feature(base, kind.kind); usual != nullptr && !has_spread(kind)) {
+            feature.tolerance = usual->tolerance;
+            feature.tolerance_per_size = usual->tolerance_per_size;
+            feature.per_size_over = usual->per_size_over;
+            feature.general_class = usual->general_class;
+        }
         std::erase_if(process.features, [&](const FeatureSpread& each) { return each.kind == kind.kind; });
         process.features.push_back(std::move(feature));
         if (kind.kind == FeatureKind::length && process.clearance) process.clearance->bands.clear();

@@ -56,6 +56,9 @@ struct KindFit {
     std::vector<OutlyingFeature> outliers;  ///< they stay in the fit
 };
 
+/// Is there more than rounding? Where all features are off by the same, the measuring tool's steps hide what they spread.
+bool has_spread(const KindFit& fit);
+
 /// b0 [m].
 double bias_at_no_size(const KindFit& fit);
 
@@ -77,8 +80,8 @@ inline constexpr int least_features = 3;
 Result<ProcessFit> fit_process(const std::vector<MeasuredFeature>& features, const std::string& where);
 
 /// The fit as a process: what it does not have, of `base`. Its tolerance is three times `spread_bound`, not three times s: of few features
-/// s is too small in half of the prints, by a third in one of ten of six features, and a yield that rests on it promises too much. Where s
-/// is 0 (a step of the measuring tool that hides it), so is the tolerance.
+/// s is too small in more than half of the prints, of six features by half in one of ten, and a yield that rests on it promises too much.
+/// Where no spread is seen (has_spread), the limits about the bias are those of `base`.
 Process fitted_process(const ProcessFit& fit, const std::string& name, const Process& base);
 
 }  // namespace fettle::design::tolerances

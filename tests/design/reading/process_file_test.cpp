@@ -98,6 +98,7 @@ TEST_CASE("process files: a fit is written, and read back as the process that it
     std::vector<tolerances::MeasuredFeature> features;
     const double off[] = {-0.21, -0.18, -0.19, -0.15, -0.16, -0.12};
     for (int i = 0; i < 6; ++i) features.push_back({"h", FeatureKind::hole, (3 + i) * mm, {(3 + i + off[i]) * mm}});
+    for (int i = 0; i < 4; ++i) features.push_back({"w", FeatureKind::wall, (1 + i) * mm, {(1.1 + i) * mm}});  // no spread is seen
     for (int i = 0; i < 3; ++i) features.push_back({"p", FeatureKind::pin, (3 + i) * mm, {(3.05 + i + 0.01 * (i % 2)) * mm}});
     const auto fit = fit_process(features, "");
     REQUIRE(fit);
@@ -109,7 +110,7 @@ TEST_CASE("process files: a fit is written, and read back as the process that it
     CHECK(read->correlation == fitted.correlation);
     REQUIRE(read->features.size() == fitted.features.size());
     for (const FeatureKind kind : {FeatureKind::hole, FeatureKind::pin, FeatureKind::wall}) {
-        for (const double size : {2.0, 4.0, 7.5, 20.0}) {
+        for (const double size : {2.0, 4.0, 7.5, 20.0, 150.0}) {
             const auto a = process_deviation(fitted, kind, size * mm, ""), b = process_deviation(*read, kind, size * mm, "");
             CHECK(a->limits.lower == Approx(b->limits.lower).margin(5e-9));  // rounded to the nanometre
             CHECK(a->limits.upper == Approx(b->limits.upper).margin(5e-9));

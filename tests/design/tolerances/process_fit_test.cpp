@@ -206,4 +206,25 @@ TEST_CASE("a process' fit: too few features are told, and nothing is made of the
     CHECK(process.clearance->bands.size() == 3);
 }
 
+TEST_CASE("a process' fit: features that are all off by the same show no spread, and none is promised") {
+    std::vector<MeasuredFeature> features;
+    for (const double size : six) features.push_back({"h", FeatureKind::hole, size * mm, {(size - 0.1) * mm}});
+    const Result<ProcessFit> fit = fit_process(features, "");
+    REQUIRE(fit);
+    CHECK(!has_spread(fit->kinds[0]));
+    CHECK(fit->kinds[0].outliers.empty());
+    for (const double size : {1.0, 2.0, 3.0}) {
+        const auto wall = fit_process({{"a", FeatureKind::wall, size * mm, {(size + 0.1) * mm}},
+                                       {"b", FeatureKind::wall, 2 * size * mm, {(2 * size + 0.1) * mm}},
+                                       {"c", FeatureKind::wall, 3 * size * mm, {(3 * size + 0.1) * mm}}},
+                                      "");
+        CHECK(wall->kinds[0].outliers.empty());
+    }
+    const Process fdm = fitted_process(*fit, "mine", *find_known_process("fdm")),
+                  cnc = fitted_process(*fit, "mine", *find_known_process("cnc"));
+    CHECK(find_feature(fdm, FeatureKind::hole)->tolerance == 0.3 * mm);
+    CHECK(find_feature(fdm, FeatureKind::hole)->bias == Approx(-0.1 * mm));
+    CHECK(find_feature(cnc, FeatureKind::hole)->general_class == "m");
+}
+
 }  // namespace fettle::design::tolerances::process_fit_test
