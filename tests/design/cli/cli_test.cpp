@@ -123,12 +123,21 @@ TEST_CASE("tolerance: spreads, contributors and samples, as text and as JSON") {
     const Json& weight = json.at("responses").at(1);
     CHECK(weight.at("name") == "weight");
     CHECK(weight.at("linear").at("standard_deviation").get<double>() == Approx(1e-5));
-    CHECK(weight.at("worst_found").at("most").get<double>() == Approx(1.03e-3));
+    CHECK(weight.at("most_found").at("value").get<double>() == Approx(1.03e-3));
+    CHECK(weight.at("most_found").at("deviations").at("size").get<double>() == Approx(0.3));
+    CHECK(weight.at("most_found").at("settled") == true);
     CHECK(weight.at("contributions").at(0).at("of") == "size");
     CHECK(weight.at("sampled").at("met").get<int>() == json.at("samples").at("met").get<int>());
     CHECK(json.at("samples").at("count") == 16);
     CHECK(json.at("tighten").at(0).at("of") == "size");
     CHECK(run("tolerance " + folder.design() + " --samples 16 --worst-case --json --threads 1").out == told.out);
+    const std::string kept = " --samples-file " + folder.file("made.jsonl");
+    CHECK(run("tolerance " + folder.design() + " --samples 5 --first-order" + kept).code == 0);
+    CHECK(run("tolerance " + folder.design() + " --samples 16 --worst-case --json" + kept).out == told.out);  // five of them from there
+    const Answer others = run("tolerance " + folder.design() + " --samples 5 --seed 2" + kept, true);
+    CHECK(others.code == 3);
+    CHECK(others.says("these are samples of another design, version, seed or list of tolerances"));
+    CHECK(run("tolerance " + folder.design() + " --samples 5 --samples-file " + folder.design(), true).code == 3);
     const Answer text = run("tolerance " + folder.design());
     CHECK(text.says("weight: 1 g as drawn, required at most 1.02 g"));
     CHECK(text.says("by size 100% (+-0.03 g)"));
