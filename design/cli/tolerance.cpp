@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "fettle/design/answers/allocation_json.hpp"
 #include "fettle/design/answers/tolerance_json.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/studies/tolerance_study.hpp"
@@ -16,13 +17,29 @@ struct Options {
     std::string path;
     int samples = 0;
     int seed = 1;
-    bool first_order = false, worst_case = false;
+    bool first_order = false, worst_case = false, allocate = false;
+    double yield = 0.9973;
 };
 
 Error no_tolerances(const std::string& path) {
     return {ErrorCode::missing_key, path,
             "it has no `tolerances`: say, for instance, \"tolerances\": {\"pin_radius\": \"+-0.05 mm\"}, by names of parameters or of the "
             "scene's variables, or by places (\"/bodies/pin/shape/dimensions/radius\")"};
+}
+
+int run_allocation(const Options& options, const problem::DesignProblem& problem, const std::vector<description::Tolerance>& tolerances,
+                   const studies::ToleranceOptions& study, Console& console) {
+    studies::AllocationOptions allocation;
+    allocation.yield = options.yield;
+    allocation.worst_case = options.worst_case;
+    allocation.study = study;
+    const studies::AllocationReport report = studies::allocate(problem, tolerances, allocation);
+    console.end_progress();
+    console.result(answers::allocation_json(problem.design(), tolerances, allocation, report),
+                   answers::allocation_text(problem.design(), tolerances, allocation, report));
+    return report.status == studies::AllocationStatus::held       ? exit_done
+           : report.status == studies::AllocationStatus::not_held ? exit_violated
+                                                                  : exit_undecided;
 }
 
 int run_tolerance(const Options& options, const CommonOptions& common, Console& console) {
@@ -42,6 +59,7 @@ int run_tolerance(const Options& options, const CommonOptions& common, Console& 
     study.worst_case = options.worst_case;
     study.should_stop = interrupted;
     study.on_simulation = [&](int done, int of) { console.progress("simulating", done, of); };
+    if (options.allocate) return run_allocation(options, *problem, file->tolerances, study, console);
     const studies::ToleranceReport report = studies::study_tolerances(*problem, file->tolerances, study);
     console.end_progress();
     console.result(answers::tolerance_json(problem->design(), file->tolerances, report),
@@ -59,11 +77,19 @@ Command add_tolerance(CommandLine& program, const CommonOptions& common) {
     app.option("--seed", options->seed, "Of the samples (default 1)").at_least(0);
     app.flag("--first-order", options->first_order, "Predict from one simulation, without the 2 per tolerance that the second order takes");
     app.flag("--worst-case", options->worst_case, "Simulate the worst cases that the derivatives name too: two for each requirement");
+    const Option allocate = app.flag("--allocate", options->allocate,
+                                     "Find the loosest tolerances with which every requirement has its yield (--worst-case: holds then)");
+    app.option("--yield", options->yield, "With --allocate: of each requirement (default 0.9973)")
+        .between(0.5001, 0.9999999)
+        .needs(allocate);
     app.closing_words(
         "Example:  fettle tolerance examples/slider_crank/slider_crank.design.json --samples 256\n"
         "Predicts, from the derivatives, how far each number that the design asks for spreads over the tolerances, and which of them make\n"
         "it so; samples are simulations of their own, at points that are the same for any number of threads. All of it is computed, none\n"
-        "of it proven. Exit code 2: the design as drawn, or one a standard deviation beside it, cannot be simulated.");
+        "of it proven. Exit code 2: the design as drawn, or one a standard deviation beside it, cannot be simulated.\n"
+        "With --allocate: the limits that cost least (`cost` and `fixed` of a tolerance), studied and corrected until they hold; exit code "
+        "1:\n"
+        "there are none; 2: model and simulations do not settle.");
     return {app, [options, &common](Console& console) { return run_tolerance(*options, common, console); }};
 }
 

@@ -10,6 +10,7 @@
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/scene/place.hpp"
 #include "fettle/design/reading/parameter_reader.hpp"
+#include "fettle/design/reading/tolerance_cost_reader.hpp"
 #include "fettle/design/tolerances/iso2768.hpp"
 #include "fettle/design/tolerances/iso286.hpp"
 
@@ -37,7 +38,8 @@ public:
             read_text(*node_.string(), tolerance);
             return;
         }
-        node_.allow_keys({"lower", "upper", "class", "of", "general", "distribution", "sigma_level", "shift", "group", "correlation"});
+        node_.allow_keys(
+            {"lower", "upper", "class", "of", "general", "distribution", "sigma_level", "shift", "group", "correlation", "cost", "fixed"});
         if (!node_.is_object()) return;
         const int ways = (node_["lower"].exists() || node_["upper"].exists()) + node_["class"].exists() + node_["general"].exists();
         if (ways != 1)
@@ -49,6 +51,7 @@ public:
         if (node_["lower"].exists() || node_["upper"].exists()) read_limits(tolerance);
         read_distribution(tolerance.deviation);
         read_group(tolerance);
+        read_cost(node_, nominal_.value, nominal_.unit, tolerance);
     }
 
 private:

@@ -301,7 +301,7 @@ private:
     const std::vector<Tolerance>& tolerances_;
     const ToleranceOptions& options_;
     const int n_;
-    const IndependentInputs inputs_ = independent_inputs(tolerances_);
+    const description::IndependentInputs inputs_ = independent_inputs(tolerances_);
     std::vector<Moments> deviations_;  // of each tolerance as a whole
     std::mutex mutex_;
     int done_ = 0, to_do_ = 0;

@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
+#include "fettle/design/description/independent_inputs.hpp"
 #include "fettle/design/description/tolerance.hpp"
 #include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/studies/independent_inputs.hpp"
 #include "fettle/design/tolerances/capability.hpp"
 #include "fettle/design/tolerances/propagation.hpp"
 #include "fettle/design/tolerances/yield.hpp"

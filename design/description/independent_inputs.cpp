@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/independent_inputs.hpp"
+#include "fettle/design/description/independent_inputs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,8 @@
 #include "fettle/design/tolerances/normal_distribution.hpp"
 #include "fettle/design/tolerances/sobol.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::description {
 
-using description::Tolerance;
 using tolerances::Moments;
 
 namespace {
@@ -58,4 +57,4 @@ VectorX deviations_of_sample(const std::vector<Tolerance>& tolerances, std::uint
     return inputs.map * x;
 }
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::description

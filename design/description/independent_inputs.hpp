@@ -13,7 +13,7 @@
 #include "fettle/design/description/tolerance.hpp"
 #include "fettle/design/tolerances/moments.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::description {
 
 struct IndependentInputs {
     std::vector<tolerances::Moments> moments;  ///< as many as tolerances, of what is theirs alone, then one per group
@@ -24,9 +24,9 @@ struct IndependentInputs {
 };
 
 /// Contract: what is in a group is normal.
-IndependentInputs independent_inputs(const std::vector<description::Tolerance>& tolerances);
+IndependentInputs independent_inputs(const std::vector<Tolerance>& tolerances);
 
 /// The deviations of a sample, one per tolerance: at a point of a scrambled Sobol sequence (tolerances/sobol.hpp).
-VectorX deviations_of_sample(const std::vector<description::Tolerance>& tolerances, std::uint64_t seed, int sample);
+VectorX deviations_of_sample(const std::vector<Tolerance>& tolerances, std::uint64_t seed, int sample);
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::description
