@@ -9,6 +9,7 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/model/model.hpp"
+#include "fettle/design/description/made_design.hpp"
 
 namespace fettle::design::answers {
 
@@ -100,6 +101,26 @@ Json continued_json(const problem::DesignEvaluation& evaluation, std::size_t con
     for (const problem::ContinuedRow& row : evaluation.continued)
         if (row.constraint == static_cast<int>(constraint)) return {{"value", row.value}, {"reason", row.reason}};
     return {};
+}
+
+nlohmann::ordered_json over_tolerances_json(const description::Design& design, const problem::DesignEvaluation& evaluation,
+                                            bool of_objective, std::size_t index) {
+    const problem::RobustRow* row = problem::robust_row(evaluation, of_objective, index);
+    if (row == nullptr) return {};
+    const description::OverTolerances over =
+        of_objective ? *design.objective[index].over_tolerances : *design.constraints[index].bounds.over_tolerances;
+    const bool is_sigma = over.kind == description::OverTolerances::Kind::sigma;
+    nlohmann::ordered_json json{{"kind", is_sigma ? "sigma" : "worst_case"}};
+    if (is_sigma) json["sigma"] = over.sigmas;
+    json["tolerances"] = design.as_made->tolerances.size();
+    json["drawn"] = row->drawn.value;
+    if (is_sigma) {
+        json["mean"] = row->drawn.value + row->mean;
+        json["standard_deviation"] = row->standard_deviation;
+    }
+    json["reserve"] = row->reserve;
+    json["at_kink"] = row->is_at_kink;
+    return json;
 }
 
 std::vector<std::string> body_names(const core::model::Model& model) {

@@ -41,6 +41,10 @@ nlohmann::ordered_json relations_json(const description::Design& design, const o
 /// {value, reason} of a constraint that is continued, SI; null: it is not.
 nlohmann::ordered_json continued_json(const problem::DesignEvaluation& evaluation, std::size_t constraint);
 
+/// {kind, sigma, drawn, mean, standard_deviation, reserve, at_kink} of a constraint or term over the tolerances, SI; null: as drawn.
+nlohmann::ordered_json over_tolerances_json(const description::Design& design, const problem::DesignEvaluation& evaluation,
+                                            bool of_objective, std::size_t index);
+
 std::vector<std::string> body_names(const core::model::Model& model);
 
 /// The unit that `length_unit` [m] is: "mm"; "m" if it is none that we know.

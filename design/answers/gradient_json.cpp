@@ -70,6 +70,8 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
     for (size_t k = 0; k < design.objective.size(); ++k) {
         terms.push_back({{"name", design.objective[k].name}, {"weight", design.objective[k].weight}, {"value", evaluation.terms[k].value}});
         add_tie(design, tie_of(evaluation, true, k), terms.back());
+        if (Json over = over_tolerances_json(design, evaluation, true, k); !over.is_null())
+            terms.back()["over_tolerances"] = std::move(over);
     }
     json["terms"] = terms;
     Json list = Json::array();
@@ -89,6 +91,7 @@ Json values_json(const Design& design, const DesignEvaluation& evaluation) {
             continued["gradient"] = gradient_json(design, search_jacobian(evaluation).row(i).transpose());
             entry["continued"] = std::move(continued);
         }
+        if (Json over = over_tolerances_json(design, evaluation, false, i); !over.is_null()) entry["over_tolerances"] = std::move(over);
         entry["gradient"] = gradient_json(design, evaluation.jacobian.row(i).transpose());
         add_tie(design, tie_of(evaluation, false, i), entry);
         list.push_back(std::move(entry));

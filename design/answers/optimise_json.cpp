@@ -32,13 +32,17 @@ Json constraints_json(const Design& design, const DesignEvaluation& final) {
                         {"met", description::violation(constraint.bounds, measured) <= 0}});
         if (!measured.fault.empty()) list.back()["fault"] = measured.fault;
         if (Json continued = continued_json(final, i); !continued.is_null()) list.back()["continued"] = std::move(continued);
+        if (Json over = over_tolerances_json(design, final, false, i); !over.is_null()) list.back()["over_tolerances"] = std::move(over);
     }
     return list;
 }
 
 Json terms_json(const Design& design, const DesignEvaluation& final) {
     Json list = Json::array();
-    for (size_t k = 0; k < final.terms.size(); ++k) list.push_back({{"name", design.objective[k].name}, {"value", final.terms[k].value}});
+    for (size_t k = 0; k < final.terms.size(); ++k) {
+        list.push_back({{"name", design.objective[k].name}, {"value", final.terms[k].value}});
+        if (Json over = over_tolerances_json(design, final, true, k); !over.is_null()) list.back()["over_tolerances"] = std::move(over);
+    }
     return list;
 }
 

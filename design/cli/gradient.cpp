@@ -215,6 +215,8 @@ std::string values_text(const Design& design, const DesignEvaluation& e, const C
                           measured.is_proven ? ("proven at least " + least).c_str() : "computed",
                           description::required_text(bounds, unit).c_str());
         if (const std::string remark = problem::remark(e, i); !remark.empty()) text += "  " + remark + "\n";
+        if (const std::string reserve = problem::reserve_text(e, false, i, {bounds.unit, unit}); !reserve.empty())
+            text += "  " + reserve + ", " + problem::reserves_text(design) + "\n";
         text += tie_text(design, answers::tie_of(e, false, i), bounds.unit);
     }
     text += relations_text(design, e.relations, console);

@@ -54,7 +54,7 @@ std::string round_surfaces_text(const Design& design, const problem::DesignEvalu
         const auto& [name, bounds, quantity] = design.constraints[i];
         const description::Measurement& measured = final.constraints[i];
         const bool is_clearance = dynamic_cast<const quantities::Clearance*>(quantity.get()) != nullptr;
-        if (!is_clearance || !measured.clearance || description::violation(bounds, measured) > 0) continue;
+        if (!is_clearance || !measured.clearance || bounds.over_tolerances || description::violation(bounds, measured) > 0) continue;
         const auto round = clearance::true_bounds(*final.runs.front().model, *measured.clearance);
         if (!round || (round->lower >= bounds.lower && round->lower_is_proven)) continue;
         const std::string unit = description::unit_name(design.constraints[i]);
@@ -109,8 +109,11 @@ std::string terms_text(const Design& design, const OptimiseOutcome& outcome) {
         const description::ObjectiveTerm& term = design.objective[k];
         const double value = outcome.final.terms[k].value;
         const std::string unit = core::base::unit_name(term.quantity->dimension(), term.unit);
-        text += formatted("  %-40s %s, counts %.6g in the objective\n", term.name.c_str(),
-                          description::amount_text(value, term.unit, unit).c_str(), term.weight * value / term.unit);
+        const std::string reserve = problem::reserve_text(outcome.final, true, k, {term.unit, unit});
+        text += formatted("  %-40s %s%s, counts %.6g in the objective%s\n", term.name.c_str(),
+                          description::amount_text(value, term.unit, unit).c_str(),
+                          term.over_tolerances ? (" " + words(*term.over_tolerances)).c_str() : "", term.weight * value / term.unit,
+                          reserve.empty() ? "" : (": " + reserve).c_str());
     }
     return text;
 }
@@ -175,12 +178,16 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
         const description::Measurement& measured = outcome.final.constraints[i];
         const std::string unit = description::unit_name(design.constraints[i]);
         const bool met = description::violation(bounds, measured) <= 0;
-        const std::string remark = problem::remark(outcome.final, i);
+        std::string remark = problem::remark(outcome.final, i);
+        if (const std::string reserve = problem::reserve_text(outcome.final, false, i, {bounds.unit, unit}); !reserve.empty())
+            remark += (remark.empty() ? "" : "; ") + reserve;
         text += formatted("  %-40s %s, required %s: ", name.c_str(), description::known_text(measured, bounds, unit).c_str(),
                           description::required_text(bounds, unit).c_str()) +
                 console.coloured(met ? "met" : "VIOLATED", met) + (remark.empty() ? "" : ": " + remark) + "\n";
     }
     text += relations_text(design, outcome.final.relations, console);
+    if (const std::string reserves = problem::reserves_text(design); !reserves.empty())
+        text += "  what counts over the tolerances does so " + reserves + "; fettle tolerance with the tuned design simulates made ones\n";
     text += round_surfaces_text(design, outcome.final);
     text += by_models_text(design, outcome, console) + play_advice(outcome);
     text += run.repair ? verdict_text(design, report.optimality, "the squared change", report.best.objective)
@@ -206,6 +213,8 @@ std::vector<Check> outcome_checks(const Design& design, const OptimiseOutcome& o
         Check check{name, met ? CheckOutcome::passed : CheckOutcome::failed, met ? "met" : "violated", "", file};
         check.message = description::known_text(measured, bounds, unit) + ", required " + description::required_text(bounds, unit);
         if (const std::string remark = problem::remark(outcome.final, i); !remark.empty()) check.message += "; " + remark;
+        if (const std::string reserve = problem::reserve_text(outcome.final, false, i, {bounds.unit, unit}); !reserve.empty())
+            check.message += "; " + reserve + ", " + problem::reserves_text(design);
         if (doubtful) {
             check.outcome = CheckOutcome::remarked;
             check.rule = "in doubt";

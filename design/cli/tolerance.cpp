@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "fettle/design/answers/allocation_json.hpp"
 #include "fettle/design/answers/tolerance_json.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/studies/tolerance_file.hpp"
@@ -19,7 +20,8 @@ struct Options {
     std::string path, process;
     int samples = 0;
     int seed = 1;
-    bool first_order = false, worst_case = false;
+    bool first_order = false, worst_case = false, allocate = false;
+    double yield = 0.9973;
     std::string samples_file;
 };
 
@@ -44,6 +46,21 @@ std::string untoleranced_text(const std::vector<reading::Untoleranced>& all) {
     return text;
 }
 
+int run_allocation(const Options& options, const reading::DesignFile& file, const studies::ToleranceOptions& study, Console& console) {
+    studies::AllocationOptions allocation;
+    allocation.yield = options.yield;
+    allocation.worst_case = options.worst_case;
+    allocation.study = study;
+    const Result<studies::AllocationReport> report = studies::allocate(file, allocation);
+    console.end_progress();
+    if (!report) return console.input_errors(report.errors());
+    console.result(answers::allocation_json(file.design, file.tolerances, allocation, *report),
+                   answers::allocation_text(file.design, file.tolerances, allocation, *report));
+    return report->status == studies::AllocationStatus::held       ? exit_done
+           : report->status == studies::AllocationStatus::not_held ? exit_violated
+                                                                   : exit_undecided;
+}
+
 int run_tolerance(const Options& options, const CommonOptions& common, Console& console) {
     begin_to_read(options.path);
     reading::DesignReadOptions read{common.mesh_dirs, programs_of(common)};
@@ -60,6 +77,7 @@ int run_tolerance(const Options& options, const CommonOptions& common, Console& 
     study.worst_case = options.worst_case;
     study.should_stop = interrupted;
     study.on_simulation = [&](int done, int of) { console.progress("simulating", done, of); };
+    if (options.allocate) return run_allocation(options, *file, study, console);
     const Result<studies::ToleranceReport> report = studies::study_tolerances(*file, options.samples_file, study);
     console.end_progress();
     if (!report) return console.input_errors(report.errors());
@@ -86,11 +104,19 @@ Command add_tolerance(CommandLine& program, const CommonOptions& common) {
                "Where the samples are kept, a line each: those that are there are not simulated again, so that a run can be interrupted");
     app.flag("--first-order", options->first_order, "Predict from one simulation, without the 2 per tolerance that the second order takes");
     app.flag("--worst-case", options->worst_case, "Search for the worst cases by simulations: two searches for each requirement");
+    const Option allocate = app.flag("--allocate", options->allocate,
+                                     "Find the loosest tolerances with which every requirement has its yield (--worst-case: holds then)");
+    app.option("--yield", options->yield, "With --allocate: of each requirement (default 0.9973)")
+        .between(0.5001, 0.9999999)
+        .needs(allocate);
     app.closing_words(
         "Example:  fettle tolerance examples/slider_crank/slider_crank.design.json --samples 256\n"
         "Predicts, from the derivatives, how far each number that the design asks for spreads over the tolerances, and which of them make\n"
         "it so; samples are simulations of their own, at points that are the same for any number of threads. All of it is computed, none\n"
-        "of it proven. Exit code 2: the design as drawn, or one a standard deviation beside it, cannot be simulated.");
+        "of it proven. Exit code 2: the design as drawn, or one a standard deviation beside it, cannot be simulated.\n"
+        "With --allocate: the limits that cost least (`cost` and `fixed` of a tolerance), studied and corrected until they hold; exit code "
+        "1:\n"
+        "there are none; 2: model and simulations do not settle.");
     return {app, [options, &common](Console& console) { return run_tolerance(*options, common, console); }};
 }
 

@@ -8,8 +8,10 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "fettle/design/description/over_tolerances.hpp"
 #include "fettle/design/description/quantity.hpp"
 
 namespace fettle::design::description {
@@ -19,6 +21,8 @@ struct Bounds {
     double upper = std::numeric_limits<double>::infinity();
     double margin = 0;  ///< by which the optimiser keeps away from both; less than half their distance
     double unit = 1;    ///< SI value of the unit that violations are counted in
+    /// What is bounded is the quantity with its reserve for the tolerances; nothing: as drawn. Such bounds have one side (made_design.hpp).
+    std::optional<OverTolerances> over_tolerances = {};
 };
 inline double target_lower(const Bounds& bounds) { return bounds.lower + bounds.margin; }
 inline double target_upper(const Bounds& bounds) { return bounds.upper - bounds.margin; }

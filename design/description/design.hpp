@@ -14,6 +14,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,10 @@ struct ObjectiveTerm {
     double weight = 1;
     double unit = 1;  ///< SI value of the unit that `weight` is per
     std::shared_ptr<const Quantity> quantity;
+    std::optional<OverTolerances> over_tolerances = {};  ///< the value with its reserve for the tolerances counts; nothing: as drawn
 };
+
+struct MadeDesign;
 
 struct OptimiserSettings {
     std::string name = "sqp";  ///< optimisers/optimisation.hpp knows which there are
@@ -65,6 +69,8 @@ struct Design {
     std::vector<Constraint> constraints;
     std::vector<Relation> relations;  ///< between parameters; judged before anything is simulated
     OptimiserSettings optimiser;
+    /// The same design as made, where something is asked for over the tolerances (made_design.hpp); else null.
+    std::shared_ptr<const MadeDesign> as_made = nullptr;
 };
 
 /// 1 if it has none: the scene as it stands.

@@ -35,10 +35,11 @@ std::string amount_text(double si, double unit, const std::string& unit_name, in
 std::string required_text(const Bounds& bounds, const std::string& unit_name) {
     constexpr int digits = 7;
     const std::string lower = number_text(bounds.lower / bounds.unit, digits), upper = number_text(bounds.upper / bounds.unit, digits);
-    if (bounds.lower == bounds.upper) return "exactly " + with_unit(lower, unit_name);
-    if (!std::isfinite(bounds.upper)) return "at least " + with_unit(lower, unit_name);
-    if (!std::isfinite(bounds.lower)) return "at most " + with_unit(upper, unit_name);
-    return lower + " to " + with_unit(upper, unit_name);
+    const std::string over = bounds.over_tolerances ? " " + words(*bounds.over_tolerances) : "";
+    if (bounds.lower == bounds.upper) return "exactly " + with_unit(lower, unit_name) + over;
+    if (!std::isfinite(bounds.upper)) return "at least " + with_unit(lower, unit_name) + over;
+    if (!std::isfinite(bounds.lower)) return "at most " + with_unit(upper, unit_name) + over;
+    return lower + " to " + with_unit(upper, unit_name) + over;
 }
 
 std::string bound_text(double si, Towards towards, double unit, const std::string& unit_name) {

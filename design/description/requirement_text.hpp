@@ -24,7 +24,7 @@ inline CountedUnit counted_unit(const Constraint& constraint) { return {constrai
 /// 3e-4 in 1e-3, "mm" -> "0.3 mm".
 std::string amount_text(double si, double unit, const std::string& unit_name, int digits = 7);
 
-/// "at least 0.3 mm", "at most 2 N", "29.95 to 30.05 mm", "exactly 1".
+/// "at least 0.3 mm", "at most 2 N", "29.95 to 30.05 mm", "exactly 1", "at least 0.3 mm at 3 sigma of the tolerances".
 std::string required_text(const Bounds& bounds, const std::string& unit_name);
 
 /// A bound, rounded to its safe side: 0.30199996 mm downwards -> "0.3019999 mm".

@@ -2,15 +2,16 @@
 #include "fettle/design/problem/design_problem.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <mutex>
 
 #include "fettle/adjoint/stepper/seeded_sweep.hpp"
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/setup/build_model.hpp"
+#include "fettle/design/description/made_design.hpp"
 #include "fettle/design/problem/check_design.hpp"
+#include "fettle/design/problem/evaluate_over_tolerances.hpp"
+#include "fettle/design/problem/stopwatch.hpp"
 
 namespace fettle::design::problem {
 
@@ -19,14 +20,6 @@ namespace {
 using core::model::Model;
 using description::Design;
 using description::Simulated;
-
-class Stopwatch {
-public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
-
-private:
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
 
 std::string first_reason(const Errors& errors) {
     std::string reason = (errors.front().where.empty() ? "" : errors.front().where + ": ") + errors.front().message;
@@ -73,16 +66,6 @@ void add_once(const std::string& text, std::vector<std::string>& texts) {
     if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
 }
 
-// Several simulations ask at the same time.
-EvaluateOptions for_several(EvaluateOptions options, int scenarios) {
-    if (scenarios == 1 || !options.should_stop) return options;
-    options.should_stop = [ask = std::move(options.should_stop), mutex = std::make_shared<std::mutex>()] {
-        const std::lock_guard lock(*mutex);
-        return ask();
-    };
-    return options;
-}
-
 constexpr const char* no_number = ": its derivative is not a finite number";
 
 std::string name_of(const description::ObjectiveTerm& term) { return "objective `" + term.name + "`"; }
@@ -107,26 +90,6 @@ std::vector<VectorX> parameters_bars(const std::vector<adjoint::Seeds>& seeds) {
 }
 
 }  // namespace
-
-VectorX search_values(const DesignEvaluation& evaluation) {
-    VectorX values(evaluation.constraints.size());
-    for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = evaluation.constraints[static_cast<size_t>(i)].value;
-    for (const ContinuedRow& row : evaluation.continued) values[row.constraint] = row.value;
-    return values;
-}
-
-MatrixX search_jacobian(const DesignEvaluation& evaluation) {
-    MatrixX jacobian = evaluation.jacobian;
-    for (const ContinuedRow& row : evaluation.continued) jacobian.row(row.constraint) = row.gradient.transpose();
-    return jacobian;
-}
-
-std::string remark(const DesignEvaluation& evaluation, size_t constraint) {
-    std::string text = evaluation.constraints[constraint].fault;
-    for (const ContinuedRow& row : evaluation.continued)
-        if (row.constraint == static_cast<int>(constraint)) text += (text.empty() ? "" : "; ") + row.reason;
-    return text;
-}
 
 SimulatedDesign::SimulatedDesign(const Design& design, const DesignEvaluation& evaluation) {
     const std::vector<std::string> names = description::names_of(design.parameters);
@@ -162,6 +125,11 @@ Result<DesignProblem> DesignProblem::create(Design design) {
             problem.design_.scenarios[s].scene = own.scene;
             problem.design_.scenarios[s].numbers = own.numbers;
         }
+    }
+    if (problem.design_.as_made) {
+        Result<DesignProblem> made = create(problem.design_.as_made->design);
+        if (!made) return made.errors();
+        problem.as_made_ = std::make_shared<const DesignProblem>(std::move(made).value());
     }
     return problem;
 }
@@ -265,11 +233,12 @@ DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions
         evaluation.reason = first_reason(errors);
         return evaluation;
     }
+    if (as_made_) return evaluate_robust(p, options);
     const int m = scenario_count();
     evaluation.runs.resize(m);
     std::vector<MovedScene> moved(m);
     std::vector<std::string> reasons(m);
-    const EvaluateOptions shared = for_several(options, m);
+    const EvaluateOptions shared = m == 1 ? options : for_several(options);
     core::base::parallel_for(m, 1, [&](int s) {
         Result<MovedScene> scene = trial_scene(settings_[s], p, options.gradients ? SceneDerivative::wanted : SceneDerivative::not_wanted);
         Result<Model> model = scene ? build(settings_[s], scene->scene) : Result<Model>(scene.errors());
@@ -302,6 +271,17 @@ DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions
     return evaluation;
 }
 
+DesignEvaluation DesignProblem::evaluate_robust(const VectorX& p, const EvaluateOptions& options) const {
+    const EvaluateAsMade as_made{[this](const VectorX& at, const EvaluateOptions& asked) { return as_made_->evaluate(at, asked); },
+                                 [this](const VectorX& at) { return as_made_->rest_rows(at); }};
+    DesignEvaluation evaluation = evaluate_over_tolerances(design_, as_made, p, options);
+    evaluation.relations = relations(p);
+    if (!evaluation.usable) return evaluation;
+    for (size_t i = 0; i < design_.relations.size(); ++i)
+        evaluation.violation = std::max(evaluation.violation, description::violation(design_.relations[i], evaluation.relations.values[i]));
+    return evaluation;
+}
+
 std::vector<int> DesignProblem::rest_constraints() const {
     std::vector<int> indices;
     for (size_t i = 0; i < design_.constraints.size(); ++i)
@@ -311,6 +291,15 @@ std::vector<int> DesignProblem::rest_constraints() const {
 
 std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const {
     const std::vector<int> indices = rest_constraints();
+    if (as_made_) {
+        // Behind these the design as made has what its objective asks for.
+        std::optional<optimisers::Rows> rows = as_made_->rest_rows(design_.as_made->extended(p));
+        if (!rows) return rows;
+        rows->values.conservativeResize(count_of(indices));
+        rows->jacobian.conservativeResize(count_of(indices), rows->jacobian.cols());
+        add_reserves(design_, indices, *rows);
+        return rows;
+    }
     optimisers::Rows rows{VectorX(indices.size()), MatrixX::Zero(static_cast<Eigen::Index>(indices.size()), parameter_count())};
     DesignEvaluation rest;  // of no step
     rest.parameters = p;
@@ -355,12 +344,10 @@ std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const
 
 Result<DesignProblem> DesignProblem::with_contact_width(double dhat) const {
     Design design = design_;
-    const auto widen = [dhat](core::scene::Scene& scene) {
+    description::change_scenes(design, [dhat](core::scene::Scene& scene) {
         scene.dhat = dhat;
         scene.round_contact = false;
-    };
-    widen(design.scene);
-    for (description::Scenario& scenario : design.scenarios) widen(scenario.scene);
+    });
     return create(std::move(design));
 }
 

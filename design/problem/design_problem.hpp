@@ -5,10 +5,10 @@
 /// Fixed once, from the scene as written, so that they are no hidden function of the parameters: reference points, barrier stiffness kappa,
 /// activation distance, solver tolerance, stiffness of stops and the radii by which stops and friction of angles are measured. The same
 /// design has the same numbers, bit for bit, whether a program made it or a file.
+/// Of a robust design (description/made_design.hpp) the design as made is simulated, without deviations, which is the same motion, bit for
+/// bit; what is asked for over the tolerances follows (evaluate_over_tolerances.hpp).
 #pragma once
 
-#include <cmath>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,66 +16,11 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/model/build_mechanism.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
 #include "fettle/design/description/design.hpp"
-#include "fettle/design/optimisers/problem.hpp"
+#include "fettle/design/problem/design_evaluation.hpp"
 #include "fettle/design/problem/moved_scene.hpp"
-#include "fettle/design/problem/witness_branches.hpp"
 
 namespace fettle::design::problem {
-
-struct EvaluateOptions {
-    bool gradients = true;
-    std::function<void(const core::stepper::Progress&)> on_step;  ///< optional
-    std::function<bool()> should_stop;                            ///< optional
-    bool balance = false;                      ///< fill in each run's Simulation::balance, for the warnings on energy: costs a few percent
-    BranchReach branches = BranchReach::near;  ///< with gradients: `near` fills in the evaluation's branches, `tied` its ties
-};
-
-/// What was simulated.
-struct Run {
-    std::shared_ptr<const core::model::Model> model;  ///< null if it could not be built
-    core::stepper::Simulation simulation;             ///< as far as it came
-};
-
-/// A constraint whose value has come to an end short of its bounds: how it goes on (description::Continuation).
-struct ContinuedRow {
-    int constraint = 0;
-    double value = 0;    ///< SI
-    std::string reason;  ///< for people
-    VectorX gradient;    ///< d value / d parameters, SI; empty unless asked for
-};
-
-/// A design, simulated and measured.
-struct DesignEvaluation {
-    bool usable = false;
-    VectorX parameters;        ///< where, SI
-    std::string reason;        ///< why not: the part that cannot be made, the bodies that intersect, what blocks the motor ...
-    bool interrupted = false;  ///< not usable, because should_stop said so
-    std::vector<Run> runs;     ///< one per scenario, at least one; none: a relation is not defined there
-    std::vector<description::Measurement> terms;        ///< per objective term, SI
-    std::vector<description::Measurement> constraints;  ///< per constraint, SI
-    std::vector<ContinuedRow> continued;                ///< of some constraints, in their order: what a search sees of these instead
-    optimisers::Rows relations;                         ///< values and gradients, of an unusable trial too
-    double objective = std::nan("");                    ///< sum of weight * value / unit; NaN: not usable
-    double violation = std::nan("");           ///< largest of the constraints' and relations' (description/constraint.hpp); NaN: not usable
-    VectorX gradient;                          ///< d objective / d parameters, SI; empty unless asked for
-    MatrixX jacobian;                          ///< d constraint values / d parameters, SI
-    VectorX residuals;                         ///< the objective's deviations (optimisers/problem.hpp)
-    MatrixX residual_jacobian;                 ///< of the objective's squared deviations (optimisers/problem.hpp), a row each
-    optimisers::Branches constraint_branches;  ///< of clearances (optimisers/problem.hpp)
-    optimisers::Branches objective_branches;   ///< the same of terms with a negative weight
-    std::vector<Tie> ties;                     ///< if asked for: quantities whose derivative is one of several
-    double forward_seconds = 0;                ///< parts, model, simulation, values
-    double backward_seconds = 0;               ///< seeds, sweep, chain
-};
-
-/// What a search sees of the constraints, with those that are continued: values, and derivatives (those of `jacobian`), SI.
-VectorX search_values(const DesignEvaluation& evaluation);
-MatrixX search_jacobian(const DesignEvaluation& evaluation);
-/// What is to be known of a constraint beside its numbers: its fault, or why it is continued; empty: nothing.
-std::string remark(const DesignEvaluation& evaluation, std::size_t constraint);
 
 /// What quantities are asked about: every scenario, simulated. Contract: the evaluation has its models, and outlives this.
 class SimulatedDesign {
@@ -148,6 +93,7 @@ private:
     static Result<core::model::Model> build(const Setting& setting, const core::scene::Scene& scene);
     static Result<MovedScene> trial_scene(const Setting& setting, const VectorX& p, SceneDerivative derivative);
     Errors undefined(const optimisers::Rows& relations) const;
+    DesignEvaluation evaluate_robust(const VectorX& p, const EvaluateOptions& options) const;
     std::string simulate(int scenario, const EvaluateOptions& options, Run& run) const;
     void measure(DesignEvaluation& evaluation) const;
     void differentiate(const std::vector<MovedScene>& moved, BranchReach reach, DesignEvaluation& evaluation) const;
@@ -155,7 +101,8 @@ private:
                            const DesignEvaluation& evaluation) const;
 
     description::Design design_;
-    std::vector<Setting> settings_;  // one per scenario
+    std::vector<Setting> settings_;                 // one per scenario
+    std::shared_ptr<const DesignProblem> as_made_;  // of a robust design
     std::vector<std::string> warnings_;
 };
 

@@ -47,6 +47,7 @@ optimisers::Branches joined(const std::vector<Row>& rows, Eigen::Index parameter
 std::optional<double> limit_of(const Design& design, const QuantityBranches& quantity, const description::Quantity& of, double value,
                                BranchReach reach) {
     const auto index = static_cast<size_t>(quantity.index);
+    if (reach == BranchReach::none) return std::nullopt;
     if (reach == BranchReach::tied) return value + design.clearance_tolerance;
     if (quantity.of_objective) {  // a kink that a minimum keeps to
         const double weight = design.objective[index].weight;

@@ -32,6 +32,7 @@ struct Measurements {
 };
 
 enum class BranchReach {
+    none,  ///< they are not asked for
     /// What a step can run into: of constraints with a lower bound those below twice the bound, of terms of the objective with a negative
     /// weight (which want the value large) those up to twice the value, and all of a value that is the greatest and is wanted small.
     near,

@@ -109,6 +109,20 @@ description::Design with_formulas(description::Design design) {
     return design;
 }
 
+namespace {
+
+// A record has no place for the design as made, and would leave the reserves out without a word.
+reading::DesignFile as_drawn(reading::DesignFile file) {
+    if (file.design.as_made)
+        raise_if_any(
+            Errors{{ErrorCode::unsupported, file.path,
+                    "it asks for numbers over its tolerances (`over_tolerances`), which a fettle.Design does not hold: optimise_file and "
+                    "`fettle optimise` take the file itself; without the key, or with \"as_drawn\", it can be read here"}});
+    return file;
+}
+
+}  // namespace
+
 void bind_design(py::module_& module) {
     using Paths = std::vector<Path>;
     bind_shapes(module);
@@ -117,14 +131,14 @@ void bind_design(py::module_& module) {
     module.def(
         "read_design",
         [](const Path& path, const Paths& dirs, bool allow_programs) {
-            return value_or_raise(reading::read_design(path.string(), read_options(dirs, allow_programs)));
+            return as_drawn(value_or_raise(reading::read_design(path.string(), read_options(dirs, allow_programs))));
         },
         py::arg("path"), py::arg("mesh_dirs") = Paths(), py::arg("allow_programs") = false, unlocked,
         "The DesignFile of a *.design.json, with its scene. allow_programs: the programs that it names may be run to make its parts.");
     module.def(
         "parse_design",
         [](const std::string& text, const Path& path, const Paths& dirs, bool allow_programs) {
-            return value_or_raise(reading::parse_design(text, path.string(), read_options(dirs, allow_programs)));
+            return as_drawn(value_or_raise(reading::parse_design(text, path.string(), read_options(dirs, allow_programs))));
         },
         py::arg("text"), py::arg("path"), py::arg("mesh_dirs") = Paths(), py::arg("allow_programs") = false, unlocked,
         "The same of a text; `path` says where its scene is looked for.");

@@ -8,6 +8,7 @@
 
 #include "fettle/core/expression/parse_formula.hpp"
 #include "fettle/design/quantities/expression.hpp"
+#include "fettle/design/reading/over_tolerances_reader.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
 #include "fettle/design/reading/relation_reader.hpp"
 
@@ -35,6 +36,8 @@ public:
         } else {
             read_bounded(node, *find_quantity_type(*type), read);
         }
+        for (Constraint& constraint : read)
+            constraint.bounds.over_tolerances = read_over_tolerances_of(node, constraint.bounds, context_.over_tolerances);
         for (const Constraint& constraint : read)
             for (ScenarioQuantity& one : in_scenarios(node, constraint.quantity, context_.scenarios))
                 out.push_back({unique_name(constraint.name + one.suffix, names_), constraint.bounds, std::move(one.quantity)});
@@ -80,8 +83,8 @@ private:
 
     // `minimum` instead of bounds, and several constraints where the motion is divided.
     void read_clearance(const JsonNode& node, std::vector<Constraint>& out) {
-        node.allow_keys(
-            {"type", "name", "scenario", "a", "b", "faces_a", "faces_b", "minimum", "margin", "motion", "from", "to", "windows", "ranges"});
+        node.allow_keys({"type", "name", "scenario", "a", "b", "faces_a", "faces_b", "minimum", "margin", "motion", "from", "to", "windows",
+                         "ranges", "over_tolerances"});
         std::optional<quantities::ClearanceRange> range = read_clearance_range(node, context_);
         Bounds bounds;
         bounds.unit = context_.length_unit;
@@ -107,7 +110,7 @@ private:
     }
 
     void read_bounded(const JsonNode& node, const QuantityType& type, std::vector<Constraint>& out) {
-        std::vector<std::string_view> keys{"type", "name", "scenario", "lower", "upper", "margin"};
+        std::vector<std::string_view> keys{"type", "name", "scenario", "lower", "upper", "margin", "over_tolerances"};
         for (const std::string_view key : type.keys) {
             if (key != "target") keys.push_back(key);  // a constraint bounds the stroke itself
         }

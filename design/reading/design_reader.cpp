@@ -17,10 +17,12 @@
 #include "fettle/core/scene/place.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/stepper/step_count.hpp"
+#include "fettle/design/description/made_design.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/quantities/worst.hpp"
 #include "fettle/design/reading/constraint_reader.hpp"
 #include "fettle/design/reading/design_formulas.hpp"
+#include "fettle/design/reading/over_tolerances_reader.hpp"
 #include "fettle/design/reading/parameter_reader.hpp"
 #include "fettle/design/reading/process_file.hpp"
 #include "fettle/design/reading/quantity_reader.hpp"
@@ -48,7 +50,8 @@ public:
     Result<DesignFile> read() {
         const JsonNode root = document_.root();
         root.allow_keys({"$schema", "fettle_design", "description", "scene", "units", "parameters", "variables", "set", "scenarios",
-                         "simulation", "quantities", "objective", "constraints", "tolerances", "process", "optimiser", "output"});
+                         "simulation", "quantities", "objective", "constraints", "tolerances", "process", "over_tolerances", "optimiser",
+                         "output"});
         root["$schema"].string();
         root["description"].string();
         core::files::is_version(root.require("fettle_design"), 1);
@@ -84,13 +87,19 @@ public:
         if (!scene_errors_.empty()) return all_errors();  // of one of them
         take_tolerances(entries, units, formulas, as_made);
         std::vector<quantities::NamedQuantity> named;
-        const ReadContext context{design_.scene, to_si(1, file_.length_unit), design_.steps * design_.scene.timestep, formulas, named,
-                                  scenarios};
+        const ReadContext context{design_.scene,
+                                  to_si(1, file_.length_unit),
+                                  design_.steps * design_.scene.timestep,
+                                  formulas,
+                                  named,
+                                  scenarios,
+                                  read_over_tolerances(root["over_tolerances"])};
         named = read_named_quantities(root["quantities"], context);
         read_objective(root["objective"], context);
         const double margin = read_optimiser(root["optimiser"]);
         design_.constraints = read_constraints(root["constraints"], context, margin);
         design_.relations = read_relations(root["constraints"], context, design_.parameters, design_.constraints);
+        take_over_tolerances(root, entries.empty());
         check_use(root["parameters"]);
         file_.quantities = named;
         file_.output = root["output"].string().value_or("");
@@ -171,6 +180,18 @@ private:
         design_.parameters = parameters;
         read_tolerances(entries, formulas, units, design_, file_.untoleranced);
         for (ToleranceEntry& entry : entries) file_.tolerances.push_back(std::move(entry.tolerance));
+    }
+
+    // Of a design as made they are checked, and left: what is made has to meet the requirements without a reserve.
+    void take_over_tolerances(const JsonNode& root, bool has_none) {
+        if (description::asks_over_tolerances(design_) && has_none)
+            root.fail(ErrorCode::missing_key,
+                      "something is asked for `over_tolerances`, and there are no `tolerances`: say, for instance, \"tolerances\": "
+                      "{\"pin_radius\": \"+-0.05 mm\"}");
+        if (!options_.as_made) return;
+        for (description::ObjectiveTerm& term : design_.objective) term.over_tolerances.reset();
+        for (description::Constraint& constraint : design_.constraints) constraint.bounds.over_tolerances.reset();
+        for (description::Relation& relation : design_.relations) relation.bounds.over_tolerances.reset();
     }
 
     std::optional<JsonDocument> open_scene_file(const JsonNode& node) {
@@ -439,12 +460,13 @@ private:
             const auto type_name = entry.require("type").choice(quantity_names());
             if (!type_name) continue;
             const QuantityType& type = *find_quantity_type(*type_name);
-            std::vector<std::string_view> keys{"type", "name", "weight", "scenario"};
+            std::vector<std::string_view> keys{"type", "name", "weight", "scenario", "over_tolerances"};
             keys.insert(keys.end(), type.keys.begin(), type.keys.end());
             entry.allow_keys(keys);
             description::ObjectiveTerm term;
             term.quantity = type.read(entry, context);
             term.weight = entry["weight"].number().value_or(1);
+            term.over_tolerances = read_over_tolerances(entry["over_tolerances"]);
             const std::string name = entry["name"].string().value_or(type.default_name(entry));
             if (!term.quantity) continue;
             term.unit = context.unit(term.quantity->dimension());
@@ -565,8 +587,18 @@ Result<DesignFile> parse_design(const std::string& text, const std::string& path
                          : "not a design: `fettle_design` (its version, 1) is not there" +
                                core::files::misspelt_key(root, {"fettle_scene", "fettle_design"})};
     }
-    Result<DesignFile> file = DefaultVariables(text, path, options).read();
-    if (file) file->text = text;
+    DesignReadOptions drawn = options;
+    if (!drawn.made) drawn.made = std::make_shared<std::vector<MadePart>>();
+    Result<DesignFile> file = DefaultVariables(text, path, drawn).read();
+    if (!file) return file;
+    if (!drawn.as_made && description::asks_over_tolerances(file->design)) {
+        DesignReadOptions again = drawn;
+        again.as_made = true;
+        Result<DesignFile> made = DefaultVariables(text, path, again).read();
+        if (!made) return made.errors();
+        file->design = description::over_tolerances(std::move(file->design), std::move(made->design), std::move(made->tolerances));
+    }
+    file->text = text;
     return file;
 }
 

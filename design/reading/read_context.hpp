@@ -9,6 +9,7 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/scene.hpp"
+#include "fettle/design/description/over_tolerances.hpp"
 #include "fettle/design/quantities/expression.hpp"
 #include "fettle/design/reading/design_formulas.hpp"
 #include "fettle/design/reading/scenario_choice.hpp"
@@ -22,6 +23,7 @@ struct ReadContext {
     const DesignFormulas& formulas;
     const std::vector<quantities::NamedQuantity>& quantities;  ///< the file's `quantities`, which expressions may name
     const ScenarioNames& scenarios;
+    std::optional<description::OverTolerances> over_tolerances = {};  ///< of requirements that do not say it themselves
 
     /// Index of the body that a node names; unknown_key with the nearest name otherwise.
     std::optional<int> body(const core::files::JsonNode& node) const;

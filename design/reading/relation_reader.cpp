@@ -7,6 +7,7 @@
 #include <set>
 
 #include "fettle/core/expression/parse_formula.hpp"
+#include "fettle/design/reading/over_tolerances_reader.hpp"
 
 namespace fettle::design::reading {
 
@@ -37,7 +38,7 @@ public:
     }
 
     std::optional<Relation> read(const JsonNode& node) {
-        node.allow_keys({"type", "name", "expression", "lower", "upper", "margin", "tolerance"});
+        node.allow_keys({"type", "name", "expression", "lower", "upper", "margin", "tolerance", "over_tolerances"});
         const auto text = node.require("expression").string();
         const auto name = node["name"].string();
         if (!node["lower"].exists() && !node["upper"].exists())
@@ -51,6 +52,7 @@ public:
         relation.formula = *text;
         const RelationValue start = value_at_start(node["expression"], relation);
         read_bounds(node, formula->dimension, change(start), relation);
+        relation.bounds.over_tolerances = read_over_tolerances_of(node, relation.bounds, context_.over_tolerances);
         return relation;
     }
 

@@ -6,6 +6,7 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/expression/parse_formula.hpp"
 #include "fettle/design/reading/process_file.hpp"
+#include "fettle/design/reading/tolerance_cost_reader.hpp"
 #include "fettle/design/tolerances/iso2768.hpp"
 #include "fettle/design/tolerances/iso286.hpp"
 
@@ -30,7 +31,7 @@ public:
             return;
         }
         node_.allow_keys({"lower", "upper", "class", "of", "general", "process", "feature", "leg", "distribution", "sigma_level", "shift",
-                          "group", "correlation"});
+                          "group", "correlation", "cost", "fixed"});
         if (!node_.is_object()) return;
         const bool is_made = node_["feature"].exists() || node_["process"].exists();
         const int ways =
@@ -51,6 +52,7 @@ public:
         if (is_made) read_feature(tolerance);
         read_distribution(tolerance.deviation);
         read_group(tolerance);
+        read_cost(node_, nominal_.value, nominal_.unit, tolerance);
     }
 
     /// Of "*": why this number has no tolerance of it; empty: it has. Contract: the entry is without faults.

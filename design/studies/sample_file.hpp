@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "fettle/design/studies/line_file.hpp"
-#include "fettle/design/studies/made_design.hpp"
+#include "fettle/design/studies/made_responses.hpp"
 
 namespace fettle::design::studies {
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/design/description/made_design.hpp"
 #include "fettle/design/reading/design_text.hpp"
 #include "fettle/design/studies/random_start.hpp"
 
@@ -79,10 +80,9 @@ Sides sides_of_seed(const problem::DesignProblem& problem, std::uint64_t seed) {
 }
 
 description::Design with_sides(description::Design design, const Sides& sides) {
-    for (const core::model::JointSide& side : sides) {
-        joint_of(design.scene, side.joint).assemble = side.assemble;
-        for (description::Scenario& scenario : design.scenarios) joint_of(scenario.scene, side.joint).assemble = side.assemble;
-    }
+    description::change_scenes(design, [&](core::scene::Scene& scene) {
+        for (const core::model::JointSide& side : sides) joint_of(scene, side.joint).assemble = side.assemble;
+    });
     return design;
 }
 

@@ -47,4 +47,11 @@ Result<ToleranceReport> study_tolerances(const reading::DesignFile& file, const 
     return report;
 }
 
+Result<AllocationReport> allocate(const reading::DesignFile& file, const AllocationOptions& options) {
+    if (file.tolerances.empty()) return no_tolerances(file);
+    const Result<problem::DesignProblem> problem = problem::DesignProblem::create(file.design);
+    if (!problem) return problem.errors();
+    return allocate(*problem, file.tolerances, options);
+}
+
 }  // namespace fettle::design::studies

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// The tolerances of a design file, studied: what `fettle tolerance` and Python's `tolerance` do.
+/// The tolerances of a design file, studied and allocated: what `fettle tolerance` and Python's `tolerance` do.
 #pragma once
 
 #include <string>
 
 #include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/studies/allocation.hpp"
 #include "fettle/design/studies/tolerance_study.hpp"
 
 namespace fettle::design::studies {
@@ -13,5 +14,8 @@ namespace fettle::design::studies {
 /// @param samples_file  Where the samples are kept (sample_file.hpp); empty: nowhere. `options.file` is set by it.
 /// Errors: no tolerances, the design's (DesignProblem::create), the samples' file.
 Result<ToleranceReport> study_tolerances(const reading::DesignFile& file, const std::string& samples_file, ToleranceOptions options);
+
+/// The same of what allocates them. Errors: no tolerances, the design's.
+Result<AllocationReport> allocate(const reading::DesignFile& file, const AllocationOptions& options);
 
 }  // namespace fettle::design::studies

@@ -170,7 +170,7 @@ private:
     }
 
     // Nothing: not begun, or interrupted.
-    std::optional<MadeSample> sample_of(int number, const DeviationSamples& deviations) {
+    std::optional<MadeSample> sample_of(int number, const description::DeviationSamples& deviations) {
         MadeSample out;
         out.number = number;
         out.deviations = deviations.at(number);
@@ -190,7 +190,7 @@ private:
     }
 
     void sample() {
-        const DeviationSamples deviations(tolerances_, options_.seed);
+        const description::DeviationSamples deviations(tolerances_, options_.seed);
         std::vector<std::optional<MadeSample>> samples(options_.samples);
         core::base::parallel_for(options_.samples, 1, [&](int k) { samples[k] = sample_of(k, deviations); });
         for (std::optional<MadeSample>& sample : samples) {
@@ -258,7 +258,7 @@ private:
             return good;
         };
         std::vector<int> predicted_good(m + 1, 0), gained(m + 1, 0), lost(m + 1, 0);
-        const DeviationSamples many(tolerances_, options_.seed + 1);
+        const description::DeviationSamples many(tolerances_, options_.seed + 1);
         for (int k = 0; k < predicted_samples; ++k) {
             const std::vector<char> good = goods(many.at(k));
             for (int i = 0; i <= m; ++i) predicted_good[i] += good[i];
@@ -290,7 +290,7 @@ private:
         }
         if (farthest.empty()) return;
         const DesignEvaluation drawn = made_.simulate(VectorX::Zero(n_), false);
-        const DeviationSamples deviations(tolerances_, options_.seed);
+        const description::DeviationSamples deviations(tolerances_, options_.seed);
         for (const auto& [number, responses] : farthest) {
             const DesignEvaluation evaluation = made_.simulate(deviations.at(number), false);
             if (!drawn.usable || !evaluation.usable) continue;
@@ -316,9 +316,9 @@ private:
 
     const std::vector<Tolerance>& tolerances_;
     const ToleranceOptions& options_;
-    const MadeDesign made_;
+    const MadeResponses made_;
     const int n_;
-    const IndependentInputs inputs_ = independent_inputs(tolerances_);
+    const description::IndependentInputs inputs_ = independent_inputs(tolerances_);
     std::vector<Moments> deviations_;  // of each tolerance as a whole
     std::mutex file_mutex_;
     int done_ = 0, to_do_ = 0;

@@ -20,11 +20,11 @@
 #include <string>
 #include <vector>
 
+#include "fettle/design/description/independent_inputs.hpp"
 #include "fettle/design/description/tolerance.hpp"
 #include "fettle/design/gradient_audit/contact_changes.hpp"
 #include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/studies/independent_inputs.hpp"
-#include "fettle/design/studies/made_design.hpp"
+#include "fettle/design/studies/made_responses.hpp"
 #include "fettle/design/studies/sample_file.hpp"
 #include "fettle/design/studies/worst_case.hpp"
 #include "fettle/design/tolerances/capability.hpp"

@@ -63,7 +63,7 @@ VectorX quadratic_corner(const LocalModel& model, double side, const VectorX& lo
     return best;
 }
 
-WorstCaseSearch::WorstCaseSearch(const MadeDesign& design) : design_(design) {
+WorstCaseSearch::WorstCaseSearch(const MadeResponses& design) : design_(design) {
     const int n = count_of(design.tolerances());
     lower_.resize(n);
     upper_.resize(n);

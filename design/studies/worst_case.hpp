@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/studies/made_design.hpp"
+#include "fettle/design/studies/made_responses.hpp"
 
 namespace fettle::design::studies {
 
@@ -33,7 +33,7 @@ struct FoundExtreme {
 class WorstCaseSearch {
 public:
     /// Contract: outlives this.
-    explicit WorstCaseSearch(const MadeDesign& design);
+    explicit WorstCaseSearch(const MadeResponses& design);
 
     /// @param number  Of the design's. @param side  1: its largest value, -1: its least.
     /// Throws optimisers::Interrupted. May be called from several threads at once.
@@ -42,7 +42,7 @@ public:
 private:
     MadeEvaluation evaluated(const VectorX& deviations);
 
-    const MadeDesign& design_;
+    const MadeResponses& design_;
     VectorX lower_, upper_;
     std::mutex mutex_;
     std::map<std::vector<double>, MadeEvaluation> known_;  // by deviations

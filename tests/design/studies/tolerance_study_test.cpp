@@ -143,7 +143,7 @@ TEST_CASE("tolerances: samples of the clutch agree with the second order, and ar
     options.samples = 40;
     const ToleranceReport fewer = study(file, options);
     CHECK(fewer.responses[1].sampled->least >= angle.sampled->least);  // the first of the same samples
-    CHECK(DeviationSamples(file->tolerances, 1).at(7) != DeviationSamples(file->tolerances, 2).at(7));
+    CHECK(description::DeviationSamples(file->tolerances, 1).at(7) != description::DeviationSamples(file->tolerances, 2).at(7));
 }
 
 TEST_CASE("tolerances of a parameter, a variable of the scene, and a place of it") {
@@ -219,7 +219,7 @@ TEST_CASE("tolerances: parts of one print vary together") {
     REQUIRE(problem);
     // Sampled deviations: sigma 0.1 mm each, correlations -0.8, 0, 0.
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    const DeviationSamples samples(file->tolerances, 1);
+    const description::DeviationSamples samples(file->tolerances, 1);
     for (int k = 0; k < options.samples; ++k) {
         const VectorX d = samples.at(k);
         covariance += d * d.transpose() / options.samples;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/independent_inputs.hpp"
+#include "fettle/design/description/independent_inputs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,8 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/design/tolerances/normal_distribution.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::description {
 
-using description::Tolerance;
 using tolerances::Moments;
 
 namespace {
@@ -59,4 +58,4 @@ VectorX DeviationSamples::at(int k) const {
     return inputs_.map * x;
 }
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::description

@@ -14,7 +14,7 @@
 #include "fettle/design/tolerances/moments.hpp"
 #include "fettle/design/tolerances/sobol.hpp"
 
-namespace fettle::design::studies {
+namespace fettle::design::description {
 
 struct IndependentInputs {
     std::vector<tolerances::Moments> moments;  ///< as many as tolerances, of what is theirs alone, then one per group
@@ -25,21 +25,21 @@ struct IndependentInputs {
 };
 
 /// Contract: what is in a group is normal.
-IndependentInputs independent_inputs(const std::vector<description::Tolerance>& tolerances);
+IndependentInputs independent_inputs(const std::vector<Tolerance>& tolerances);
 
 /// Samples of the deviations: at the points of a scrambled Sobol sequence (tolerances/sobol.hpp).
 class DeviationSamples {
 public:
     /// Contract: `tolerances` outlives this, and is not empty.
-    DeviationSamples(const std::vector<description::Tolerance>& tolerances, std::uint64_t seed);
+    DeviationSamples(const std::vector<Tolerance>& tolerances, std::uint64_t seed);
 
     /// One per tolerance, of sample k = 0, 1, ...; the same however many are asked for.
     VectorX at(int k) const;
 
 private:
-    const std::vector<description::Tolerance>& tolerances_;
+    const std::vector<Tolerance>& tolerances_;
     const IndependentInputs inputs_;
     const tolerances::SobolPoints points_;
 };
 
-}  // namespace fettle::design::studies
+}  // namespace fettle::design::description

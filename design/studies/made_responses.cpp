@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/made_design.hpp"
+#include "fettle/design/studies/made_responses.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,15 +51,15 @@ bool MadeEvaluation::met_all() const {
     return std::all_of(met.begin(), met.end(), [](bool each) { return each; });
 }
 
-MadeDesign::MadeDesign(const problem::DesignProblem& problem, const std::vector<description::Tolerance>& tolerances,
-                       std::function<bool()> should_stop, std::function<void()> on_simulation)
+MadeResponses::MadeResponses(const problem::DesignProblem& problem, const std::vector<description::Tolerance>& tolerances,
+                             std::function<bool()> should_stop, std::function<void()> on_simulation)
     : problem_(problem),
       tolerances_(tolerances),
       numbers_(asked_numbers(problem.design())),
       should_stop_(std::move(should_stop)),
       on_simulation_(std::move(on_simulation)) {}
 
-DesignEvaluation MadeDesign::simulate(const VectorX& deviations, bool gradients) const {
+DesignEvaluation MadeResponses::simulate(const VectorX& deviations, bool gradients) const {
     static std::mutex mutex;
     problem::EvaluateOptions options;
     options.gradients = gradients;
@@ -70,7 +70,7 @@ DesignEvaluation MadeDesign::simulate(const VectorX& deviations, bool gradients)
     return out;
 }
 
-MadeEvaluation MadeDesign::evaluate(const VectorX& deviations, bool gradients) const {
+MadeEvaluation MadeResponses::evaluate(const VectorX& deviations, bool gradients) const {
     const DesignEvaluation evaluation = simulate(deviations, gradients);
     MadeEvaluation out;
     out.usable = evaluation.usable;

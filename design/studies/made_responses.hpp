@@ -33,12 +33,12 @@ struct MadeEvaluation {
     bool met_all() const;
 };
 
-class MadeDesign {
+class MadeResponses {
 public:
     /// @param problem, tolerances  Of the design as made (description/tolerance.hpp). Contract: both outlive this.
     /// @param on_simulation  After each, from one thread at a time; optional.
-    MadeDesign(const problem::DesignProblem& problem, const std::vector<description::Tolerance>& tolerances,
-               std::function<bool()> should_stop = {}, std::function<void()> on_simulation = {});
+    MadeResponses(const problem::DesignProblem& problem, const std::vector<description::Tolerance>& tolerances,
+                  std::function<bool()> should_stop = {}, std::function<void()> on_simulation = {});
 
     const description::Design& design() const { return problem_.design(); }
     const std::vector<description::Tolerance>& tolerances() const { return tolerances_; }

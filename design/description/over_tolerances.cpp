@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/description/over_tolerances.hpp"
+
+#include "fettle/core/base/text.hpp"
+
+namespace fettle::design::description {
+
+std::string words(const OverTolerances& over) {
+    if (over.kind == OverTolerances::Kind::worst_case) return "in the worst case of the tolerances";
+    return core::base::formatted("at %.4g sigma of the tolerances", over.sigmas);
+}
+
+}  // namespace fettle::design::description

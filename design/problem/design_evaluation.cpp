@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/problem/design_evaluation.hpp"
+
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "fettle/core/base/text.hpp"
+#include "fettle/design/description/made_design.hpp"
+
+namespace fettle::design::problem {
+
+VectorX search_values(const DesignEvaluation& evaluation) {
+    VectorX values(evaluation.constraints.size());
+    for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = evaluation.constraints[static_cast<size_t>(i)].value;
+    for (const ContinuedRow& row : evaluation.continued) values[row.constraint] = row.value;
+    return values;
+}
+
+MatrixX search_jacobian(const DesignEvaluation& evaluation) {
+    MatrixX jacobian = evaluation.jacobian;
+    for (const ContinuedRow& row : evaluation.continued) jacobian.row(row.constraint) = row.gradient.transpose();
+    return jacobian;
+}
+
+std::string remark(const DesignEvaluation& evaluation, size_t constraint) {
+    std::string text = evaluation.constraints[constraint].fault;
+    for (const ContinuedRow& row : evaluation.continued)
+        if (row.constraint == static_cast<int>(constraint)) text += (text.empty() ? "" : "; ") + row.reason;
+    return text;
+}
+
+const RobustRow* robust_row(const DesignEvaluation& evaluation, bool of_objective, size_t index) {
+    for (const RobustRow& row : evaluation.robust)
+        if (row.of_objective == of_objective && row.index == static_cast<int>(index)) return &row;
+    return nullptr;
+}
+
+std::string reserve_text(const DesignEvaluation& evaluation, bool of_objective, size_t index, const description::CountedUnit& unit) {
+    const RobustRow* row = robust_row(evaluation, of_objective, index);
+    if (row == nullptr) return {};
+    const auto amount = [&](double si) { return description::amount_text(si, unit.si, unit.name, 4); };
+    std::string text = "as drawn " + amount(row->drawn.value);
+    if (row->mean != 0) text += ", mean " + amount(row->drawn.value + row->mean);
+    text += row->standard_deviation > 0 ? ", sigma " + amount(row->standard_deviation) : ", reserve " + amount(std::abs(row->reserve));
+    if (row->is_at_kink) text += " (its derivatives jump close by: how the reserve changes is not known there)";
+    return text;
+}
+
+std::string reserves_text(const description::Design& design) {
+    if (!design.as_made) return {};
+    return "over " + core::base::counted(design.as_made->tolerances.size(), "tolerance") +
+           ", to first order of the derivatives: computed, not proven";
+}
+
+EvaluateOptions for_several(EvaluateOptions options) {
+    if (!options.should_stop) return options;
+    options.should_stop = [ask = std::move(options.should_stop), mutex = std::make_shared<std::mutex>()] {
+        const std::lock_guard lock(*mutex);
+        return ask();
+    };
+    return options;
+}
+
+}  // namespace fettle::design::problem

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/design/reading/over_tolerances_reader.hpp"
+
+namespace fettle::design::reading {
+
+using core::files::JsonNode;
+using description::OverTolerances;
+
+std::optional<OverTolerances> read_over_tolerances(const JsonNode& node, const std::optional<OverTolerances>& otherwise) {
+    if (!node.exists()) return otherwise;
+    if (node.is_string()) {
+        const auto word = node.choice({"as_drawn", "worst_case"});
+        if (word && *word == "worst_case") return OverTolerances{OverTolerances::Kind::worst_case, 0};
+        return std::nullopt;
+    }
+    if (!node.is_object()) {
+        node.fail(ErrorCode::wrong_type, "this is {\"sigma\": 3}, \"worst_case\" or \"as_drawn\"");
+        return std::nullopt;
+    }
+    node.allow_keys({"sigma"});
+    const auto sigmas = node.require("sigma").number(core::files::not_negative);
+    if (!sigmas) return std::nullopt;
+    return OverTolerances{OverTolerances::Kind::sigma, *sigmas};
+}
+
+std::optional<OverTolerances> read_over_tolerances_of(const JsonNode& requirement, const description::Bounds& bounds,
+                                                      const std::optional<OverTolerances>& otherwise) {
+    const auto over = read_over_tolerances(requirement["over_tolerances"], otherwise);
+    if (!over || bounds.lower != bounds.upper) return over;
+    requirement.fail(ErrorCode::inconsistent,
+                     "it asks for one number exactly, which nothing has over its tolerances: give it a lower and an upper bound, or say "
+                     "\"over_tolerances\": \"as_drawn\"");
+    return std::nullopt;
+}
+
+}  // namespace fettle::design::reading
