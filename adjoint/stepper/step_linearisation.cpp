@@ -248,24 +248,34 @@ StepRounds::StepRounds(const core::model::Model& model, const core::stepper::Tra
     const core::stepper::TrajectoryStep& step = trajectory.steps[t];
     const bool frictional = energy::has_friction(model);
     is_fixed_point_ = frictional && model.integrator == core::scene::Integrator::quasi_static;
+    const auto kept = [](const core::stepper::TrajectoryStep& of, std::size_t round) {
+        return round < of.contacts.size() ? of.contacts[round].get() : nullptr;
+    };
+    const auto last_kept = [](const core::stepper::TrajectoryStep& of) { return of.contacts.empty() ? nullptr : of.contacts.back().get(); };
     if (frictional && !is_fixed_point_) {
-        add_end({}, trajectory.poses[t]);
+        add_end({}, trajectory.poses[t], t > 0 ? last_kept(trajectory.steps[static_cast<std::size_t>(t) - 1]) : nullptr);
         for (std::size_t r = 0; r + 1 < step.friction_rounds.size(); ++r)
-            add_end(step.friction_rounds[r], poses_of(problem_, step.friction_rounds[r]));
+            add_end(step.friction_rounds[r], poses_of(problem_, step.friction_rounds[r]), kept(step, r));
     } else {
         ends_.emplace_back();
     }
-    add_end(step.nodes.back(), trajectory.poses[t + 1]);
+    add_end(step.nodes.back(), trajectory.poses[t + 1], last_kept(step));
     if (is_fixed_point_) ends_.front() = ends_.back();
 }
 
-void StepRounds::add_end(std::vector<core::kinematics::ChartPoint> points, std::vector<core::kinematics::Pose> poses) {
+void StepRounds::add_end(std::vector<core::kinematics::ChartPoint> points, std::vector<core::kinematics::Pose> poses,
+                         const core::stepper::KeptContacts* kept) {
     const core::model::Model& model = *problem_.model;
     const auto same = [](const core::kinematics::Pose& a, const core::kinematics::Pose& b) {
         return a.position == b.position && a.rotation == b.rotation;
     };
     if (known_ && std::equal(poses.begin(), poses.end(), known_->poses.begin(), known_->poses.end(), same)) {
         ends_.push_back({std::move(points), known_});
+        return;
+    }
+    if (kept != nullptr && !model.area_weighted && are_of(*kept, model, poses)) {
+        ends_.push_back({std::move(points),
+                         std::make_shared<const contact::LaggedContacts>(contact::LaggedContacts{std::move(poses), kept->contacts, {}})});
         return;
     }
     const core::ccd::Candidates candidates = core::ccd::find_candidates(model, poses, 0);

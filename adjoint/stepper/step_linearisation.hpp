@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// One step linearised about its solution: what the reverse and the forward sweep share. Everything is computed anew from the trajectory's
-/// configurations (broad phase, contacts, friction's lag, true Hessian), so that a trajectory needs to store nothing else, but for where
-/// the rounds of friction ended.
+/// configurations (friction's lag, true Hessian, and the contacts where it has not kept them), so that a trajectory needs to store nothing
+/// else, but for where the rounds of friction ended.
 #pragma once
 
 #include <memory>
@@ -131,7 +131,9 @@ private:
         std::vector<core::kinematics::ChartPoint> points;
         std::shared_ptr<const contact::LaggedContacts> at;
     };
-    void add_end(std::vector<core::kinematics::ChartPoint> points, std::vector<core::kinematics::Pose> poses);
+    /// @param kept  the contacts there, as the trajectory has them; null: it has none
+    void add_end(std::vector<core::kinematics::ChartPoint> points, std::vector<core::kinematics::Pose> poses,
+                 const core::stepper::KeptContacts* kept);
 
     core::energy::StepProblem problem_;
     std::shared_ptr<const contact::LaggedContacts> known_;

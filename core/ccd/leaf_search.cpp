@@ -11,7 +11,6 @@
 namespace fettle::core::ccd {
 namespace {
 
-using base::Four;
 using base::lanes;
 using geometry::HierarchyElement;
 using geometry::PairType;
@@ -50,28 +49,30 @@ public:
             for (int j = nb.first; j < nb.first + nb.count; ++j) {
                 const int a = a_.place(i), b = b_.place(j);
                 if (a_.element(a).box.is_apart(b_.element(b).box, pair_.margin + lost)) continue;
-                close_.push_back({a, b, lost});
-                if (count_of(close_) == lanes) visit_close();
+                visit_elements({a, b, lost});
             }
     }
 
     // What has not made four of a kind yet.
     void finish() {
-        visit_close();
         flush(PairType::point_triangle, vertex_triangle_, out_.vertex_triangle);
         flush(PairType::point_triangle, triangle_vertex_, out_.triangle_vertex);
         flush(PairType::edge_edge, edge_edge_, out_.edge_edge);
     }
 
 private:
-    // Elements whose boxes are close, but for those that the plane of one of them separates.
-    void visit_close() {
-        for (const PlacedPair& pair : close_) {
-            const PlacedElement &a = a_.element(pair.a), &b = b_.element(pair.b);
-            const double margin = pair_.margin + pair.lost;
-            if (!is_apart_along(a.normal, a, b, margin) && !is_apart_along(b.normal, a, b, margin)) visit_primitives(pair, a, b);
-        }
-        close_.clear();
+    // Elements whose boxes are close: their primitives, unless the plane of one of them separates them.
+    void visit_elements(const PlacedPair& pair) {
+        const PlacedElement &a = a_.element(pair.a), &b = b_.element(pair.b);
+        const PlacedDetails &of_a = a_.details(pair.a), &of_b = b_.details(pair.b);
+        const HierarchyElement &ea = elements_a_[a.element], &eb = elements_b_[b.element];
+        // Within plane faces triangles own next to nothing.
+        const bool has_edges = of_a.edge_count > 0 && of_b.edge_count > 0;
+        if (ea.owned_vertex_count + eb.owned_vertex_count == 0 && !has_edges) return;
+        const double margin = pair_.margin + pair.lost;
+        if (is_apart_along(of_a.normal, a, b, margin) || is_apart_along(of_b.normal, a, b, margin)) return;
+        visit_vertices(pair, a, b);
+        if (has_edges) visit_edges(pair, of_a, of_b, b);
     }
 
     struct Range {
@@ -91,7 +92,7 @@ private:
         return b0.low - a0.high > margin && along(n, b_, b, 3).low - along(n, a_, a, 3).high > margin;
     }
 
-    void visit_primitives(const PlacedPair& pair, const PlacedElement& a, const PlacedElement& b) {
+    void visit_vertices(const PlacedPair& pair, const PlacedElement& a, const PlacedElement& b) {
         const HierarchyElement &ea = elements_a_[a.element], &eb = elements_b_[b.element];
         const double margin = pair_.margin + pair.lost;
         if (takes_vertices(ea, eb, true))
@@ -108,11 +109,15 @@ private:
                 add({{ea.face, eb.owned_vertices[k], pair.lost}, {corner, a.corners[0], a.corners[1], a.corners[2]}},
                     PairType::point_triangle, triangle_vertex_, out_.triangle_vertex);
             }
-        for (int k = 0; k < a.edge_count; ++k) {
-            const PlacedEdge& edge_a = a.edges[k];
+    }
+
+    void visit_edges(const PlacedPair& pair, const PlacedDetails& of_a, const PlacedDetails& of_b, const PlacedElement& b) {
+        const double margin = pair_.margin + pair.lost;
+        for (int k = 0; k < of_a.edge_count; ++k) {
+            const PlacedEdge& edge_a = of_a.edges[k];
             if (edge_a.box.is_apart(b.box, margin)) continue;
-            for (int l = 0; l < b.edge_count; ++l) {
-                const PlacedEdge& edge_b = b.edges[l];
+            for (int l = 0; l < of_b.edge_count; ++l) {
+                const PlacedEdge& edge_b = of_b.edges[l];
                 if (edge_a.box.is_apart(edge_b.box, margin)) continue;
                 add({{edge_a.edge, edge_b.edge, pair.lost}, {edge_a.ends[0], edge_a.ends[1], edge_b.ends[0], edge_b.ends[1]}},
                     PairType::edge_edge, edge_edge_, out_.edge_edge);
@@ -156,7 +161,6 @@ private:
     PlacedBody &a_, &b_;
     const std::vector<HierarchyElement>&elements_a_, &elements_b_;
     geometry::PrimitivePairs& out_;
-    std::vector<PlacedPair> close_;
     Waiting vertex_triangle_, triangle_vertex_, edge_edge_;
 };
 

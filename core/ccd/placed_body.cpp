@@ -7,6 +7,7 @@ void PlacedBody::start(const SweptBody& body, const std::array<Vector3, 2>& orig
     for (const PlacedElement& e : elements_) element_at_[e.element] = -1;
     for (const int v : placed_vertices_) vertex_at_[v] = -1;
     elements_.clear();
+    details_.clear();
     vertices_.clear();
     placed_vertices_.clear();
     body_ = &body;
@@ -38,12 +39,21 @@ int PlacedBody::place_vertex(int vertex) {
 int PlacedBody::place_element(int element) {
     const geometry::BodyHierarchy& hierarchy = *body_->body->hierarchy;
     const geometry::HierarchyElement& e = hierarchy.elements()[element];
-    PlacedElement out;
+    PlacedElement& out = elements_.emplace_back();
     out.element = element;
-    for (int k = 0; k < 3; ++k) out.corners[k] = place_vertex(hierarchy.faces()[e.face][k]);
+    const geometry::Triangle& face = hierarchy.faces()[e.face];
+    for (int k = 0; k < 3; ++k) out.corners[k] = place_vertex(face[k]);
     out.box = vertices_[out.corners[0]].box;
     for (int k = 1; k < e.vertex_count; ++k) out.box = out.box.joined(vertices_[out.corners[k]].box);
-    const auto start = [&](int k) { return Eigen::Map<const Vector3>(vertices_[out.corners[k]].x.data()); };
+    return count_of(elements_) - 1;
+}
+
+int PlacedBody::make_details(int i) {
+    PlacedElement& element = elements_[i];
+    element.details = count_of(details_);
+    PlacedDetails& out = details_.emplace_back();
+    const geometry::HierarchyElement& e = body_->body->hierarchy->elements()[element.element];
+    const auto start = [&](int k) { return Eigen::Map<const Vector3>(vertices_[element.corners[k]].x.data()); };
     out.normal = (start(1) - start(0)).cross(start(2) - start(0));
     const double length = out.normal.norm();
     out.normal = length > 0 ? Vector3(out.normal * ((1 - 1e-14) / length)) : Vector3(Vector3::Zero());
@@ -51,11 +61,10 @@ int PlacedBody::place_element(int element) {
         if (plane_ != nullptr && plane_->is_plane_edge(e.owned_edges[k])) continue;
         PlacedEdge& edge = out.edges[out.edge_count++];
         edge.edge = e.owned_edges[k];
-        edge.ends = {out.corners[e.owned_edge_corners[k][0]], out.corners[e.owned_edge_corners[k][1]]};
+        edge.ends = {element.corners[e.owned_edge_corners[k][0]], element.corners[e.owned_edge_corners[k][1]]};
         edge.box = vertices_[edge.ends[0]].box.joined(vertices_[edge.ends[1]].box);
     }
-    elements_.push_back(out);
-    return count_of(elements_) - 1;
+    return element.details;
 }
 
 }  // namespace fettle::core::ccd

@@ -51,6 +51,11 @@ struct PlacedElement {
     int element = 0;             ///< into BodyHierarchy::elements()
     std::array<int, 3> corners;  ///< placed vertices, as in BodyHierarchy::faces(): of edges and points repeated to three
     SweptBox box;
+    int details = -1;  ///< among those made; -1: not made
+};
+
+/// What is asked of elements whose boxes are near another's.
+struct PlacedDetails {
     Vector3 normal;  ///< at the start, of length at most 1: separations along it are no more than they are; zero: it has none
     int edge_count = 0;
     std::array<PlacedEdge, 3> edges;  ///< those of HierarchyElement::owned_edges that are looked at
@@ -69,17 +74,24 @@ public:
         return at >= 0 ? at : at = place_element(element);
     }
     const PlacedElement& element(int i) const { return elements_[i]; }
+    /// Makes them if they are not there. They stay where they are until the next is made.
+    const PlacedDetails& details(int i) {
+        const int at = elements_[i].details;
+        return details_[at >= 0 ? at : make_details(i)];
+    }
     const PlacedVertex& vertex(int i) const { return vertices_[i]; }
 
 private:
     int place_element(int element);
     int place_vertex(int vertex);
+    int make_details(int i);
 
     const SweptBody* body_ = nullptr;
     const geometry::FlatFeatures* plane_ = nullptr;
     std::array<Vector3, 2> origin_;
     std::vector<int> element_at_, vertex_at_;  // by their number in the body: among those placed; -1: not placed
     std::vector<PlacedElement> elements_;
+    std::vector<PlacedDetails> details_;
     std::vector<PlacedVertex> vertices_;
     std::vector<int> placed_vertices_;  // their numbers in the body
 };

@@ -216,7 +216,11 @@ private:
     void keep_round() {
         auto& ends = result_.round_ends;
         ends.push_back(at_.points);
-        if (options_.caution > 0 && ends.size() > 2) ends.erase(ends.begin());
+        result_.round_contacts.push_back({at_.poses, at_.contacts});
+        if (options_.caution > 0 && ends.size() > 2) {
+            ends.erase(ends.begin());
+            result_.round_contacts.erase(result_.round_contacts.begin());
+        }
     }
 
     bool is_within(const std::vector<ChartPoint>& end, double enough) const {

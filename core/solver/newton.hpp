@@ -53,6 +53,7 @@ struct NewtonResult {
     int iterations = 0;
     int friction_rounds = 0;
     std::vector<std::vector<kinematics::ChartPoint>> round_ends;  ///< of friction, if they are to be kept
+    std::vector<KnownContacts> round_contacts;                    ///< there
     contact::ContactSet contacts;                                 ///< at the end of the path
     contact::FrictionSet friction;                                ///< of the last round: what the solution was solved with
     VectorX multipliers;                                          ///< per row of the mechanism, of the potential times its weight

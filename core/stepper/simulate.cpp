@@ -61,6 +61,12 @@ Simulation taken_up(const model::Model& model, const SimulationOptions& options)
     return out;
 }
 
+std::size_t contacts_of(const TrajectoryStep& step) {
+    std::size_t count = 0;
+    for (const auto& kept : step.contacts) count += 1 + static_cast<std::size_t>(kept->contacts.count);
+    return count;
+}
+
 // A step that is stopped in the middle of its searches is one that did not happen.
 StepResult stoppable_step(const model::Model& model, const StepState& state, solver::NewtonWorkspace& workspace,
                           const SimulationOptions& options) {
@@ -83,6 +89,8 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
     StepState state = out.checkpoint.state;
     solver::NewtonWorkspace workspace(model);
     const int steps = step_count(model, options);
+    std::size_t kept_contacts = 0;
+    for (const TrajectoryStep& earlier : out.trajectory.steps) kept_contacts += contacts_of(earlier);
     std::optional<BalanceSum> balance;
     if (options.outputs && model.integrator != scene::Integrator::quasi_static)
         balance.emplace(start_report(model, state), model.timestep, largest_work(model));
@@ -103,6 +111,10 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
         }
         out.report.steps.push_back(result.report);
         out.trajectory.steps.push_back(std::move(result.path));
+        if (kept_contacts += contacts_of(out.trajectory.steps.back()); kept_contacts > most_kept_contacts) {
+            out.trajectory.steps.back().contacts.clear();
+            kept_contacts = most_kept_contacts;  // nor any later
+        }
         if (balance) {
             balance->add(result.outputs);
             out.balance = balance->balance();

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/ccd/safe_step.hpp"
@@ -139,6 +141,16 @@ SimulationStatus simulation_status(solver::NewtonStatus status) {
     return SimulationStatus::not_converged;
 }
 
+// Not with weights that are areas: derivatives ask more of those than the contacts.
+void keep_contacts(const model::Model& model, solver::NewtonResult& solved, TrajectoryStep& path) {
+    if (model.area_weighted) return;
+    const auto keep = [&](std::vector<kinematics::Pose> poses, contact::ContactSet contacts) {
+        path.contacts.push_back(std::make_shared<const KeptContacts>(kept_contacts(model, std::move(poses), std::move(contacts))));
+    };
+    for (solver::KnownContacts& round : solved.round_contacts) keep(std::move(round.poses), std::move(round.contacts));
+    if (solved.round_contacts.empty()) keep(solved.poses, solved.contacts);
+}
+
 // With no gradient to keep smooth, contact may be stiffer: a two-level house of cards needs it, which falls over on soft contacts.
 double least_kappa(const model::Model& model) { return model.adaptive_kappa ? 10 * model.kappa : model.kappa; }
 
@@ -252,6 +264,7 @@ StepResult step(const model::Model& model, const StepState& state, solver::Newto
     result.state.kappa = for_gradient ? model.kappa : next_kappa(model, problem.kappa, solved.contacts);
     result.state.history = energy::advanced(model, state.history, problem, solved.poses);
     if (options.outputs) result.outputs = step_outputs(model, problem, solved, state, result.state);
+    if (for_gradient) keep_contacts(model, driven.solved, result.path);
     workspace.contacts = {std::move(driven.solved.poses), std::move(driven.solved.contacts)};
     return result;
 }

@@ -3,10 +3,12 @@
 /// checked by curved CCD segment by segment). Readers and writers: trajectory_io.hpp.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "fettle/core/kinematics/path.hpp"
+#include "fettle/core/stepper/kept_contacts.hpp"
 
 namespace fettle::core::stepper {
 
@@ -20,6 +22,8 @@ struct TrajectoryStep {
     /// [round][body]: where each round of friction ended, the last at the step's end; of a quasi-static step the last two. Kept by
     /// simulations for gradients of scenes with friction (the adjoint goes back through the rounds), and in memory only; empty: not kept.
     std::vector<std::vector<kinematics::ChartPoint>> friction_rounds{};
+    /// Contacts at these ends, without friction at the step's end alone. Kept likewise; missing where they were too many.
+    std::vector<std::shared_ptr<const KeptContacts>> contacts{};
 };
 
 struct Trajectory {

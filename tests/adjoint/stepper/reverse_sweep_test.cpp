@@ -52,6 +52,57 @@ TEST_CASE("the scenes reach every kind of contact", "[adjoint][stepper]") {
     CHECK(sum.mollified > 30);
 }
 
+TEST_CASE("contacts that a trajectory keeps change no bit of a gradient", "[adjoint][stepper]") {
+    std::vector<SweepScene> scenes = all_scenes();
+    for (const SweepScene& scene : all_scenes())
+        if (scene.name != "free flight") scenes.push_back(rubbed(scene));
+    int contacts = 0;
+    for (const SweepScene& scene : scenes) {
+        INFO(scene.name);
+        core::stepper::Trajectory trajectory = trajectory_of(scene);
+        std::mt19937_64 random(23);
+        const std::vector<TrajectoryGradient> seeds{random_seed(scene, random)};
+        const auto with = reverse_sweep(scene.model, trajectory, seeds);
+        REQUIRE(with);
+        for (std::size_t t = 0; t < trajectory.steps.size(); ++t) {
+            core::stepper::TrajectoryStep& step = trajectory.steps[t];
+            if (!scene.model.area_weighted) {
+                REQUIRE(step.contacts.size() == std::max<std::size_t>(step.friction_rounds.size(), 1));
+                CHECK(are_of(*step.contacts.back(), scene.model, trajectory.poses[t + 1]));
+                contacts += step.contacts.back()->contacts.count;
+            }
+            step.contacts.clear();
+        }
+        const auto without = reverse_sweep(scene.model, trajectory, seeds);
+        REQUIRE(without);
+        for (std::size_t i = 0; i < scene.model.bodies.size(); ++i) {
+            CHECK((*with)[0].bodies[i].vertices_bar == (*without)[0].bodies[i].vertices_bar);
+            CHECK((*with)[0].bodies[i].pose_start_bar == (*without)[0].bodies[i].pose_start_bar);
+        }
+    }
+    CHECK(contacts > 1000);
+}
+
+TEST_CASE("contacts of another model, or of other poses, are not taken", "[adjoint][stepper]") {
+    for (const SweepScene& scene : all_scenes()) {
+        if (scene.model.area_weighted) continue;
+        const core::stepper::Trajectory trajectory = trajectory_of(scene);
+        const core::stepper::KeptContacts& kept = *trajectory.steps.back().contacts.back();
+        if (kept.contacts.count == 0) continue;
+        INFO(scene.name);
+        std::vector<core::kinematics::Pose> poses = trajectory.poses.back();
+        CHECK(are_of(kept, scene.model, poses));
+        core::model::Model other = scene.model;
+        other.dhat *= 1 + 1e-15;
+        CHECK_FALSE(are_of(kept, other, poses));
+        other = scene.model;
+        for (core::model::Body& body : other.bodies) body.mesh.vertices.array() += 1e-9 * body.radius;
+        CHECK_FALSE(are_of(kept, other, poses));
+        poses.back().position[2] += 1e-12;
+        CHECK_FALSE(are_of(kept, scene.model, poses));
+    }
+}
+
 TEST_CASE("backwards and forwards agree", "[adjoint][stepper]") {
     std::vector<SweepScene> scenes = all_scenes();
     for (const SweepScene& scene : all_scenes())
