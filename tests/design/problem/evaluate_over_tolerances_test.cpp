@@ -135,7 +135,8 @@ TEST_CASE("a robust optimum of the one-way clutch is where its closed form is") 
         const double middle = (lower + upper) / 2;
         (robust_clutch_angle(middle, 11.43e-3, 50.8e-3) > most ? lower : upper) = middle;
     }
-    CHECK(outcome->report.point[0] == Approx(upper).epsilon(2e-6));
+    // To the optimiser's tolerance, 1e-4 of an objective of 11 mm; the reserve is worth 55 um.
+    CHECK(outcome->report.point[0] == Approx(upper).epsilon(0).margin(1.2e-6));
 }
 
 TEST_CASE("a robust design's numbers: a variable and a place that no parameter moves, both sides of a bound, terms of the objective") {
