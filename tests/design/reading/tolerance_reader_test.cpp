@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "fettle/design/description/independent_inputs.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/design_text.hpp"
-#include "fettle/design/studies/independent_inputs.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
 namespace fettle::design::reading::tolerance_reader_test {
@@ -89,7 +89,7 @@ TEST_CASE("tolerances by a process: what one print shares, unless the entry says
     const Folder folder;
     const auto file = good(folder.read(R"("process": "fdm", "tolerances": {"depth": "hole", "radius": {"feature": "pin", "of": "radius"},
         "length": {"feature": "length", "correlation": 0.2}})"));
-    const studies::IndependentInputs inputs = studies::independent_inputs(file->tolerances);
+    const description::IndependentInputs inputs = description::independent_inputs(file->tolerances);
     REQUIRE(inputs.groups == std::vector<std::string>{"fdm", "fdm lengths"});
     VectorX variances(inputs.count());
     for (int k = 0; k < inputs.count(); ++k) variances[k] = inputs.moments[k].standard_deviation * inputs.moments[k].standard_deviation;
@@ -104,7 +104,7 @@ TEST_CASE("tolerances by a process: what one print shares, unless the entry says
         "radius": {"feature": "pin", "distribution": "uniform"}, "length": {"feature": "hole", "correlation": 0}})"));
     CHECK(of(*own, "depth").group == "lid");
     CHECK(of(*own, "radius").group.empty());
-    CHECK(studies::independent_inputs(own->tolerances).groups == std::vector<std::string>{"lid"});
+    CHECK(description::independent_inputs(own->tolerances).groups == std::vector<std::string>{"lid"});
     CHECK(good(folder.read(R"("process": "cnc", "tolerances": {"depth": "hole"})"))->tolerances[0].group.empty());
 }
 
