@@ -369,8 +369,19 @@ Json tolerance_json(const Design& design, const std::vector<Tolerance>& toleranc
     return json;
 }
 
-std::string tolerance_text(const Design& design, const std::vector<Tolerance>& tolerances, const ToleranceReport& report) {
-    return Text(design, tolerances, report).all();
+Json tolerance_json(const reading::DesignFile& file, const ToleranceReport& report) {
+    Json json = tolerance_json(file.design, file.tolerances, report);
+    json["process"] = file.process.empty() ? Json() : Json(file.process);
+    json["untoleranced"] = Json::array();
+    for (const reading::Untoleranced& each : file.untoleranced) json["untoleranced"].push_back({{"name", each.name}, {"why", each.why}});
+    return json;
+}
+
+std::string tolerance_text(const reading::DesignFile& file, const ToleranceReport& report) {
+    std::string text = Text(file.design, file.tolerances, report).all();
+    if (!file.untoleranced.empty()) text += "without a tolerance (\"*\" leaves them out):\n";
+    for (const reading::Untoleranced& each : file.untoleranced) text += "  " + each.name + ": " + each.why + "\n";
+    return text;
 }
 
 }  // namespace fettle::design::answers

@@ -6,15 +6,19 @@
 #include <string>
 #include <vector>
 
+#include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/tolerance_study.hpp"
 
 namespace fettle::design::answers {
 
 /// @param design  As made.
+/// Of a study. @param design  As made. @param tolerances  That were studied.
 nlohmann::ordered_json tolerance_json(const description::Design& design, const std::vector<description::Tolerance>& tolerances,
                                       const studies::ToleranceReport& report);
 
-std::string tolerance_text(const description::Design& design, const std::vector<description::Tolerance>& tolerances,
-                           const studies::ToleranceReport& report);
+/// With the process that the file goes by, and what has no tolerance.
+/// @param file  As made.
+nlohmann::ordered_json tolerance_json(const reading::DesignFile& file, const studies::ToleranceReport& report);
+std::string tolerance_text(const reading::DesignFile& file, const studies::ToleranceReport& report);
 
 }  // namespace fettle::design::answers

@@ -119,8 +119,7 @@ Errors there_already(const std::vector<fs::path>& files) {
     for (const fs::path& path : files) {
         std::error_code code;
         if (fs::exists(path, code))
-            errors.push_back(
-                {ErrorCode::inconsistent, path.string(), "is there already, and is left as it is; name another file: --out X.3mf"});
+            errors.push_back({ErrorCode::inconsistent, path.string(), "is there already, and is left as it is; give --out another name"});
     }
     return errors;
 }

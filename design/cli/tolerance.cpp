@@ -14,8 +14,6 @@ namespace fettle::design::cli {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct Options {
     std::string path, process;
     int samples = 0;
@@ -32,18 +30,6 @@ void tell_unused_process(Console& console, const reading::DesignFile& file, cons
     tell_warnings(console,
                   {"--process " + file.process + " changes nothing: no tolerance of the design says which `feature` it is of (\"hole\")"},
                   path);
-}
-
-Json untoleranced_json(const std::vector<reading::Untoleranced>& all) {
-    Json list = Json::array();
-    for (const reading::Untoleranced& each : all) list.push_back({{"name", each.name}, {"why", each.why}});
-    return list;
-}
-
-std::string untoleranced_text(const std::vector<reading::Untoleranced>& all) {
-    std::string text = all.empty() ? "" : "without a tolerance (\"*\" leaves them out):\n";
-    for (const reading::Untoleranced& each : all) text += "  " + each.name + ": " + each.why + "\n";
-    return text;
 }
 
 int run_allocation(const Options& options, const reading::DesignFile& file, const studies::ToleranceOptions& study, Console& console) {
@@ -81,10 +67,7 @@ int run_tolerance(const Options& options, const CommonOptions& common, Console& 
     const Result<studies::ToleranceReport> report = studies::study_tolerances(*file, options.samples_file, study);
     console.end_progress();
     if (!report) return console.input_errors(report.errors());
-    Json json = answers::tolerance_json(file->design, file->tolerances, *report);
-    json["process"] = file->process.empty() ? Json() : Json(file->process);
-    json["untoleranced"] = untoleranced_json(file->untoleranced);
-    console.result(json, answers::tolerance_text(file->design, file->tolerances, *report) + untoleranced_text(file->untoleranced));
+    console.result(answers::tolerance_json(*file, *report), answers::tolerance_text(*file, *report));
     return report->reason.empty() && report->no_second_order.empty() && !report->interrupted ? exit_done : exit_undecided;
 }
 

@@ -30,10 +30,11 @@ MatrixX deviations_of(const studies::ToleranceReport& report, int tolerances) {
 }
 
 py::object tolerance(const Path& path, int samples, std::int64_t seed, bool second_order, bool worst_case, const std::string& samples_file,
-                     const std::vector<Path>& mesh_dirs, bool allow_programs, const py::object& progress) {
+                     const std::string& process, const std::vector<Path>& mesh_dirs, bool allow_programs, const py::object& progress) {
     check_at_least("samples", samples, 0);
     reading::DesignReadOptions read{texts_of(mesh_dirs), allow_programs ? reading::Programs::allowed : reading::Programs::refused};
     read.as_made = true;
+    read.process = process;
     studies::ToleranceOptions options;
     options.samples = samples;
     options.seed = seed_from(seed);
@@ -50,18 +51,19 @@ py::object tolerance(const Path& path, int samples, std::int64_t seed, bool seco
     watch.end();
     const studies::ToleranceReport found = value_or_raise(std::move(report));
     return py::module_::import("fettle.results")
-        .attr("ToleranceReport")(answers::tolerance_json(file.design, file.tolerances, found).dump(),
-                                 deviations_of(found, count_of(file.tolerances)), values_of(found));
+        .attr("ToleranceReport")(answers::tolerance_json(file, found).dump(), deviations_of(found, count_of(file.tolerances)),
+                                 values_of(found));
 }
 
 }  // namespace
 
 void bind_tolerances(py::module_& module) {
     module.def("tolerance", &tolerance, py::arg("path"), py::arg("samples") = 0, py::arg("seed") = 1, py::arg("second_order") = true,
-               py::arg("worst_case") = false, py::arg("samples_file") = "", py::arg("mesh_dirs") = std::vector<Path>(),
-               py::arg("allow_programs") = false, py::arg("progress") = py::none(),
+               py::arg("worst_case") = false, py::arg("samples_file") = "", py::arg("process") = "",
+               py::arg("mesh_dirs") = std::vector<Path>(), py::arg("allow_programs") = false, py::arg("progress") = py::none(),
                "What becomes of a *.design.json with `tolerances` when its parts are made, as `fettle tolerance` answers: a "
-               "ToleranceReport. samples_file: samples that it has are not simulated again. progress(done, of).");
+               "ToleranceReport. samples_file: samples that it has are not simulated again. process: what makes the parts, in place of the "
+               "design's. progress(done, of).");
 }
 
 }  // namespace fettle::design::python

@@ -59,8 +59,7 @@ Result<LineFile> LineFile::open(const std::string& name, LineFileMode mode, cons
     out.file_ = open_file(path);
     if (out.file_ < 0) return unwritable();
     if (!lock(out.file_)) {
-        return Error{ErrorCode::file_unreadable, name,
-                     "another process is writing this " + what + "; wait for it, or give --out another folder"};
+        return Error{ErrorCode::file_unreadable, name, "another process is writing this " + what + "; wait for it, or name another"};
     }
     if (mode == LineFileMode::fresh && fs::file_size(path, failure) > 0) {
         const Result<std::string> kept = rename_away(path);

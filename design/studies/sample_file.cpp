@@ -15,8 +15,20 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json header_json(const SampleFileHeader& header) {
-    return {{"fettle_samples", 1}, {"design", header.design_hash},    {"program", core::base::version()},
-            {"seed", header.seed}, {"tolerances", header.tolerances}, {"responses", header.responses}};
+    Json tolerances = Json::array();
+    for (const description::Tolerance& tolerance : header.tolerances) {
+        const tolerances::Distribution& d = tolerance.deviation;
+        tolerances.push_back({{"of", tolerance.of},
+                              {"distribution", to_string(d.kind)},
+                              {"lower", d.lower},
+                              {"upper", d.upper},
+                              {"sigma_level", d.sigma_level},
+                              {"shift", d.shift},
+                              {"group", tolerance.group},
+                              {"correlation", tolerance.correlation}});
+    }
+    return {{"fettle_samples", 1}, {"design", header.design_hash}, {"program", core::base::version()},
+            {"seed", header.seed}, {"tolerances", tolerances},     {"responses", header.responses}};
 }
 
 std::pair<int, SampleOutcome> parsed_sample(const std::string& line, const SampleFileHeader& header) {
@@ -58,17 +70,18 @@ Errors SampleFile::read_found(const std::string& path) {
     }
     const Json found = core::files::is_safe_json_text(lines.front()) ? Json::parse(lines.front(), nullptr, false) : Json();
     if (found.is_discarded() || !found.is_object() || !found.contains("fettle_samples"))
-        return {{ErrorCode::parse, path + ": line 1", "this is not a file of samples of fettle; give another name"}};
+        return {{ErrorCode::parse, path + ": line 1", "this is not a file of samples of fettle; name another file"}};
     if (found != header_json(header_))
         return {{ErrorCode::inconsistent, path,
-                 "these are samples of another design, version, seed or list of tolerances; give another name, or delete the file"}};
+                 "these are samples of another design, version, seed, or of other tolerances; name another file, or delete this one"}};
     std::size_t good = 1;
     for (; good < lines.size(); ++good) {
         try {
             known_.insert(parsed_sample(lines[good], header_));
         } catch (const std::exception& e) {
             if (good + 1 == lines.size()) break;  // a machine that lost power
-            return {{ErrorCode::parse, path + ": line " + std::to_string(good + 1), std::string("damaged: ") + e.what()}};
+            return {{ErrorCode::parse, path + ": line " + std::to_string(good + 1),
+                     std::string("damaged: ") + e.what() + "; take the line out, or name another file"}};
         }
     }
     return file_.keep(good);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// The samples of made mechanisms as a file, so that they can be made in several goes, and by several machines: a header line, then one
 /// JSON object per sample, in any order. Doubles are written so that they read back bit for bit.
-///   header   fettle_samples 1, design (hash of all that a sample's numbers depend on), program, seed, tolerances and responses (names)
+///   header   fettle_samples 1, design (hash of what the file says), program, seed, tolerances (of, and their distributions, which a
+///   process
+///            may give), responses (names)
 ///   sample   sample (0, 1, ...), reason (why it failed; there: no others), values (SI, per response), met (booleans, per response)
 /// The deviations of a sample follow from seed and number.
 #pragma once
@@ -17,9 +19,10 @@
 namespace fettle::design::studies {
 
 struct SampleFileHeader {
-    std::string design_hash;  ///< of everything that a sample's numbers depend on, the program's version included
+    std::string design_hash;  ///< reading::design_hash
     std::uint64_t seed = 1;
-    std::vector<std::string> tolerances, responses;
+    std::vector<description::Tolerance> tolerances;
+    std::vector<std::string> responses;
 };
 
 /// What a sample came to.

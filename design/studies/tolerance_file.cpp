@@ -24,8 +24,7 @@ Error no_tolerances(const reading::DesignFile& file) {
 
 Result<SampleFile> open_samples(const std::string& path, std::uint64_t seed, const reading::DesignFile& file,
                                 const problem::DesignProblem& problem) {
-    SampleFileHeader header{reading::design_hash(file), seed, {}, {}};
-    for (const description::Tolerance& tolerance : file.tolerances) header.tolerances.push_back(tolerance.of);
+    SampleFileHeader header{reading::design_hash(file), seed, file.tolerances, {}};
     for (const AskedNumber& number : asked_numbers(problem.design())) header.responses.push_back(number.name);
     return SampleFile::open(path, header);
 }

@@ -285,6 +285,7 @@ def tolerance(
     second_order: bool = ...,
     worst_case: bool = ...,
     samples_file: str = ...,
+    process: str = ...,
     mesh_dirs: Sequence[Path] = ...,
     allow_programs: bool = ...,
     progress: Optional[Count] = ...,

@@ -136,7 +136,7 @@ TEST_CASE("tolerance: spreads, contributors and samples, as text and as JSON") {
     CHECK(run("tolerance " + folder.design() + " --samples 16 --worst-case --json" + kept).out == told.out);  // five of them from there
     const Answer others = run("tolerance " + folder.design() + " --samples 5 --seed 2" + kept, true);
     CHECK(others.code == 3);
-    CHECK(others.says("these are samples of another design, version, seed or list of tolerances"));
+    CHECK(others.says("these are samples of another design, version, seed, or of other tolerances"));
     CHECK(run("tolerance " + folder.design() + " --samples 5 --samples-file " + folder.design(), true).code == 3);
     const Answer text = run("tolerance " + folder.design());
     CHECK(text.says("weight: 1 g as drawn, required at most 1.02 g"));

@@ -99,6 +99,8 @@ TEST_CASE("coupon, form, process, tolerance") {
     const Json mine = run("tolerance small.design.json --process mine --json", false, in).json();
     CHECK(mine.at("process") == "mine");
     CHECK(mine.at("tolerances").at(0).at("mean").get<double>() == Approx(-0.15).margin(0.03));
+    CHECK(run("tolerance small.design.json --process mine --samples 3 --samples-file made.jsonl", false, in).code == 0);
+    CHECK(run("tolerance small.design.json --process sla --samples 3 --samples-file made.jsonl", true, in).says("or of other tolerances"));
     CHECK(run("tolerance small.design.json --process mine", false, in).says("force: no length or angle"));
     const Answer none = run("tolerance small.design.json --process mien", true, in);
     CHECK(none.code == 3);

@@ -60,6 +60,19 @@ def test_samples_of_a_file_are_not_made_again(block, tmp_path):
         fettle.tolerance(block, samples=5, seed=2, samples_file=kept)
 
 
+def test_another_process_and_what_it_leaves_out(block):
+    text = json.loads(block.read_text())
+    text["process"], text["tolerances"] = "fdm", {"*": "length"}
+    block.write_text(json.dumps(text))
+    spread = {}
+    for process in ("", "sla"):
+        report = fettle.tolerance(block, second_order=False, process=process)
+        assert report["process"] == (process or "fdm")
+        spread[process] = report.response("mass")["linear"]["standard_deviation"]
+    assert spread["sla"] < spread[""]
+    assert report["untoleranced"] == []
+
+
 def test_what_is_missing_is_told(block):
     text = json.loads(block.read_text())
     del text["tolerances"]

@@ -124,6 +124,28 @@ TEST_CASE("tolerances: the extremes of a response that is not monotone lie withi
     }
 }
 
+// Eleven times as steep from 5 um above the drawn size, where sigma is 16.7 um.
+TEST_CASE("tolerances: a response with a kink within a standard deviation is called rough") {
+    Folder folder;
+    ToleranceOptions options;
+    options.samples = 200;
+    const ToleranceReport report = study(folder.read(R"json({"fettle_design": 1, "scene": "block.scene.json", "units": "mm",
+            "parameters": [{"name": "a", "value": 27.645, "lower": 20, "upper": 30}],
+            "objective": [{"type": "expression", "expression": "a / 1 mm"}],
+            "constraints": [{"type": "relation", "name": "kink", "expression": "a + 10 * max(a - 27.65 mm, 0 mm)", "upper": "28 mm"}],
+            "tolerances": {"a": "+-0.05 mm"}})json"),
+                                         options);
+    CHECK_FALSE(report.responses[0].is_rough);
+    CHECK(report.responses[0].sampled->unexplained < 1e-9);
+    const Response& kink = report.responses[1];
+    CHECK(kink.is_rough);
+    CHECK(kink.second_order->standard_deviation > 0);
+    CHECK(kink.sampled->unexplained > much_unexplained);
+    REQUIRE(report.switched.size() == 1);
+    CHECK(report.switched.front().responses == std::vector<int>{1});
+    CHECK(report.switched.front().changes.empty());  // it is no contact's
+}
+
 TEST_CASE("tolerances: samples of the clutch agree with the second order, and are the same for any number of threads") {
     Folder folder;
     ToleranceOptions options;
