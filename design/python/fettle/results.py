@@ -270,27 +270,34 @@ class Pairs(Records[PairClearance]):
         return columns(title, ["pair", "status", "at least", "at most", "required", "reason"], rows)
 
 
-class ClearanceReport:
+class _Answer:
+    """What a command prints with --json."""
+
+    def __init__(self, text: str):
+        self.answer: Dict[str, Any] = json.loads(text)
+
+    @property
+    def status(self) -> str:
+        return str(self.answer["status"])
+
+    def __getitem__(self, key: str) -> Any:
+        return self.answer[key]
+
+
+class ClearanceReport(_Answer):
     """What `clearance` answers, pairs worst first: what `fettle clearance --json` prints (docs/interface.md), and the proof.
+    `status` is "clear", "violated" or "undecided".
 
     report.status, report.pairs[0]["finding"], report.pair("pin", "plate")["lower"], report["notes"]
     """
 
     def __init__(self, text: str, certificate: Optional[_fettle.Certificate] = None):
-        self.answer: Dict[str, Any] = json.loads(text)
+        super().__init__(text)
         self.certificate = certificate  #: None: none was asked for, or nothing is proven
-
-    @property
-    def status(self) -> str:
-        """ "clear", "violated" or "undecided"."""
-        return str(self.answer["status"])
 
     @property
     def pairs(self) -> List[Dict[str, Any]]:
         return list(self.answer["pairs"])
-
-    def __getitem__(self, key: str) -> Any:
-        return self.answer[key]
 
     def pair(self, a: str, b: str) -> Dict[str, Any]:
         """The row of two bodies or groups, by name, in either order."""
@@ -336,30 +343,23 @@ class ClearanceReport:
         return columns(title, ["pair", "finding", "at least", "at most", "required", "reason"], rows)
 
 
-class ToleranceReport:
-    """What `tolerance` answers: what `fettle tolerance --json` prints (docs/interface.md), and the samples.
+class ToleranceReport(_Answer):
+    """What `tolerance` answers: what `fettle tolerance --json` prints (docs/interface.md), and the samples. `status` is "ok", "undecided"
+    or "interrupted".
 
     report.status, report["samples"]["yield"], report.response("stroke")["linear"]["standard_deviation"]
     report.deviations[k], report.values[k]: of sample k, per tolerance and per response [SI]; values NaN where it failed
     """
 
     def __init__(self, text: str, deviations: Array, values: Array):
-        self.answer: Dict[str, Any] = json.loads(text)
+        super().__init__(text)
         self.deviations = deviations
         self.values = values
-
-    @property
-    def status(self) -> str:
-        """ "ok", "undecided" or "interrupted"."""
-        return str(self.answer["status"])
 
     @property
     def responses(self) -> List[Dict[str, Any]]:
         """The objective, the constraints, the relations."""
         return list(self.answer["responses"])
-
-    def __getitem__(self, key: str) -> Any:
-        return self.answer[key]
 
     def response(self, name: str) -> Dict[str, Any]:
         for row in self.responses:
