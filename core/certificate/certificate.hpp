@@ -11,12 +11,15 @@
 ///   over ranges of joints (`linkage`)    one: all positions of the joints, in every combination; k <= 4, the coordinates that move one
 ///   body
 ///                                        against the other (linked_pair), in their ranges. The trajectory's steps have no effect
+///   over a box of tolerances (`toleranced`)  one: the joints' positions together with every deviation between its limits; k <= 12, the
+///                                        coordinates and then the deviations that matter for the two (toleranced_pair)
 /// With `joints` a certificate over a path claims, too, how far the bodies are from that path where the joints are met at all times: bounds
 /// of their distances are those of the path, wider by joint_charge.
 ///
 /// How it proves `lower`. For every box there is a tree of cells. A cell is a part of the box, a piece of A and a piece of B; the root is
 /// the whole box and both whole bodies. `splits` lists the cells in preorder, one character each:
 ///   0..3  halved along this coordinate: first [low, m], then [m, high], m = (low + high)/2 as rounded (of a path exact: s is dyadic)
+///   A, B  the same of the coordinates 10 and 11
 ///   a     piece of A split into its two parts, in their order;   b  the same of B
 ///   .     a leaf whose proof is one vector;   :  a leaf whose proof is 2^k vectors, one for each corner of its part of the box, bit j of
 ///         the corner's number set where coordinate j is high; `normals` has them, in the order of the leaves
@@ -27,7 +30,8 @@
 /// room of at least 4 times the search's own bound of its rounding (PairSegment::slack, ScrewedPair::slack), and 1/16 of the tolerance, for
 /// a checker's rounding and for its own way of bounding curves. Over a path leaves are merged and vectors rounded as far as this room and
 /// this checker allow (certificate_thinning.hpp).
-/// `upper` is the distance of two points of the bodies at one place of one box.
+/// Over a box of tolerances vectors are in B's frame; a leaf : has 1 + k of them, for n(t) = n_0 + sum n_j t_j, t in [-1, 1] over the
+/// cell's part of the box (toleranced_prover.hpp). `upper` is the distance of two points of the bodies at one place of one box.
 ///
 /// Pieces. A body's elements are its triangles, the edges of no triangle, and the vertices of no edge, numbered
 ///   triangle i: i;   mesh.edges[i]: T + i;   vertex i: T + E + i;   T = number of triangles, E = number of all edges of the mesh.
@@ -46,6 +50,7 @@
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/certificate/ideal_joints.hpp"
 #include "fettle/core/certificate/linkage.hpp"
+#include "fettle/core/certificate/toleranced.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 
 namespace fettle::core::certificate {
@@ -127,6 +132,7 @@ struct Certificate {
     /// Said by whoever made it: the path as stored is what is asked about, not joints that may have the bodies elsewhere between its nodes.
     /// Without that and without `joints` it is not known what its bounds of moving bodies are good for.
     bool is_of_path = false;
+    std::optional<Toleranced> toleranced{};  ///< of one over a box of tolerances
 };
 
 /// Pairs of `bodies` bodies that the certificate says nothing of, a < b.

@@ -13,6 +13,7 @@
 #include "fettle/core/certificate/interval_motion.hpp"
 #include "fettle/core/certificate/joint_prover.hpp"
 #include "fettle/core/certificate/range_prover.hpp"
+#include "fettle/core/certificate/toleranced_prover.hpp"
 
 namespace fettle::core::certificate {
 namespace {
@@ -20,6 +21,7 @@ namespace {
 constexpr std::size_t most_faults = 1000;
 constexpr std::size_t trees_at_once = 4096;
 constexpr int leaf_halvings = 24;
+constexpr double largest_mismatch = 1e-9;  // of formulas and meshes, of the bodies' radii
 
 class Checker {
 public:
@@ -38,8 +40,9 @@ public:
     }
 
 private:
+    template <class Box>
     struct Cell {
-        CoordinateBox box;
+        Box box;
         int a = 0, b = 0;
     };
 
@@ -62,9 +65,18 @@ private:
         check_hashes();
         if (certificate_.pairs.empty()) fault("/pairs", "there is no pair: nothing is certified");
         if (certificate_.bodies.size() != model_.bodies.size()) fault("/bodies", "one entry per body of the model is expected");
+        if (certificate_.toleranced) check_tolerances();
         if (!certificate_.linkage) return;
         if (certificate_.motion || certificate_.joints) fault("/motion", "over ranges of joints there is no path, and no joints along one");
         for (const base::Error& e : check_linkage(*certificate_.linkage, model_.bodies.size())) fault(e.where, e.message);
+    }
+
+    void check_tolerances() {
+        if (certificate_.motion || certificate_.joints || certificate_.linkage)
+            fault("/motion", "over a box of tolerances there is no path, and no other joints than its own");
+        std::vector<int> vertices;
+        for (const model::Body& body : model_.bodies) vertices.push_back(static_cast<int>(body.mesh.vertices.cols()));
+        for (const base::Error& e : check_toleranced(*certificate_.toleranced, vertices)) fault(e.where, e.message);
     }
 
     void check_hashes() {
@@ -73,8 +85,8 @@ private:
             report_.stale = true;
         }
         if (certificate_.path_hash != records::path_hash(trajectory_)) {
-            fault("/path_hash", certificate_.linkage ? "stale: the certificate is about other start poses"
-                                                     : "stale: the certificate is about another path");
+            fault("/path_hash", certificate_.linkage || certificate_.toleranced ? "stale: the certificate is about other start poses"
+                                                                                : "stale: the certificate is about another path");
             report_.stale = true;
         }
     }
@@ -154,12 +166,31 @@ private:
                 std::max(linked.a.size(), linked.b.size()) > static_cast<std::size_t>(most_screws))
                 return fault(where, "more joints between the two than this program checks");
         }
+        if (certificate_.toleranced && !check_tolerances_of(pair, where)) return false;
         if (!check_upper(pair, where)) return false;
         if (pair.lower == 0) return true;  // nothing to prove
         if (pair.boxes.size() != places_.size())
             return fault(where + "/boxes", std::to_string(places_.size()) + " proofs are expected, one for each box: " +
-                                               (certificate_.linkage ? "the ranges" : "a segment of the path"));
+                                               (certificate_.linkage || certificate_.toleranced ? "the ranges" : "a segment of the path"));
         return prepare(pair.a, where) && prepare(pair.b, where);
+    }
+
+    // Few enough variables, and formulas of the meshes and poses at hand.
+    bool check_tolerances_of(const PairCertificate& pair, const std::string& where) {
+        const TolerancedPair toleranced = toleranced_pair(*certificate_.toleranced, pair.a, pair.b);
+        if (count_of(toleranced.coordinates) > most_coordinates || count_of(toleranced.deviations) > most_deviations)
+            return fault(where, "more joints or deviations matter for the two than this program checks");
+        TolerancedProver prover(*certificate_.toleranced, toleranced, mesh(pair.a).vertices, mesh(pair.b).vertices);
+        if (!(mismatch_of(pair) <= largest_mismatch * prover.size()))
+            return fault(where, "the formulas of its bodies are not those of the meshes and start poses");
+        return true;
+    }
+
+    double mismatch_of(const PairCertificate& pair) const {
+        TolerancedProver prover(*certificate_.toleranced, toleranced_pair(*certificate_.toleranced, pair.a, pair.b), mesh(pair.a).vertices,
+                                mesh(pair.b).vertices);
+        const auto& start = trajectory_.poses.front();
+        return prover.mismatch_at_base(start[pair.a], start[pair.b], mesh(pair.a).vertices, mesh(pair.b).vertices);
     }
 
     // The body's parts, once; false if its lists are wrong.
@@ -177,7 +208,11 @@ private:
     // What moves the pair's bodies over one of its boxes.
     template <class Use>
     void with_prover(const PairCertificate& pair, std::size_t place, const Use& use) const {
-        if (certificate_.linkage) {
+        if (certificate_.toleranced) {
+            TolerancedProver prover(*certificate_.toleranced, toleranced_pair(*certificate_.toleranced, pair.a, pair.b),
+                                    mesh(pair.a).vertices, mesh(pair.b).vertices);
+            use(prover);
+        } else if (certificate_.linkage) {
             const auto start = [&](int body) { return trajectory_.poses.front()[body]; };
             RangeProver prover(*certificate_.linkage, linked_pair(*certificate_.linkage, pair.a, pair.b), start(pair.a), start(pair.b));
             use(prover);
@@ -202,7 +237,7 @@ private:
                 fault(where + "/at", "the witness's instant or configuration is not in the box");
                 return;
             }
-            const Interval distance = prover.distance_at(X_a, X_b, *at);
+            const Interval distance = distance_at(prover, pair, X_a, X_b, *at);
             if (!(distance.high <= pair.upper))
                 fault(where + "/upper", "the witness's points are farther apart");
             else if (!(pair.upper - distance.low <= prover.witness_room(X_a, X_b)))
@@ -213,14 +248,25 @@ private:
         return is_attained;
     }
 
-    static std::optional<Coordinates> place_in(const CoordinateBox& box, int count, const std::vector<double>& at) {
-        if (at.size() != static_cast<std::size_t>(count)) return std::nullopt;
-        Coordinates out{};
+    template <class Prover, class Place>
+    Interval distance_at(Prover& prover, const PairCertificate& pair, const Interval3& X_a, const Interval3& X_b, const Place& at) const {
+        if constexpr (std::is_same_v<Prover, TolerancedProver>)  // whose points are elsewhere there
+            return prover.distance_at(mesh(pair.a), pair.point_a, mesh(pair.b), pair.point_b, at).value();
+        else
+            return prover.distance_at(X_a, X_b, at);
+    }
+
+    template <class Box>
+    static auto place_in(const Box& box, int count, const std::vector<double>& at) {
+        using Place = std::remove_cv_t<decltype(box.low)>;
+        std::optional<Place> none;
+        if (at.size() != static_cast<std::size_t>(count)) return none;
+        Place out{};
         for (std::size_t k = 0; k < at.size(); ++k) {
-            if (!(at[k] >= box.low[k] && at[k] <= box.high[k])) return std::nullopt;
+            if (!(at[k] >= box.low[k] && at[k] <= box.high[k])) return none;
             out[k] = at[k];
         }
-        return out;
+        return std::optional<Place>(out);
     }
 
     template <class Prover>
@@ -229,18 +275,19 @@ private:
         const auto ended = [&](const std::string& message) { return add(report, {where, message}), std::move(report); };
         const std::vector<Part>&parts_a = parts(pair.a), &parts_b = parts(pair.b);
         const std::span<const Vector3> normals(proof.normals);
-        std::vector<Cell> pending{{prover.box(), 0, 0}};
+        using OfBox = Cell<std::decay_t<decltype(prover.box())>>;
+        std::vector<OfBox> pending{{prover.box(), 0, 0}};
         std::size_t used = 0;
         long leaf = 0;
         for (const char kind : proof.splits) {
             if (pending.empty()) return ended("more cells than the tree has room for");
-            const Cell cell = pending.back();
+            const OfBox cell = pending.back();
             pending.pop_back();
             const Part &a = parts_a[cell.a], &b = parts_b[cell.b];
             if (kind == '.' || kind == ':') {
-                const std::size_t count = kind == '.' ? 1 : std::size_t{1} << prover.coordinates();
+                const std::size_t count = vectors_of(prover, kind);
                 if (used + count > normals.size()) return ended("the vectors of leaf " + std::to_string(leaf) + " are missing");
-                const long pieces = prover.prove(a.region, b.region, cell.box, normals.subspan(used, count), pair.lower, leaf_halvings);
+                const long pieces = pieces_of(prover, a.region, b.region, cell.box, kind, normals.subspan(used, count), pair.lower);
                 used += count;
                 report.pieces += pieces;
                 report.leaves += pieces > 0 ? 1 : 0;
@@ -256,17 +303,35 @@ private:
         return report;
     }
 
+    template <class Prover>
+    static std::size_t vectors_of(const Prover& prover, char kind) {
+        if constexpr (std::is_same_v<Prover, TolerancedProver>)
+            return kind == still_leaf ? 1 : 1 + static_cast<std::size_t>(prover.coordinates());
+        else
+            return kind == '.' ? 1 : std::size_t{1} << prover.coordinates();
+    }
+
+    template <class Prover, class Box>
+    static long pieces_of(Prover& prover, const Region& a, const Region& b, const Box& box, char kind, std::span<const Vector3> normals,
+                          double lower) {
+        if constexpr (std::is_same_v<Prover, TolerancedProver>)
+            return prover.prove(a, b, box, kind, normals, lower);
+        else
+            return prover.prove(a, b, box, normals, lower, leaf_halvings);
+    }
+
     // The two parts of a cell, the first on top; false if it cannot be split so.
-    static bool split(char kind, const Cell& cell, const Part& a, const Part& b, int coordinates, std::vector<Cell>& pending) {
-        Cell first = cell, second = cell;
+    template <class OfBox>
+    static bool split(char kind, const OfBox& cell, const Part& a, const Part& b, int coordinates, std::vector<OfBox>& pending) {
+        OfBox first = cell, second = cell;
         if (kind == 'a' && a.left >= 0) {
             first.a = a.left;
             second.a = a.right;
         } else if (kind == 'b' && b.left >= 0) {
             first.b = b.left;
             second.b = b.right;
-        } else if (kind >= '0' && kind < '0' + coordinates) {
-            const auto k = static_cast<std::size_t>(kind - '0');
+        } else if (const int variable = variable_of_split(kind); variable >= 0 && variable < coordinates) {
+            const auto k = static_cast<std::size_t>(variable);
             const double middle = 0.5 * (cell.box.low[k] + cell.box.high[k]);
             if (!(cell.box.low[k] < middle && middle < cell.box.high[k])) return false;
             first.box.high[k] = second.box.low[k] = middle;
@@ -299,7 +364,8 @@ private:
         if (pair.solids == Solids::overlap) return ended("the solids overlap: there is no clearance to certify");
         const SolidMesh &a = *solids_[pair.a], &b = *solids_[pair.b];
         PairStart start{trajectory_, places_[0].step, places_[0].segment, pair.a, pair.b};
-        if (!certificate_.linkage && ask_for_path(a, b)) start.path = places_;
+        if (!certificate_.linkage && !certificate_.toleranced && ask_for_path(a, b)) start.path = places_;
+        if (certificate_.toleranced) start.charge = mismatch_of(pair);
         if (joints_are_sound_) start.charge = joint_charge(*certificate_.joints, pair.a, pair.b);
         const Solids found = solids_of(a, b, start, pair.lower);
         if (found == Solids::overlap) return ended("one body lies inside the other's material");

@@ -68,25 +68,6 @@ void write_export(JsonWriter& out, const ExportedFile& exported) {
     out.text += '}';
 }
 
-void write_coordinate(JsonWriter& out, const LinkageCoordinate& coordinate) {
-    out.text += '{';
-    write_number(out, "start", coordinate.start);
-    write_number(out, "low", coordinate.low);
-    write_number(out, "high", coordinate.high);
-    write_flag(out, "is_whole_turn", coordinate.is_whole_turn);
-    out.key("joints");
-    out.list(coordinate.joints.size(), ", ", [&](std::size_t i) {
-        const JointCoordinate& joint = coordinate.joints[i];
-        out.text += '{';
-        write_text(out, "joint", joint.joint);
-        write_flag(out, "is_angle", joint.is_angle);
-        write_number(out, "scale", joint.scale);
-        write_number(out, "offset", joint.offset);
-        out.text += '}';
-    });
-    out.text += '}';
-}
-
 void write_link(JsonWriter& out, const LinkedBody& body) {
     out.text += '{';
     write_number(out, "parent", body.parent);
@@ -157,6 +138,10 @@ std::string text_of(const Certificate& certificate) {
         out.key("exports");
         out.list(certificate.exports.size(), ",\n ", [&](std::size_t i) { write_export(out, certificate.exports[i]); });
     }
+    if (certificate.toleranced) {
+        out.key("tolerances");
+        write_toleranced(out, *certificate.toleranced);
+    }
     if (certificate.joints) {
         out.key("joints");
         write_joints(out, *certificate.joints);
@@ -209,18 +194,6 @@ CertifiedPoint read_point(const JsonNode& node) {
     const Vector3 weight = node.require("weight").vector3().value_or(Vector3::UnitX());
     point.weight = {weight[0], weight[1], weight[2]};
     return point;
-}
-
-LinkageCoordinate read_coordinate(const JsonNode& node) {
-    LinkageCoordinate out;
-    out.start = read_number(node.require("start"));
-    out.low = read_number(node.require("low"));
-    out.high = read_number(node.require("high"));
-    out.is_whole_turn = read_flag(node.require("is_whole_turn"));
-    for (const JsonNode& joint : node.require("joints").elements())
-        out.joints.push_back({read_text(joint.require("joint")), read_flag(joint.require("is_angle")), read_number(joint.require("scale")),
-                              read_number(joint.require("offset"))});
-    return out;
 }
 
 LinkedBody read_link(const JsonNode& node) {
@@ -301,6 +274,7 @@ Certificate read_root(const JsonNode& root, Format format) {
     for (const JsonNode& exported : root["exports"].elements())
         certificate.exports.push_back(
             {read_text(exported.require("file")), read_text(exported.require("hash")), read_bound(exported.require("rounding"))});
+    if (root["tolerances"].exists()) certificate.toleranced = read_toleranced(root["tolerances"]);
     if (root["joints"].exists()) certificate.joints = read_joints(root["joints"]);
     certificate.is_of_path = read_flag(root["path_as_stored"]);
     for (const JsonNode& pair : root.require("pairs").elements()) certificate.pairs.push_back(read_pair(pair, format));
@@ -326,7 +300,7 @@ base::Result<Certificate> read_certificate(const std::filesystem::path& path) {
     if (!document) return document.errors();
     const JsonNode root = document->root();
     root.allow_keys({version_key, old_range_key, "geometry_hash", "path_hash", "length_unit", "source", "motion", "coordinates", "links",
-                     "bodies", "exports", "joints", "path_as_stored", "pairs"});
+                     "bodies", "exports", "tolerances", "joints", "path_as_stored", "pairs"});
     const Format format = read_format(root);
     if (!document->errors().empty()) return document->errors();
     Certificate certificate = read_root(root, format);

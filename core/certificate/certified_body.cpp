@@ -43,7 +43,8 @@ base::Errors missing_or_unknown(const BodyPieces& pieces, const geometry::Mesh& 
     return {};
 }
 
-base::Errors split_parts(const BodyPieces& pieces, const std::vector<Vector3>& corners, std::vector<Part>& parts) {
+base::Errors split_parts(const BodyPieces& pieces, const std::vector<Vector3>& corners, const std::vector<int>& vertices,
+                         std::vector<Part>& parts) {
     struct Range {
         std::size_t first, count;
         int parent;
@@ -58,6 +59,7 @@ base::Errors split_parts(const BodyPieces& pieces, const std::vector<Vector3>& c
         const int part = count_of(parts);
         parts.emplace_back();
         parts[part].region.points = std::span<const Vector3>(corners).subspan(3 * range.first, 3 * range.count);
+        parts[part].region.vertices = std::span<const int>(vertices).subspan(3 * range.first, 3 * range.count);
         if (range.parent >= 0) (range.second ? parts[range.parent].right : parts[range.parent].left) = part;
         if (range.count <= 1) continue;
         const int cut = next_cut < pieces.cuts.size() ? pieces.cuts[next_cut] : 0;
@@ -105,14 +107,22 @@ base::Result<CertifiedBody> certified_body(const BodyPieces& pieces, const geome
     if (base::Errors errors = missing_or_unknown(pieces, mesh); !errors.empty()) return errors;
     for (const int number : pieces.elements) {
         const std::vector<int> vertices = element_vertices(mesh, number);
-        for (std::size_t k = 0; k < 3; ++k) body.corners_.emplace_back(mesh.vertices.col(vertices[std::min(k, vertices.size() - 1)]));
+        for (std::size_t k = 0; k < 3; ++k) {
+            body.vertices_.push_back(vertices[std::min(k, vertices.size() - 1)]);
+            body.corners_.emplace_back(mesh.vertices.col(body.vertices_.back()));
+        }
     }
-    if (base::Errors errors = split_parts(pieces, body.corners_, body.parts_); !errors.empty()) return errors;
+    if (base::Errors errors = split_parts(pieces, body.corners_, body.vertices_, body.parts_); !errors.empty()) return errors;
     for (auto part = body.parts_.rbegin(); part != body.parts_.rend(); ++part) measure(body.parts_, *part);  // children first
     return body;
 }
 
 bool point_of(const geometry::Mesh& mesh, const CertifiedPoint& point, Interval3& X) {
+    const auto exact = [&](int v) { return Interval3{mesh.vertices(0, v), mesh.vertices(1, v), mesh.vertices(2, v)}; };
+    return point_of(mesh, point, exact, X);
+}
+
+bool point_of(const geometry::Mesh& mesh, const CertifiedPoint& point, const std::function<Interval3(int vertex)>& vertices, Interval3& X) {
     const auto triangles = count_of(mesh.triangles), edges = count_of(mesh.edges);
     const int count = point.kind == Primitive::triangle ? triangles
                       : point.kind == Primitive::edge   ? edges
@@ -128,7 +138,8 @@ bool point_of(const geometry::Mesh& mesh, const CertifiedPoint& point, Interval3
         const double weight = point.weight[i];
         if (!(weight >= 0 && weight <= 2)) return false;
         total = total + Interval(weight);
-        for (std::size_t k = 0; k < 3; ++k) X[k] = X[k] + Interval(weight) * Interval(mesh.vertices(k, corners[i]));
+        const Interval3 corner = vertices(corners[i]);
+        for (std::size_t k = 0; k < 3; ++k) X[k] = X[k] + Interval(weight) * corner[k];
     }
     if (!(total.low > 0.5)) return false;
     for (Interval& x : X) x = x / total;

@@ -3,6 +3,7 @@
 /// everything is computed from the mesh.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
@@ -29,6 +30,7 @@ public:
 private:
     friend base::Result<CertifiedBody> certified_body(const BodyPieces& pieces, const geometry::Mesh& mesh);
     std::vector<Vector3> corners_;  // three for each of the listed elements
+    std::vector<int> vertices_;     // of the mesh: what the corners are
     std::vector<Part> parts_;       // parents before their children
 };
 
@@ -41,5 +43,7 @@ std::vector<int> element_vertices(const geometry::Mesh& mesh, int number);
 
 /// The point, as intervals in the body's frame; false if it is none of the mesh.
 bool point_of(const geometry::Mesh& mesh, const CertifiedPoint& point, Interval3& X);
+/// The same of a mesh whose vertices are elsewhere.
+bool point_of(const geometry::Mesh& mesh, const CertifiedPoint& point, const std::function<Interval3(int vertex)>& vertices, Interval3& X);
 
 }  // namespace fettle::core::certificate

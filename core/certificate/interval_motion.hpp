@@ -77,6 +77,7 @@ struct Region {
     std::span<const Vector3> points;
     Vector3 low = Vector3::Zero(), high = Vector3::Zero();
     double radius = 0;
+    std::span<const int> vertices{};  ///< of the body's mesh: those that the points are
 };
 
 struct Span {

@@ -55,6 +55,47 @@ base::Errors check_linkage(const Linkage& linkage, std::size_t bodies) {
     return {};
 }
 
+void write_coordinate(files::JsonWriter& out, const LinkageCoordinate& coordinate) {
+    const auto number = [&](std::string_view name, double value) {
+        out.key(name);
+        out.number(value);
+    };
+    const auto flag = [&](std::string_view name, bool value) {
+        out.key(name);
+        out.text += value ? "true" : "false";
+    };
+    out.text += '{';
+    number("start", coordinate.start);
+    number("low", coordinate.low);
+    number("high", coordinate.high);
+    flag("is_whole_turn", coordinate.is_whole_turn);
+    out.key("joints");
+    out.list(coordinate.joints.size(), ", ", [&](std::size_t i) {
+        const JointCoordinate& joint = coordinate.joints[i];
+        out.text += '{';
+        out.key("joint");
+        out.string(joint.joint);
+        flag("is_angle", joint.is_angle);
+        number("scale", joint.scale);
+        number("offset", joint.offset);
+        out.text += '}';
+    });
+    out.text += '}';
+}
+
+LinkageCoordinate read_coordinate(const files::JsonNode& node) {
+    const auto number = [](const files::JsonNode& from) { return from.number().value_or(0); };
+    LinkageCoordinate out;
+    out.start = number(node.require("start"));
+    out.low = number(node.require("low"));
+    out.high = number(node.require("high"));
+    out.is_whole_turn = node.require("is_whole_turn").boolean().value_or(false);
+    for (const files::JsonNode& joint : node.require("joints").elements())
+        out.joints.push_back({joint.require("joint").string().value_or(""), joint.require("is_angle").boolean().value_or(false),
+                              number(joint.require("scale")), number(joint.require("offset"))});
+    return out;
+}
+
 LinkedPair linked_pair(const Linkage& linkage, int a, int b) {
     const std::vector<int> from_a = ancestry(linkage, a), from_b = ancestry(linkage, b);
     std::size_t common = 0;

@@ -15,6 +15,8 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
+#include "fettle/core/files/json_document.hpp"
+#include "fettle/core/files/json_writer.hpp"
 
 namespace fettle::core::certificate {
 
@@ -73,6 +75,10 @@ struct LinkedPair {
 
 /// Numbers finite, ranges in order, indices of what is there, no body its own ancestor. `where` is /coordinates/k or /links/k.
 base::Errors check_linkage(const Linkage& linkage, std::size_t bodies);
+
+/// {start, low, high, is_whole_turn, joints [{joint, is_angle, scale, offset}]}
+void write_coordinate(files::JsonWriter& out, const LinkageCoordinate& coordinate);
+LinkageCoordinate read_coordinate(const files::JsonNode& node);
 
 /// Contract: checked; a, b are bodies of it.
 LinkedPair linked_pair(const Linkage& linkage, int a, int b);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "fettle/core/geometry/distance.hpp"
+#include "fettle/core/clearance/simplex.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -22,7 +22,7 @@ Support value_of(const PieceElement& element, int corner, const Vector3& directi
     return {&element, corner, direction.dot(element.corners.x.col(corner))};
 }
 
-struct Descent {
+struct SupportDescent {
     const PieceTree& tree;
     const Vector3& direction;
     Support best;
@@ -54,52 +54,11 @@ struct Descent {
     }
 };
 
-// The point of the simplex of `points` that is nearest to the origin, and the weights of the points; of four, zero if they hold it.
-struct Nearest {
-    Vector3 point = Vector3::Zero();
-    std::array<double, 4> weight{};
-};
-
-Nearest nearest_of(const std::array<Vector3, 4>& x, int count) {
-    Nearest nearest;
-    if (count == 1) {
-        nearest.point = x[0];
-        nearest.weight[0] = 1;
-        return nearest;
-    }
-    // Of fewer than three the last one is repeated.
-    const auto of_triangle = [&](int i, int j, int k) {
-        const geometry::ClosestPoints closest = geometry::point_triangle_closest(Vector3::Zero(), x[i], x[j], x[k]);
-        Nearest found;
-        found.point = -closest.difference;
-        found.weight[i] -= closest.weight[1];
-        found.weight[j] -= closest.weight[2];
-        found.weight[k] -= closest.weight[3];
-        return found;
-    };
-    if (count <= 3) return of_triangle(0, 1, count - 1);
-    bool outside = false;
-    double least = 0;
-    for (const auto& [i, j, k, other] : {std::array{0, 1, 2, 3}, std::array{0, 1, 3, 2}, std::array{0, 2, 3, 1}, std::array{1, 2, 3, 0}}) {
-        const Vector3& origin = x[i];
-        const Vector3 normal = (x[j] - origin).cross(x[k] - origin);
-        const double inside = normal.dot(x[other] - origin);
-        if (normal.dot(-origin) * inside > 0) continue;
-        const Nearest found = of_triangle(i, j, k);
-        const double squared = found.point.squaredNorm();
-        if (outside && !(squared < least)) continue;
-        outside = true;
-        least = squared;
-        nearest = found;
-    }
-    return nearest;
-}
-
 }  // namespace
 
 Support support(const PieceTree& tree, const Vector3& direction, const Support& guess, int piece) {
     const Piece& root = tree.pieces[piece];
-    Descent descent{tree, direction, value_of(*guess.element, guess.corner, direction)};
+    SupportDescent descent{tree, direction, value_of(*guess.element, guess.corner, direction)};
     if (root.count <= most_elements_in_turn) {
         for (int i = root.first; i < root.first + root.count; ++i) descent.take(tree.elements[i]);
     } else {
@@ -117,7 +76,7 @@ HullDirection::HullDirection(const PieceTree& a, const PieceTree& b, int piece_a
 Vector3 HullDirection::reduce() {
     std::array<Vector3, 4> points;
     for (int i = 0; i < count_; ++i) points[i] = simplex_[i].difference;
-    const Nearest nearest = nearest_of(points, count_);
+    const SimplexPoint nearest = nearest_to_origin(points, count_);
     int kept = 0;
     for (int i = 0; i < count_; ++i)
         if (nearest.weight[i] > 0) simplex_[kept++] = simplex_[i];

@@ -127,10 +127,12 @@ struct PairClearance {
     std::vector<MarginInterval> margin;  ///< one per path segment, in order; empty unless asked for
     std::vector<Witness> witnesses;      ///< the first is `witness`; of two with the same instant and points only one
     // Over ranges of joints:
-    double tolerance = 0;          ///< that was asked for, of this pair [m]
-    std::vector<int> coordinates;  ///< of the linkage: those that move one body against the other
-    std::vector<double> at;        ///< their values at the witness
-    long bounds = 0;               ///< computed
+    double tolerance = 0;                 ///< that was asked for, of this pair [m]
+    std::vector<int> coordinates;         ///< of the linkage: those that move one body against the other
+    std::vector<double> at;               ///< their values at the witness
+    std::vector<int> deviations;          ///< within tolerances: those that matter for the pair (certificate/toleranced.hpp)
+    std::vector<double> deviations_at{};  ///< their values at the witness [SI]
+    long bounds = 0;                      ///< computed
 
     bool is_clash() const { return intersecting || solids == Solids::overlap; }
 };

@@ -1,9 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/expression/operation.hpp"
 
+#include <iterator>
 #include <limits>
 
 namespace fettle::core::expression {
+namespace {
+
+constexpr const char* operation_names[] = {"constant",  "input",   "negate",        "root",       "absolute",    "sine",
+                                           "cosine",    "tangent", "arc_sine",      "arc_cosine", "arc_tangent", "exponential",
+                                           "logarithm", "add",     "subtract",      "multiply",   "divide",      "power",
+                                           "minimum",   "maximum", "arc_tangent_2", "hypotenuse", "choose"};
+static_assert(std::size(operation_names) == static_cast<std::size_t>(Operation::choose) + 1);
+
+}  // namespace
+
+const char* to_string(Operation operation) { return operation_names[static_cast<std::size_t>(operation)]; }
+
+std::optional<Operation> operation_of(std::string_view name) {
+    const auto found = std::find(std::begin(operation_names), std::end(operation_names), name);
+    if (found == std::end(operation_names)) return std::nullopt;
+    return static_cast<Operation>(found - std::begin(operation_names));
+}
 
 std::array<double, 3> slopes(Operation operation, double a, double b, double, double value, bool exponent_varies) {
     switch (operation) {

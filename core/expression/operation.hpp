@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 namespace fettle::core::expression {
@@ -45,6 +47,10 @@ constexpr int operand_count(Operation operation) {
     if (operation < Operation::add) return 1;
     return operation < Operation::choose ? 2 : 3;
 }
+
+/// As written above: "negate".
+const char* to_string(Operation operation);
+std::optional<Operation> operation_of(std::string_view name);
 
 /// One operation on the values of earlier nodes of its list.
 struct Node {

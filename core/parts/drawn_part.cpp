@@ -48,6 +48,19 @@ std::vector<Matrix3X> jacobian_of(const Drawing& drawing, const Solid& solid) {
     return out;
 }
 
+RecordedVertices recorded_vertices(const Drawing& drawing, const Solid& solid) {
+    RecordedVertices out{drawing.tape().nodes(), {}};
+    for (const Point3& p : solid.vertices) {
+        std::array<int, 3>& nodes = out.vertices.emplace_back();
+        std::size_t k = 0;
+        for (const Number* x : {&p.x, &p.y, &p.z}) {
+            nodes[k++] = x->is_constant() ? count_of(out.nodes) : x->node;
+            if (x->is_constant()) out.nodes.push_back({expression::Operation::constant, {0, 0, 0}, x->value});
+        }
+    }
+    return out;
+}
+
 // Numbers of vertices and triangles, and a hash of the latter.
 std::vector<int> fingerprint(const geometry::Mesh& mesh) {
     std::uint64_t hash = 14695981039346656037u;
@@ -100,6 +113,7 @@ Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::s
         if (!faults.empty()) return faults;
     }
     if (options.jacobian) part.jacobian = jacobian_of(drawing, solid);
+    if (options.record) part.recorded = recorded_vertices(drawing, solid);
     for (const Surface& surface : solid.surfaces) part.surfaces.push_back(drawn_surface(surface));
     part.facets = solid.facets;
     name_faces(solid, part.mesh);

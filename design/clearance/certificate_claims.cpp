@@ -11,6 +11,7 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
 #include "fettle/design/clearance/certificate_files.hpp"
+#include "fettle/design/clearance/read_subject.hpp"
 
 namespace fettle::design::clearance {
 
@@ -60,12 +61,32 @@ struct SourceCheck {
     bool has_joints = true;  // as far as is known
 };
 
+// The design as made, over what the certificate is.
+SourceCheck check_toleranced_source(const Certificate& certificate, const std::string& source, const reading::InputOptions& input) {
+    SubjectOptions options;
+    options.path = source;
+    options.tolerances = true;
+    const auto& coordinates = certificate.toleranced->coordinates;
+    options.ranges = std::any_of(coordinates.begin(), coordinates.end(), [](const auto& c) { return c.low < c.high; });
+    const Result<Subject> subject = read_subject(options, input);
+    if (!subject) {
+        const Error& error = subject.errors().front();
+        return {true, "stale: " + certificate.source + ", which it was made from, can no longer be read within tolerances: " + error.where +
+                          ": " + error.message};
+    }
+    if (core::records::geometry_hash(subject->model) != certificate.geometry_hash)
+        return {true, "stale: the meshes of " + certificate.source + " have changed since"};
+    if (same_toleranced(*subject->toleranced, *certificate.toleranced)) return {};
+    return {true, "stale: the tolerances of " + certificate.source + ", its formulas, joints or start poses have changed since"};
+}
+
 SourceCheck check_source(const Certificate& certificate, const std::string& path, reading::InputOptions input) {
     if (certificate.source.empty()) return {};
     const std::filesystem::path source = file_of_certificate(path, certificate.source);
     const std::string untold = ": it cannot be determined whether its meshes have changed since";
     if (!std::filesystem::exists(source)) return {false, certificate.source + ", which it was made from, is not there" + untold};
     input.check_start = false;
+    if (certificate.toleranced) return check_toleranced_source(certificate, source.string(), input);
     const Result<reading::LoadedModel> loaded = reading::load_model(source.string(), input);
     if (!loaded) {
         const Error& error = loaded.errors().front();

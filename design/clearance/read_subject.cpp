@@ -17,6 +17,7 @@
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/clearance/mesh_parts.hpp"
+#include "fettle/design/clearance/toleranced_subject.hpp"
 
 namespace fettle::design::clearance {
 
@@ -39,6 +40,8 @@ void mark_as_scripted(Subject& subject) {
 }
 
 Result<Subject> from_trajectory(const SubjectOptions& options) {
+    if (options.tolerances)
+        return Error{ErrorCode::unsupported, options.path, "a trajectory has no tolerances: --tolerances wants a design that has some"};
     if (options.ranges) return Error{ErrorCode::unsupported, options.path, "a trajectory has no joints: --ranges wants a scene or design"};
     if (!options.poses.empty() || options.kinematic)
         return Error{ErrorCode::inconsistent, options.path,
@@ -152,6 +155,82 @@ int number_of_scenario(const description::Design& design, const std::string& nam
     return found == all.end() ? 0 : static_cast<int>(found - all.begin());
 }
 
+Result<int> scenario_named(const description::Design& design, const std::string& name) {
+    const int number = number_of_scenario(design, name);
+    const bool found = name.empty() || (number < count_of(design.scenarios) && design.scenarios[number].name == name);
+    if (found) return number;
+    return Error{ErrorCode::unknown_key, "--scenario", "the design has no scenario called \"" + name + "\""};
+}
+
+std::vector<std::string> notes_of_tolerances(const core::certificate::Toleranced& toleranced, bool over_ranges) {
+    std::vector<std::string> notes{"within tolerances: bounds hold for every combination of " +
+                                   core::base::counted(toleranced.deviations.size(), "deviation") +
+                                   ", each anywhere between its limits, and for parts with the facets of the design"};
+    if (!over_ranges && std::any_of(toleranced.bodies.begin(), toleranced.bodies.end(), [](const auto& body) { return body.parent >= 0; }))
+        notes.emplace_back("bodies that joints hold stand where their joints start as designed, whatever deviates");
+    std::vector<std::string> shifted;
+    for (const core::certificate::Deviation& d : toleranced.deviations)
+        if (d.base != 0) shifted.push_back(d.of);
+    if (!shifted.empty()) notes.push_back("0 is not within their limits, so meshes are those of the middle: " + joined(shifted));
+    return notes;
+}
+
+// Of a design, as made.
+Result<Subject> from_tolerances(const SubjectOptions& options, const reading::InputOptions& input, reading::FileKind kind,
+                                const SubjectWatch& watch) {
+    const auto with_file = [&](Errors errors) {
+        for (Error& error : errors) error.where = options.path + ": " + error.where;
+        return errors;
+    };
+    if (kind != reading::FileKind::design)
+        return Error{ErrorCode::unsupported, options.path,
+                     "--tolerances wants a design that has `tolerances` (docs/interface.md); a scene alone has none"};
+    if (options.motion || options.kinematic || !options.poses.empty())
+        return Error{ErrorCode::unsupported, "--tolerances",
+                     "goes as assembled, or with --ranges: over a motion that depends on the parts nothing can be proven of all of them"};
+    reading::DesignReadOptions read{.mesh_dirs = input.mesh_dirs, .programs = input.programs, .as_made = true};
+    Result<reading::DesignFile> file = reading::read_design(options.path, read);
+    if (!file) return file.errors();
+    if (watch.on_warnings) watch.on_warnings(file->warnings);
+    if (file->tolerances.empty())
+        return Error{
+            ErrorCode::missing_key, options.path,
+            "it has no `tolerances`: say, for instance, \"tolerances\": {\"pin_radius\": \"+-0.05 mm\"}, by names of parameters or "
+            "of the scene's variables, or by places (\"/bodies/pin/shape/dimensions/radius\")"};
+    const Result<int> scenario = scenario_named(file->design, input.scenario);
+    if (!scenario) return scenario.errors();
+    const Result<problem::DesignProblem> problem = problem::DesignProblem::create(file->design);
+    if (!problem) return problem.errors();
+    const description::Design& design = problem->design();
+    const VectorX base = description::with_deviations(design, file->tolerances, base_of(file->tolerances));
+    Result<core::model::Model> model = problem->model_at(base, *scenario);
+    if (!model) return model.errors();
+    std::optional<core::clearance::LoopedRanges> ranges;
+    if (options.ranges || core::clearance::closes_loops(*model)) {
+        Result<core::clearance::LoopedRanges> found = core::clearance::looped_ranges(*model, !options.ranges);
+        if (!found) return with_file(found.errors());
+        ranges = *std::move(found);
+    }
+    Result<core::certificate::Toleranced> toleranced =
+        toleranced_bodies(description::design_of_scenario(design, *scenario), file->tolerances, *model, ranges);
+    if (!toleranced) return with_file(toleranced.errors());
+    Subject subject = options.ranges ? subject_over(*std::move(model), std::move(ranges->ranges)) : subject_of(*std::move(model));
+    if (options.ranges && !toleranced->loops.empty())
+        subject.notes.emplace_back("joints of closed loops follow from what drives them, whatever their own limits are");
+    if (!subject.ranges) {
+        subject.ranges.emplace();
+        subject.ranges->linkage.coordinates = toleranced->coordinates;
+    }
+    const std::vector<std::string> notes = notes_of_tolerances(*toleranced, options.ranges);
+    subject.notes.insert(subject.notes.begin(), notes.begin(), notes.end());
+    subject.toleranced = *std::move(toleranced);
+    subject.scene_path = file->scene_path;
+    subject.warnings = file->warnings;
+    subject.wanted = design_pairs(design);
+    subject.required = design_minima(design, *scenario, options.ranges ? MinimumOver::ranges : MinimumOver::assembly);
+    return subject;
+}
+
 std::vector<std::string> all_paths(const SubjectOptions& options) {
     std::vector<std::string> paths{options.path};
     paths.insert(paths.end(), options.more.begin(), options.more.end());
@@ -201,6 +280,7 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
     if (const Errors errors = check_inputs(options, meshes); !errors.empty()) return errors;
     const reading::FileKind kind = meshes ? reading::FileKind::mesh : reading::file_kind(options.path);
     if (kind == reading::FileKind::trajectory) return from_trajectory(options);
+    if (options.tolerances) return from_tolerances(options, input, kind, watch);
     Subject subject;
     reading::InputOptions any_start = input;
     any_start.check_start = false;

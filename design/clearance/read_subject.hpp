@@ -22,6 +22,7 @@ struct SubjectOptions {
     bool motion = false;            ///< simulate a scene or design
     bool kinematic = false;         ///< follow scripts, no dynamics
     bool ranges = false;            ///< all positions of the joints, in place of a path
+    bool tolerances = false;        ///< all parts within the design's tolerances; beside `ranges` over these together
     int steps = -1;                 ///< of the motion; negative: the scene's
     double time = -1;               ///< [s], instead of steps
 };

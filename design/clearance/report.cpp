@@ -265,7 +265,8 @@ const char* to_string(Finding finding) {
 }
 
 Result<ClearanceReport> judge_clearances(const Subject& subject, const Question& question) {
-    Result<PairSelection> selection = select_pairs(subject.model, question.pairs, subject.motion() || subject.ranges, subject.wanted);
+    Result<PairSelection> selection =
+        select_pairs(subject.model, question.pairs, subject.motion() || subject.moves_over_ranges(), subject.wanted);
     if (!selection) return selection.errors();
     const std::vector<PairRequest> requests = requests_of(*selection, question.margins);
     ClearanceOptions options = core::clearance::usual_options(requests, question.tolerance);

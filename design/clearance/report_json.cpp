@@ -85,11 +85,19 @@ Json coordinates_json(const core::clearance::JointRanges& ranges, const PairClea
     return list;
 }
 
+Json deviations_json(const Subject& subject, const PairClearance& pair) {
+    Json list = Json::array();
+    for (const WorstDeviation& d : worst_deviations(subject, pair))
+        list.push_back({{"of", d.of}, {"value", d.value}, {"lower", d.lower}, {"upper", d.upper}});
+    return list;
+}
+
 // Of all bodies that the pair's joints move to where it is worst.
 Json moved_poses(const Subject& subject, const PairClearance& pair) {
     Json json = Json::object();
     for (int body = 0; body < count_of(subject.model.bodies); ++body) {
-        const core::kinematics::Pose at = core::clearance::pose_at_witness(subject.model, *subject.ranges, pair, body);
+        const core::kinematics::Pose at = subject.toleranced ? core::clearance::pose_at_witness(*subject.toleranced, pair, body)
+                                                             : core::clearance::pose_at_witness(subject.model, *subject.ranges, pair, body);
         const core::kinematics::Pose& start = subject.model.bodies[body].pose_start;
         if (at.position == start.position && at.rotation == start.rotation) continue;
         json[subject.model.bodies[body].name] = pose_json(pose_where_nearest(subject, pair, body));
@@ -103,6 +111,10 @@ void add_worst_position(Json& json, const ReportedPair& pair, const Subject& sub
     json["complete"] = least.complete;
     json["tolerance"] = least.tolerance;
     json["coordinates"] = coordinates_json(*subject.ranges, least);
+    if (subject.toleranced) {
+        json["worst_deviations"] = deviations_json(subject, least);
+        json["no_influence"] = deviations_without_influence(subject, least);
+    }
     if (pair.spec.a.is_group) json["body_a"] = names[least.a];
     if (pair.spec.b.is_group) json["body_b"] = names[least.b];
     if (!std::isfinite(least.upper)) return;
@@ -177,7 +189,12 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
     json["least"] = report.pairs.empty() || !is_bounded ? Json() : Json(least);
     json["tolerance"] = report.tolerance;
     json["motion"] = subject.motion();
-    json["source"] = to_string(subject.source);
+    json["source"] = source_text(subject);
+    if (subject.toleranced) {
+        json["tolerances"] = Json::array();
+        for (const core::certificate::Deviation& d : subject.toleranced->deviations)
+            json["tolerances"].push_back({{"of", d.of}, {"lower", d.lower}, {"upper", d.upper}});
+    }
     if (!subject.ranges) json["steps"] = subject.trajectory.steps.size();
     json["pairs"] = std::move(list);
     if (!subject.ranges) json["not_measured"] = unmeasured;

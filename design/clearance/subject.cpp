@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/clearance/subject.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "fettle/core/base/text.hpp"
@@ -42,6 +43,10 @@ const char* to_string(SubjectSource source) {
     return "";
 }
 
+std::string source_text(const Subject& subject) {
+    return std::string(to_string(subject.source)) + (subject.toleranced ? ", within tolerances" : "");
+}
+
 Subject subject_of(core::model::Model model, std::optional<core::stepper::Trajectory> trajectory) {
     Subject subject;
     subject.source = trajectory ? SubjectSource::trajectory : SubjectSource::as_assembled;
@@ -58,8 +63,25 @@ Subject subject_over(core::model::Model model, core::clearance::JointRanges rang
     return subject;
 }
 
+std::vector<WorstDeviation> worst_deviations(const Subject& subject, const core::clearance::PairClearance& pair) {
+    std::vector<WorstDeviation> out;
+    for (size_t k = 0; k < pair.deviations.size(); ++k) {
+        const core::certificate::Deviation& d = subject.toleranced->deviations[pair.deviations[k]];
+        out.push_back({d.of, pair.deviations_at[k], d.lower, d.upper, d.unit});
+    }
+    return out;
+}
+
+std::vector<std::string> deviations_without_influence(const Subject& subject, const core::clearance::PairClearance& pair) {
+    std::vector<std::string> out;
+    for (int k = 0; k < count_of(subject.toleranced->deviations); ++k)
+        if (!std::binary_search(pair.deviations.begin(), pair.deviations.end(), k)) out.push_back(subject.toleranced->deviations[k].of);
+    return out;
+}
+
 std::vector<core::clearance::PairClearance> certify(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
                                                     const core::clearance::ClearanceOptions& options) {
+    if (subject.toleranced) return core::clearance::certify_toleranced(subject.model, *subject.toleranced, pairs, options);
     if (subject.ranges) return core::clearance::certify_ranges(subject.model, *subject.ranges, pairs, options);
     if (subject.joints) return core::clearance::certify_jointed(subject.model, subject.trajectory, pairs, options, *subject.joints);
     return core::clearance::certify_clearance(subject.model, subject.trajectory, pairs, options);
@@ -67,6 +89,7 @@ std::vector<core::clearance::PairClearance> certify(const Subject& subject, cons
 
 core::clearance::ProvenClearances certify_with_proof(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
                                                      const core::clearance::ClearanceOptions& options) {
+    if (subject.toleranced) return core::clearance::certify_toleranced_with_proof(subject.model, *subject.toleranced, pairs, options);
     if (subject.ranges) return core::clearance::certify_ranges_with_proof(subject.model, *subject.ranges, pairs, options);
     if (subject.joints)
         return core::clearance::certify_jointed_with_proof(subject.model, subject.trajectory, pairs, options, *subject.joints);
@@ -85,7 +108,8 @@ bool may_push(const Subject& subject, int a, int b) {
 
 core::kinematics::Pose pose_where_nearest(const Subject& subject, const core::clearance::PairClearance& pair, int body) {
     const core::clearance::Witness& witness = pair.witness;
-    const core::kinematics::Pose pose = subject.ranges
+    const core::kinematics::Pose pose = subject.toleranced ? core::clearance::pose_at_witness(*subject.toleranced, pair, body)
+                                        : subject.ranges
                                             ? core::clearance::pose_at_witness(subject.model, *subject.ranges, pair, body)
                                             : core::stepper::pose_at(subject.trajectory, witness.step, witness.segment, witness.s, body);
     return {pose.rotation, core::kinematics::world_position(pose, -subject.model.bodies[body].reference_point)};

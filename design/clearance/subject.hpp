@@ -9,6 +9,7 @@
 
 #include "fettle/core/clearance/jointed_clearance.hpp"
 #include "fettle/core/clearance/range_clearance.hpp"
+#include "fettle/core/clearance/toleranced_clearance.hpp"
 #include "fettle/core/model/model.hpp"
 #include "fettle/core/stepper/trajectory.hpp"
 #include "fettle/design/clearance/pairs.hpp"
@@ -25,21 +26,37 @@ struct Subject {
     std::string scene_path;
     std::optional<core::clearance::JointedPath> joints;  ///< that hold the bodies at all times, without dynamics; nothing: the path is all
     std::optional<core::clearance::JointRanges> ranges;  ///< in place of a path
-    BodyPairs wanted;                                    ///< of a design: those that it is about, which are judged whatever joins them
-    std::vector<PairMinimum> required;                   ///< of a design: what it requires of pairs, for its certificate
-    std::string incomplete;                              ///< why the motion is not whole; empty: it is, or there is none
-    std::vector<std::string> warnings;                   ///< of the files
-    std::vector<std::string> notes;                      ///< what the reader of a report should know
-    std::vector<std::string> files;                      ///< the meshes, where nothing else was read
+    /// Within tolerances, in place of a path; `ranges` has the coordinates, none as assembled.
+    std::optional<core::certificate::Toleranced> toleranced;
+    BodyPairs wanted;                   ///< of a design: those that it is about, which are judged whatever joins them
+    std::vector<PairMinimum> required;  ///< of a design: what it requires of pairs, for its certificate
+    std::string incomplete;             ///< why the motion is not whole; empty: it is, or there is none
+    std::vector<std::string> warnings;  ///< of the files
+    std::vector<std::string> notes;     ///< what the reader of a report should know
+    std::vector<std::string> files;     ///< the meshes, where nothing else was read
 
     /// Without steps there is none, wherever the poses come from.
+    bool moves_over_ranges() const { return source == SubjectSource::ranges; }
     bool motion() const { return source != SubjectSource::as_assembled && !trajectory.steps.empty(); }
 };
+
+/// "over the ranges of the joints, within tolerances".
+std::string source_text(const Subject& subject);
 
 /// As assembled, or along a path of the model's bodies.
 Subject subject_of(core::model::Model model, std::optional<core::stepper::Trajectory> trajectory = std::nullopt);
 /// Over all positions of the joints.
 Subject subject_over(core::model::Model model, core::clearance::JointRanges ranges);
+
+/// A deviation where a pair is worst.
+struct WorstDeviation {
+    std::string of;
+    double value = 0, lower = 0, upper = 0;  ///< [SI]
+    std::string unit;                        ///< as Deviation::unit
+};
+/// Those that matter for the pair, and the names of the others, which are proven to have no influence on it. Contract: within tolerances.
+std::vector<WorstDeviation> worst_deviations(const Subject& subject, const core::clearance::PairClearance& pair);
+std::vector<std::string> deviations_without_influence(const Subject& subject, const core::clearance::PairClearance& pair);
 
 /// Certified bounds: of the path, of the joints beside it, or over the ranges.
 std::vector<core::clearance::PairClearance> certify(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,

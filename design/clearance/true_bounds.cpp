@@ -43,6 +43,7 @@ std::optional<TrueBounds> bounds_of(const core::model::Model& model, std::span<c
 }  // namespace
 
 std::optional<TrueBounds> true_bounds(const Subject& subject, const ReportedPair& pair) {
+    if (subject.toleranced) return std::nullopt;  // facets are known for the base alone
     if (pair.finding == Finding::clash || pair.finding == Finding::touching || pair.least.is_far) return std::nullopt;
     return bounds_of(subject.model, pair.members.empty() ? std::span(&pair.least, 1) : std::span(pair.members));
 }

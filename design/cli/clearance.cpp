@@ -207,6 +207,14 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("--out", options.out, "Folder for result.json (the answer), trajectory.json (meshes and path) and report.html");
     app.flag("--no-report", options.no_report, "With --out: no report.html");
     app.option("--baseline", options.baseline, "Compare with an earlier report (--json): which findings are new, existing, resolved");
+    app.flag("--tolerances", options.subject.tolerances,
+             "Over all parts within the `tolerances` of a design, in every combination (as assembled, or with --ranges)")
+        .excludes(motion)
+        .excludes(kinematic)
+        .excludes(poses)
+        .excludes(touch)
+        .excludes(steps)
+        .excludes(time);
     app.flag("--ranges", options.subject.ranges, "Over all positions of the joints within their limits, in every combination")
         .excludes(motion)
         .excludes(kinematic)

@@ -16,6 +16,7 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
+#include "fettle/design/description/parameter.hpp"
 
 namespace fettle::design::cli {
 
@@ -57,17 +58,35 @@ private:
     int decimals_ = 0;
 };
 
+std::string pair_name(const ReportedPair& pair) { return pair.spec.a.name + ":" + pair.spec.b.name; }
+
+// "pin_radius +0.05 mm".
+std::string deviation_text(const clearance::WorstDeviation& d) {
+    const auto unit = core::base::find_unit(d.unit);
+    return d.of + formatted(" %+.4g", unit ? description::from_si(d.value, *unit) : d.value) + (d.unit.empty() ? "" : " " + d.unit);
+}
+
 // "left_shoulder -90 deg, lift 3 mm": the joints' positions where a pair is worst.
-std::string position_text(const core::clearance::JointRanges& ranges, const PairClearance& pair, const Lengths& lengths) {
+std::string position_text(const Subject& subject, const PairClearance& pair, const Lengths& lengths) {
     std::vector<std::string> parts;
-    clearance::for_joints(ranges, pair, [&](const auto& joint, double value, const auto&) {
+    clearance::for_joints(*subject.ranges, pair, [&](const auto& joint, double value, const auto&) {
         parts.push_back(joint.joint +
                         (joint.is_angle ? formatted(" %.6g deg", value * degrees) : " " + lengths.plain(value) + " " + lengths.unit()));
     });
-    return parts.empty() ? "nothing moves one against the other" : joined(parts);
+    if (subject.toleranced)
+        for (const clearance::WorstDeviation& d : worst_deviations(subject, pair)) parts.push_back(deviation_text(d));
+    return parts.empty() ? subject.toleranced ? "no tolerance matters" : "nothing moves one against the other" : joined(parts);
 }
 
-std::string pair_name(const ReportedPair& pair) { return pair.spec.a.name + ":" + pair.spec.b.name; }
+// Within tolerances: what does not matter for which pair.
+std::string without_influence(const ClearanceReport& report, const Subject& subject) {
+    std::string text;
+    for (const ReportedPair& pair : report.pairs) {
+        const std::vector<std::string> names = deviations_without_influence(subject, pair.least);
+        if (!names.empty()) text += "no influence on " + pair_name(pair) + " (proven): " + joined(names) + "\n";
+    }
+    return text;
+}
 
 // "over 240 mm^2, accepted".
 std::string touched(const ReportedPair& pair, const Lengths& lengths) {
@@ -118,7 +137,7 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
                           pair.spec.required_by.empty() ? "-" : lengths.plain(least.minimum).c_str(), bound(pair, true).c_str(),
                           bound(pair, false).c_str(), console.coloured(status, good).c_str());
         if (subject.motion()) text += formatted("  %.6g", least.is_clash() ? least.clash_time : least.witness.time);
-        if (subject.ranges) text += "  " + position_text(*subject.ranges, least, lengths);
+        if (subject.ranges) text += "  " + position_text(subject, least, lengths);
         if (pair.finding == Finding::clash && !subject.ranges) text += "  " + overlapped(pair, lengths);
         if (least.touch) text += (pair.finding == Finding::touching ? "  " : "  touching ") + touched(pair, lengths);
         if (least.solids == core::clearance::Solids::not_closed) text += std::string("  ") + core::clearance::words(least.solids);
@@ -196,7 +215,7 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
                                       lengths.unit() + (subject.ranges ? " over every combination" : "") + " (the bounds are " +
                                       lengths.rough(least.upper - least.lower) + " apart)"
                                 : std::string("   no bound is proven; below is the path between whose nodes the joints part")) +
-            (subject.ranges ? "; worst at " + position_text(*subject.ranges, least, lengths) : "") +
+            (subject.ranges ? "; worst at " + position_text(subject, least, lengths) : "") +
             (pair.spec.required_by.empty() ? "\n"
                                            : "; required " + lengths.plain(least.minimum) + " per side (" + pair.spec.required_by + ")\n");
     text += round_surfaces(pair, subject, lengths);
@@ -237,7 +256,7 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
 std::string summary(const ClearanceReport& report, const Subject& subject) {
     std::map<Finding, int> counts;
     for (const ReportedPair& pair : report.pairs) ++counts[pair.finding];
-    std::string text = formatted("%zu pair%s %s", report.pairs.size(), report.pairs.size() == 1 ? "" : "s", to_string(subject.source));
+    std::string text = formatted("%zu pair%s %s", report.pairs.size(), report.pairs.size() == 1 ? "" : "s", source_text(subject).c_str());
     if (subject.motion()) {
         const auto steps = count_of(subject.trajectory.steps);
         text += formatted(" (%s, %.6g s)", core::base::counted(static_cast<size_t>(steps), "step").c_str(),
@@ -282,7 +301,20 @@ std::string margins_csv(const ClearanceReport& report, const Subject& subject, c
     return text;
 }
 
-std::string positions_csv(const ClearanceReport& report, const core::clearance::JointRanges& ranges, const RoundedLengths& lengths) {
+// Empty where a deviation has no influence.
+std::string deviations_csv(const Subject& subject, const PairClearance& pair) {
+    std::map<std::string, std::string> values;
+    for (const clearance::WorstDeviation& d : worst_deviations(subject, pair)) {
+        const auto unit = core::base::find_unit(d.unit);
+        values[d.of] = formatted("%.9g", unit ? description::from_si(d.value, *unit) : d.value);
+    }
+    std::string text;
+    for (const core::certificate::Deviation& d : subject.toleranced->deviations) text += "," + values[d.of];
+    return text;
+}
+
+std::string positions_csv(const ClearanceReport& report, const Subject& subject, const RoundedLengths& lengths) {
+    const core::clearance::JointRanges& ranges = *subject.ranges;
     const std::string& unit = lengths.unit();
     std::vector<std::string> joints;
     std::string text = "a,b,required[" + unit + "],lower[" + unit + "],upper[" + unit + "],finding";
@@ -292,6 +324,9 @@ std::string positions_csv(const ClearanceReport& report, const core::clearance::
             text += "," + core::base::csv_cell(joint.joint + (joint.is_angle ? "[deg]" : "[" + unit + "]"));
         }
     }
+    if (subject.toleranced)
+        for (const core::certificate::Deviation& d : subject.toleranced->deviations)
+            text += "," + core::base::csv_cell("deviation of " + d.of + (d.unit.empty() ? "" : "[" + d.unit + "]"));
     text += "\n";
     for (const ReportedPair& pair : report.pairs) {
         const PairClearance& least = pair.least;
@@ -304,6 +339,7 @@ std::string positions_csv(const ClearanceReport& report, const core::clearance::
             places[joint.joint] = formatted("%.9g", joint.is_angle ? value * degrees : value / lengths.metres());
         });
         for (const std::string& joint : joints) text += "," + places[joint];
+        if (subject.toleranced) text += deviations_csv(subject, least);
         text += "\n";
     }
     return text;
@@ -323,6 +359,7 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, i
         text +=
             "\nno line is about round surfaces: a trajectory holds the meshes alone; give the scene or design (with --motion), only they "
             "know the surfaces that facets stand for\n";
+    if (subject.toleranced) text += without_influence(report, subject);
     text += "\n" + summary(report, subject);
     const auto far = std::count_if(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.least.is_far; });
     if (far > 0)
@@ -366,7 +403,7 @@ std::vector<Check> report_checks(const ClearanceReport& report, const Subject& s
         if (pair.finding == Finding::contact) check.message += "; they push each other, so the distance is not judged";
         if (pair.finding == Finding::undecided && least.is_bounded && !least.reason.empty())
             check.message += "; undecided: " + least.reason;
-        if (subject.ranges) check.message += "; worst at " + position_text(*subject.ranges, least, lengths);
+        if (subject.ranges) check.message += "; worst at " + position_text(subject, least, lengths);
         if (subject.motion() && !least.is_far && least.is_bounded)
             check.message +=
                 least.is_clash() ? formatted(", from %.6g s on", least.clash_time) : formatted(", at %.6g s", least.witness.time);
@@ -381,7 +418,7 @@ std::vector<Check> report_checks(const ClearanceReport& report, const Subject& s
 
 std::string report_csv(const ClearanceReport& report, const Subject& subject) {
     const RoundedLengths lengths(answers::unit_name(subject.model.length_unit));
-    return subject.ranges ? positions_csv(report, *subject.ranges, lengths) : margins_csv(report, subject, lengths);
+    return subject.ranges ? positions_csv(report, subject, lengths) : margins_csv(report, subject, lengths);
 }
 
 }  // namespace fettle::design::cli

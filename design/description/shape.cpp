@@ -13,6 +13,10 @@ Result<core::geometry::Mesh> Shape::mesh(const std::vector<double>& values) cons
     return std::move(part->mesh);
 }
 
+Result<RecordedShape> Shape::recorded(const std::vector<double>& /*values*/) const {
+    return Error{ErrorCode::unsupported, "shape", "a program makes the part: its vertices are no formulas of its dimensions"};
+}
+
 std::vector<std::string> Shape::remarks(const std::vector<double>& /*values*/, const std::vector<bool>& /*wanted*/) const { return {}; }
 
 std::vector<double> drawn_values(const Shape& shape) {

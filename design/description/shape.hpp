@@ -3,11 +3,13 @@
 /// (shapes/file_part.hpp). Add one: derive from Shape, and hand it to the design (design.hpp).
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
+#include "fettle/core/expression/operation.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 
 namespace fettle::design::description {
@@ -21,6 +23,12 @@ struct ShapeDimension {
 struct ShapeInstance {
     core::geometry::Mesh mesh;       ///< [m], in the body's file frame
     std::vector<Matrix3X> jacobian;  ///< per dimension k: d vertices / d dimension k, 3 x n [1], exact; 3 x 0 where it was not wanted
+};
+
+/// Vertices as formulas of the dimensions (core/expression/tape.hpp).
+struct RecordedShape {
+    core::expression::Nodes nodes;             ///< Operation::input counts through dimensions()
+    std::vector<std::array<int, 3>> vertices;  ///< of the mesh: nodes of x, y and z
 };
 
 class Shape {
@@ -47,6 +55,11 @@ public:
 
     /// Does it take seconds to make a mesh, as where a program makes it? Then fewer are made where fewer will do.
     virtual bool is_costly() const { return false; }
+
+    /// Vertices as they follow from the dimensions near these values, with the triangles of the mesh there; what is decided while the part
+    /// is made (numbers of facets, how solids cut each other) stays as it is there. Errors: those of at(); unsupported, where vertices are
+    /// no formulas, as here.
+    virtual Result<RecordedShape> recorded(const std::vector<double>& values) const;
 
     /// What is to be said of the part at these dimensions: how its derivatives were found, and how exact they are. A sentence each.
     /// @param wanted  As of differentiated().

@@ -92,6 +92,12 @@ Result<description::ShapeInstance> FilePart::at(const std::vector<double>& value
     return description::ShapeInstance{std::move(drawn->mesh), std::move(drawn->jacobian)};
 }
 
+Result<description::RecordedShape> FilePart::recorded(const std::vector<double>& values) const {
+    Result<DrawnPart> drawn = file_.drawn(values, facets_, structure_, {.jacobian = false, .record = true, .check = false});
+    if (!drawn) return drawn.errors();
+    return description::RecordedShape{std::move(drawn->recorded.nodes), std::move(drawn->recorded.vertices)};
+}
+
 Result<core::geometry::Mesh> FilePart::mesh(const std::vector<double>& values) const {
     if (values == description::drawn_values(*this)) return drawn_;
     Result<DrawnPart> drawn = file_.drawn(values, facets_, structure_, {.jacobian = false});

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+/// The mathematics of a box of tolerances (toleranced.hpp): bounds of the distance of two bodies over a box of their variables, coordinates
+/// of joints and deviations together, in Taylor models (taylor_model.hpp), whose rounding is theirs. What the checker accepts is what this
+/// proves; the search (clearance/toleranced_search.hpp) asks it which directions are good ones.
+///
+/// Let t be the variables over a box, each scaled to [-1, 1], and let R, q put body a into body b's frame. For a vector n that is fixed in
+/// that frame, and vertices X_a(t), X_b(t),
+///   s_a(t) = n.(R(t) X_a(t) + q(t)),   s_b(t) = n.X_b(t)
+/// are numbers whose dependence on t is known to first order, and what they leave of it, to second. So
+///   |n| dist >= min over t of min over a of s_a - max over b of s_b
+///            >= min over pairs of vertices of (center - sum over k |slope_a,k - slope_b,k| - rest_a - rest_b),
+/// in which what moves both alike cancels. Of pieces of many vertices, with any m,
+///            >= min over a of (center_a - sum |slope_a,k - m_a,k| - rest_a) - max over b of (...) - sum |m_a,k - m_b,k|.
+/// Of two elements the vector may turn with t, n(t) = n_0 + sum over k of n_k t_k, as the direction between their nearest points does: then
+///   max |n(t)| dist >= min over t and pairs of vertices of n(t).(x_a(t) - x_b(t)).
+/// Which of the two it is is a leaf's kind. What either loses is of second order in the box, and not in the number of its variables: the
+/// one that stays may be the best for the corner of the box where the bodies are nearest; the other keeps faces and edges apart that tilt.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fettle/core/certificate/certified_body.hpp"
+#include "fettle/core/certificate/taylor_model.hpp"
+#include "fettle/core/certificate/toleranced.hpp"
+#include "fettle/core/certificate/toleranced_loop.hpp"
+#include "fettle/core/kinematics/path.hpp"
+
+namespace fettle::core::certificate {
+
+/// How a cell is halved along variable k: '0' to '9', then 'A', 'B'.
+char split_along(int k);
+/// -1: it is no such halving.
+int variable_of_split(char kind);
+
+struct VariableBox {
+    using Values = std::array<double, most_variables>;
+    Values low{}, high{};  ///< those beyond the pair's own are 0
+};
+
+/// Kinds of leaves: a vector that stays, and one that turns, n_0, n_1, ...
+inline constexpr char still_leaf = '.', turning_leaf = ':';
+/// Entries are the slopes' vectors.
+Model3 turning_vector(std::span<const Vector3> vectors);
+
+/// Vertices and frames over a box of deviations.
+struct ModelledPair {
+    std::vector<Model3> a, b;               ///< vertices, in the bodies' frames
+    std::vector<ChainLink> line_a, line_b;  ///< outermost first; positions: the pair's coordinates, then its dependents
+    std::vector<ModelledLoop> loops;
+};
+
+/// Where the bodies are over a box of all variables.
+struct PlacedPair {
+    std::shared_ptr<const ModelledPair> models;
+    ModelMatrix rotation;  ///< of a's frame as b's sees it
+    Model3 place;
+    std::vector<TaylorModel> positions;  ///< of the pair's coordinates, then its dependents
+    bool is_known = true;                ///< false: a loop is not enclosed over the box
+};
+
+/// Its functions are those of PathProver (interval_motion.hpp).
+class TolerancedProver {
+public:
+    using Box = VariableBox;
+
+    /// Contract: checked; the pair is of it, with at most most_coordinates and most_deviations.
+    /// @param a, b  Vertices of the bodies' meshes, of those that have no formulas. Must stay where they are.
+    TolerancedProver(const Toleranced& toleranced, const TolerancedPair& pair, const Matrix3X& a, const Matrix3X& b);
+
+    int coordinates() const { return count_; }
+    const VariableBox& box() const { return box_; }
+
+    PlacedPair placed(const VariableBox& box);
+    /// A lower bound of n.(x_a - x_b) over the box, in b's frame, for the vertices of two pieces; minus infinity where nothing is known.
+    static double least_along(const PlacedPair& at, const Vector3& n, std::span<const int> a, std::span<const int> b);
+    /// The same of a vector that turns, for each pair of vertices, over max |n|.
+    static double least_turning(const PlacedPair& at, const Model3& n, std::span<const int> a, std::span<const int> b);
+
+    /// 1: the vector proves dist >= lower over the box; 0: it does not.
+    long prove(const Region& a, const Region& b, const VariableBox& box, char kind, std::span<const Vector3> normals, double lower);
+    /// Nothing: they are no points of the meshes.
+    std::optional<Interval> distance_at(const geometry::Mesh& mesh_a, const CertifiedPoint& a, const geometry::Mesh& mesh_b,
+                                        const CertifiedPoint& b, const VariableBox::Values& at);
+    /// How far a point of body a is at most, as seen from b, from where the meshes and poses at hand have it, where all variables are at
+    /// their base [m].
+    double mismatch_at_base(const kinematics::Pose& pose_a, const kinematics::Pose& pose_b, const Matrix3X& a, const Matrix3X& b);
+    /// Rounding of a witness's distance [m].
+    double witness_room(const Interval3& X_a, const Interval3& X_b);
+    /// Do all of its formulas have values, and bounded derivatives, over all of the box?
+    bool is_bounded() const { return whole_rest_ < HUGE_VAL; }
+    /// Why a loop is not known over all of its range; empty: it is.
+    const std::string& loop_fault() const { return loop_fault_; }
+    /// Those of the pair, in doubles; nothing where a loop is not known.
+    std::optional<std::vector<double>> dependents_at(const VariableBox::Values& at);
+    /// Sum of the bodies' radii [m].
+    double size() const { return size_; }
+
+private:
+    struct Program;
+    /// A loop over a part of what drives it, and all deviations.
+    struct Slice {
+        double low = 0, high = 0;
+        LoopEnclosure found;
+    };
+    std::vector<TaylorModel> variables_over(const VariableBox& box) const;
+    std::optional<LoopEnclosure> over_slice(std::size_t loop, double low, double high, const std::vector<double>& guess) const;
+    void slice_loop(std::size_t loop);
+    bool extend(std::size_t loop, bool upwards, std::vector<Slice>& slices) const;
+    bool enclose_loops(const VariableBox& box, const ModelledPair& models, std::vector<TaylorModel>& positions) const;
+    std::shared_ptr<const ModelledPair> models(const VariableBox& box);
+    std::shared_ptr<const ModelledPair> evaluated(const VariableBox& box) const;
+
+    std::shared_ptr<const Program> program_;
+    int count_ = 0, first_deviation_ = 0;
+    VariableBox box_, base_;
+    std::map<std::vector<double>, std::shared_ptr<const ModelledPair>> known_;
+    std::shared_ptr<const ModelledPair> whole_;  // over all of the box
+    double whole_rest_ = 0, size_ = 0;
+    std::vector<std::vector<Slice>> slices_;  // of each loop, upwards
+    std::string loop_fault_;
+};
+
+}  // namespace fettle::core::certificate

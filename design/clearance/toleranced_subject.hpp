@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// The bodies of a design as made, for clearances within tolerances (core/certificate/toleranced.hpp): what of its parts, poses and joints
+/// follows from the numbers with a tolerance is recorded as formulas of their deviations.
+///   as assembled   bodies are where the scene has them; what joints join stands where its joints start, whatever deviates
+///   over ranges    the joints' coordinates in their ranges as designed (core/clearance/looped_ranges.hpp); in closed loops those that
+///                  others determine follow
+/// Triangles, and everything that is decided while a part is drawn, are those of the base: the parts as designed, or, of limits that do not
+/// contain 0, with deviations in the middle. At the ends of all tolerances the parts are drawn anew and compared.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/certificate/toleranced.hpp"
+#include "fettle/core/clearance/looped_ranges.hpp"
+#include "fettle/core/model/model.hpp"
+#include "fettle/design/description/design.hpp"
+#include "fettle/design/description/tolerance.hpp"
+
+namespace fettle::design::clearance {
+
+/// Where the base is: 0 for each tolerance, or the middle of limits that do not contain it [SI].
+VectorX base_of(const std::vector<description::Tolerance>& tolerances);
+
+/// @param design  As made, of one scenario (description::design_of_scenario), without faults. @param model  At its base.
+/// @param ranges  Of the model; nothing: as assembled.
+/// Errors, by name: tolerances of a joint's axis, pitch, ratio or limits, or of a jointed body's rotation (unsupported); parts whose
+/// vertices are no formulas (unsupported), that cannot be made, or are made with other facets, at the ends of their tolerances.
+Result<core::certificate::Toleranced> toleranced_bodies(const description::Design& design,
+                                                        const std::vector<description::Tolerance>& tolerances,
+                                                        const core::model::Model& model,
+                                                        const std::optional<core::clearance::LoopedRanges>& ranges);
+
+}  // namespace fettle::design::clearance
