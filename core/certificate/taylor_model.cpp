@@ -215,7 +215,9 @@ TaylorModel atan2(const TaylorModel& y, const TaylorModel& x) {
 TaylorModel hypot(const TaylorModel& a, const TaylorModel& b) {
     TaylorModel sum = a * a + b * b;
     if (!sum.is_bounded()) return sum;
-    if (const Interval over = sum.interval(); over.low < 0) sum = TaylorModel::of({0, over.high});
+    const Interval over = sum.interval();
+    // Next to the origin it has no slope: from 0 to the largest.
+    if (over.low <= 0) return TaylorModel::of({0, geometry::upper(std::sqrt(std::max(over.high, 0.0)))});
     return sqrt(sum);
 }
 

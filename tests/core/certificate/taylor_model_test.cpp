@@ -70,7 +70,8 @@ const char* const smooth[] = {"x * y + z",
                               "atan2(x, y - 1.2)",
                               "exp(x - y) + log(z)",
                               "x^3 - 2 * y^2 + x^0.5 + y^z",
-                              "acos(x / 5) + asin(y / 4) - tan(z / 3) + atan(x)",
+                              "acos(x / 5) + asin(y / 4) - atan(x)",
+                              "tan(z / 3) * y",
                               "(x + y) / (y * z)",
                               "x - x + y"};
 
