@@ -4,16 +4,16 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <limits>
 #include <string>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 
 namespace fettle::tests::design_support {
 
 using namespace fettle::design::optimisers;
 
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
+using fettle::core::base::infinity;
 
 // min -x - y over x^2 + y^2 <= 1 in [-2, 2]^2: (1/sqrt 2, 1/sqrt 2). Points with x + y > `cliff` cannot be evaluated.
 inline Problem disc_with_cliff(double cliff) {

@@ -4,15 +4,15 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 
 namespace fettle::design::optimisers::nearest_design_test {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using core::base::infinity;
 
 // x^2 + 4 y^2 >= 4, ranges 10 and 5: in units of the ranges the ellipse is a circle of radius 0.2. Its objective is none of repair's.
 Problem outside_of_ellipse(double x, double y) {
