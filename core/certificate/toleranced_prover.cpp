@@ -463,12 +463,13 @@ std::shared_ptr<const ModelledPair> TolerancedProver::models(const VariableBox& 
         key.push_back(box.low[i]);
         key.push_back(box.high[i]);
     }
+    bool is_point = true;
+    for (std::size_t i = 0; i + 1 < key.size(); i += 2) is_point = is_point && key[i] == key[i + 1];
+    // Made of given dimensions the bodies have no rest but rounding, and are hardly ever asked for again.
+    if (is_point && !key.empty()) return evaluated(box);
     const auto known = known_.find(key);
     if (known != known_.end()) return known->second;
     const auto found = whole_ && whole_rest_ <= fine_rest * size_ ? restricted(*whole_, box_, box) : evaluated(box);
-    bool is_point = true;
-    for (std::size_t i = 0; i + 1 < key.size(); i += 2) is_point = is_point && key[i] == key[i + 1];
-    if (is_point && !key.empty()) return found;  // which is hardly asked for again
     if (known_.size() > most_models_kept) known_.clear();
     return known_[key] = found;
 }
