@@ -106,6 +106,11 @@ bool same_nodes(const expression::Nodes& x, const expression::Nodes& y) {
 
 }  // namespace
 
+bool is_over_ranges(const Toleranced& toleranced) {
+    return std::any_of(toleranced.coordinates.begin(), toleranced.coordinates.end(),
+                       [](const LinkageCoordinate& c) { return c.low < c.high; });
+}
+
 bool same_toleranced(const Toleranced& x, const Toleranced& y) {
     return x.deviations == y.deviations && same_nodes(x.nodes, y.nodes) && x.coordinates == y.coordinates && x.bodies == y.bodies &&
            x.loops == y.loops;

@@ -75,6 +75,9 @@ struct Toleranced {
     std::vector<TolerancedLoop> loops{};
 };
 
+/// Does any coordinate move? Else it is about the bodies as assembled.
+bool is_over_ranges(const Toleranced& toleranced);
+
 /// The same formulas, limits and joints?
 bool same_toleranced(const Toleranced& x, const Toleranced& y);
 

@@ -10,6 +10,7 @@ namespace fettle::core::certificate {
 namespace {
 
 constexpr int most_newton_steps = 30;
+constexpr int most_rounds = 8;
 constexpr double largest_only = 0.25;    // [rad], or of the loop's size
 constexpr double smallest_only = 1e-12;  // the same
 constexpr double follows = 1e-9;         // what conditions that follow may be off by, of the size
@@ -117,7 +118,13 @@ public:
             VectorX image = image_of(off, w);
             if (!((image - w).maxCoeff() < 0)) continue;  // also what is no number
             found_.only.assign(w.begin(), w.end());
-            for (int round = 0; round < 3; ++round) image = image.cwiseMin(image_of(off, image));
+            // Its width beyond |A F| is squared each time.
+            for (int round = 0; round < most_rounds; ++round) {
+                const VectorX narrower = image.cwiseMin(image_of(off, image));
+                const bool is_done = narrower.sum() > 0.9 * image.sum();
+                image = narrower;
+                if (is_done) break;
+            }
             found_.rest.assign(image.begin(), image.end());
             if (!others_follow(image)) return std::nullopt;
             return std::move(found_);

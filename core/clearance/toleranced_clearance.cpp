@@ -20,6 +20,7 @@ namespace {
 using certificate::Toleranced;
 using certificate::TolerancedPair;
 using certificate::TolerancedProver;
+using certificate::VariableBox;
 
 Witness toleranced_witness(const TolerancedBodies& bodies, const TolerancedEncounter& nearest) {
     const ElementPairDistance& found = nearest.pair;
@@ -142,7 +143,7 @@ private:
         out.intersecting = found.intersecting;
         out.bounds = found.bounds;
         if (found.nearest.element_a >= 0) take_nearest(bodies, found, out);
-        if (certificate_ != nullptr) record(bodies, found, search, out, certificate_->pairs[index]);
+        if (certificate_ != nullptr) record(bodies, prover, found, search, out, certificate_->pairs[index]);
         decide_solids(mismatch, out);
         if (certificate_ != nullptr) certificate_->pairs[index].solids = out.is_clash() ? Solids::unproven : out.solids;
         judge(out, {out.a, out.b, out.minimum}, 0, false);
@@ -158,8 +159,8 @@ private:
         out.witnesses = {out.witness};
     }
 
-    void record(const TolerancedBodies& bodies, const TolerancedSearchResult& found, const RangeSearchOptions& search, PairClearance& out,
-                certificate::PairCertificate& record) const {
+    void record(const TolerancedBodies& bodies, TolerancedProver& prover, const TolerancedSearchResult& found,
+                const RangeSearchOptions& search, PairClearance& out, certificate::PairCertificate& record) const {
         record.a = out.a;
         record.b = out.b;
         record.at.assign(out.at.begin(), out.at.begin() + static_cast<std::ptrdiff_t>(bodies.pair.coordinates.size()));
@@ -175,12 +176,15 @@ private:
         if (proof.splits.empty()) out.lower = 0;
         if (out.lower > 0) record.boxes = {std::move(proof)};
         record.lower = out.lower;
-        record.upper = found.upper + 4 * bodies.slack;  // for the checker's own rounding
         const AllValues all = all_values(toleranced_, bodies.pair, found.nearest.at, found.nearest.dependents);
         const MadeBodies made(toleranced_, all.deviations);
         const ElementPairDistance& near = found.nearest.pair;
         record.point_a = point(made, bodies.a, out.a, all, found.nearest.element_a, near, near.kind_a, near.corner_a, near.point_a);
         record.point_b = point(made, bodies.b, out.b, all, found.nearest.element_b, near, near.kind_b, near.corner_b, near.point_b);
+        VariableBox::Values at{};
+        std::copy(record.at.begin(), record.at.end(), at.begin());
+        const auto there = prover.distance_at(*bodies.a.mesh, record.point_a, *bodies.b.mesh, record.point_b, at);
+        record.upper = there ? std::max(there->high, record.lower) : found.upper;
     }
 
     // Of the made mesh, whose corners are elsewhere than the tree's.

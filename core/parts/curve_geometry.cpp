@@ -14,7 +14,7 @@ namespace {
 
 using geometry::Range;
 
-constexpr double full_turn = 2 * std::numbers::pi;
+constexpr double full_turn = 2 * std::numbers::pi, half_turn = std::numbers::pi;
 constexpr int most_facets = 100'000;
 
 template <class... Visitors>
@@ -255,8 +255,10 @@ Number sweep_of(const Arc& arc) {
     const double known = sweep_value(arc);
     if (is_whole_circle(arc)) return known;
     const Point2 a = arc.start - arc.centre, b = arc.end - arc.centre;
-    const Number angle = atan2(cross(a, b), dot(a, b));
-    return angle + full_turn * std::round((known - angle.value) / full_turn);
+    // Half turns are the rule: what is recorded is an angle that does not jump there, when the part is made of other dimensions.
+    const bool is_wide = dot(a, b).value < 0;
+    const Number angle = is_wide ? atan2(-cross(a, b), -dot(a, b)) : atan2(cross(a, b), dot(a, b));
+    return angle + half_turn * std::round((known - angle.value) / half_turn);
 }
 
 bool is_general(const Curve& curve) { return std::holds_alternative<Bezier>(curve) || std::holds_alternative<LawCurve>(curve); }

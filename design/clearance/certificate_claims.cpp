@@ -18,6 +18,7 @@ namespace fettle::design::clearance {
 namespace {
 
 using core::certificate::Certificate;
+using core::certificate::is_over_ranges;
 using core::certificate::Solids;
 
 std::vector<Claim> claims_of(const Certificate& certificate) {
@@ -66,8 +67,7 @@ SourceCheck check_toleranced_source(const Certificate& certificate, const std::s
     SubjectOptions options;
     options.path = source;
     options.tolerances = true;
-    const auto& coordinates = certificate.toleranced->coordinates;
-    options.ranges = std::any_of(coordinates.begin(), coordinates.end(), [](const auto& c) { return c.low < c.high; });
+    options.ranges = is_over_ranges(*certificate.toleranced);
     const Result<Subject> subject = read_subject(options, input);
     if (!subject) {
         const Error& error = subject.errors().front();

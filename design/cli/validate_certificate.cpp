@@ -25,6 +25,7 @@ using clearance::ExportStatus;
 using core::base::RoundedLengths;
 using core::base::Towards;
 using core::certificate::Certificate;
+using core::certificate::is_over_ranges;
 using core::clearance::PairStatus;
 using core::model::Model;
 
@@ -105,6 +106,9 @@ Result<std::optional<double>> read_minimum(const std::string& text) {
 }
 
 const char* about(const Certificate& certificate) {
+    if (certificate.toleranced)
+        return is_over_ranges(*certificate.toleranced) ? "over all positions of the joints, within tolerances"
+                                                       : "as assembled, within tolerances";
     if (certificate.linkage) return "over all positions of the joints";
     if (!certificate.motion) return "as assembled";
     if (certificate.joints) return "over the motion, for joints met at all times";
