@@ -113,10 +113,11 @@ bool is_over_ranges(const Toleranced& toleranced) {
 
 bool same_toleranced(const Toleranced& x, const Toleranced& y) {
     return x.deviations == y.deviations && same_nodes(x.nodes, y.nodes) && x.coordinates == y.coordinates && x.bodies == y.bodies &&
-           x.loops == y.loops;
+           x.loops == y.loops && x.duration == y.duration;
 }
 
 base::Errors check_toleranced(const Toleranced& toleranced, const std::vector<int>& vertices) {
+    if (!base::is_usable_number(toleranced.duration) || toleranced.duration < 0) return fault("duration", "a time is expected, or 0");
     for (std::size_t k = 0; k < toleranced.deviations.size(); ++k) {
         const Deviation& d = toleranced.deviations[k];
         const bool usable = base::is_usable_number(d.lower) && base::is_usable_number(d.upper);

@@ -73,6 +73,9 @@ struct Toleranced {
     std::vector<LinkageCoordinate> coordinates;
     std::vector<TolerancedBody> bodies;  ///< of the model
     std::vector<TolerancedLoop> loops{};
+    /// What the coordinates' ranges are: 0: those of the joints (or nothing, as assembled); else where motors and scripts have them in this
+    /// time from the start [s] (clearance/driven_ranges.hpp).
+    double duration = 0;
 };
 
 /// Does any coordinate move? Else it is about the bodies as assembled.

@@ -208,12 +208,14 @@ void write_toleranced(JsonWriter& out, const Toleranced& toleranced) {
     out.list(toleranced.bodies.size(), ",\n ", [&](std::size_t i) { write_body(out, toleranced.bodies[i]); });
     out.key("loops");
     out.list(toleranced.loops.size(), ",\n ", [&](std::size_t i) { write_loop(out, toleranced.loops[i]); });
+    out.key("duration");
+    out.number(toleranced.duration);
     out.text += '}';
 }
 
 Toleranced read_toleranced(const JsonNode& node) {
     Toleranced out;
-    node.allow_keys({"deviations", "operations", "operands", "numbers", "coordinates", "bodies", "loops"});
+    node.allow_keys({"deviations", "operations", "operands", "numbers", "coordinates", "bodies", "loops", "duration"});
     for (const JsonNode& d : node.require("deviations").elements())
         out.deviations.push_back({d.require("of").string().value_or(""), number_of(d.require("lower")), number_of(d.require("upper")),
                                   number_of(d.require("base")), d.require("unit").string().value_or("")});
@@ -221,6 +223,7 @@ Toleranced read_toleranced(const JsonNode& node) {
     for (const JsonNode& c : node.require("coordinates").elements()) out.coordinates.push_back(read_coordinate(c));
     for (const JsonNode& body : node.require("bodies").elements()) out.bodies.push_back(read_body(body));
     for (const JsonNode& loop : node.require("loops").elements()) out.loops.push_back(read_loop(loop));
+    out.duration = number_of(node.require("duration"));
     return out;
 }
 

@@ -67,7 +67,9 @@ SourceCheck check_toleranced_source(const Certificate& certificate, const std::s
     SubjectOptions options;
     options.path = source;
     options.tolerances = true;
-    options.ranges = is_over_ranges(*certificate.toleranced);
+    options.kinematic = certificate.toleranced->duration > 0;
+    options.time = options.kinematic ? certificate.toleranced->duration : -1;
+    options.ranges = !options.kinematic && is_over_ranges(*certificate.toleranced);
     const Result<Subject> subject = read_subject(options, input);
     if (!subject) {
         const Error& error = subject.errors().front();

@@ -8,6 +8,7 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/clearance/driven_ranges.hpp"
 #include "fettle/core/model/start_check.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
@@ -175,6 +176,32 @@ std::vector<std::string> notes_of_tolerances(const core::certificate::Toleranced
     return notes;
 }
 
+// Of a motion without dynamics [s].
+double duration_of(const SubjectOptions& options, const core::model::Model& model, int design_steps) {
+    if (options.time >= 0) return options.time;
+    if (options.steps < 0 && model.end_time > 0) return model.end_time;
+    const int steps = options.steps >= 0 ? options.steps : design_steps > 0 ? design_steps : core::stepper::default_step_count;
+    return steps * model.timestep;
+}
+
+bool is_carried(const core::certificate::Linkage& linkage, int body) {
+    for (int at = body; at >= 0; at = linkage.bodies[at].parent)
+        if (!linkage.bodies[at].screws.empty()) return true;
+    return false;
+}
+
+// What bodies that joints hold are looked at over; nothing: trees as assembled.
+Result<std::optional<core::clearance::LoopedRanges>> positions_of(const SubjectOptions& options, const core::model::Model& model,
+                                                                  double duration) {
+    using Positions = std::optional<core::clearance::LoopedRanges>;
+    if (!options.ranges && !options.kinematic && !core::clearance::closes_loops(model)) return Positions{};
+    if (options.kinematic && !(duration > 0)) return Error{ErrorCode::out_of_range, "--time", "more than 0 s is expected"};
+    Result<core::clearance::LoopedRanges> found =
+        options.kinematic ? core::clearance::driven_ranges(model, duration) : core::clearance::looped_ranges(model, !options.ranges);
+    if (!found) return found.errors();
+    return Positions{*std::move(found)};
+}
+
 // Of a design, as made.
 Result<Subject> from_tolerances(const SubjectOptions& options, const reading::InputOptions& input, reading::FileKind kind,
                                 const SubjectWatch& watch) {
@@ -185,9 +212,11 @@ Result<Subject> from_tolerances(const SubjectOptions& options, const reading::In
     if (kind != reading::FileKind::design)
         return Error{ErrorCode::unsupported, options.path,
                      "--tolerances wants a design that has `tolerances` (docs/interface.md); a scene alone has none"};
-    if (options.motion || options.kinematic || !options.poses.empty())
-        return Error{ErrorCode::unsupported, "--tolerances",
-                     "goes as assembled, or with --ranges: over a motion that depends on the parts nothing can be proven of all of them"};
+    if (options.motion || !options.poses.empty())
+        return Error{
+            ErrorCode::unsupported, "--tolerances",
+            "goes as assembled, with --ranges or with --kinematic: over a motion that depends on the parts nothing can be proven of "
+            "all of them"};
     reading::DesignReadOptions read{.mesh_dirs = input.mesh_dirs, .programs = input.programs, .as_made = true};
     Result<reading::DesignFile> file = reading::read_design(options.path, read);
     if (!file) return file.errors();
@@ -205,29 +234,42 @@ Result<Subject> from_tolerances(const SubjectOptions& options, const reading::In
     const VectorX base = description::with_deviations(design, file->tolerances, base_of(file->tolerances));
     Result<core::model::Model> model = problem->model_at(base, *scenario);
     if (!model) return model.errors();
-    std::optional<core::clearance::LoopedRanges> ranges;
-    if (options.ranges || core::clearance::closes_loops(*model)) {
-        Result<core::clearance::LoopedRanges> found = core::clearance::looped_ranges(*model, !options.ranges);
-        if (!found) return with_file(found.errors());
-        ranges = *std::move(found);
-    }
+    const double duration = options.kinematic ? duration_of(options, *model, problem->steps(*scenario)) : 0;
+    const Result<std::optional<core::clearance::LoopedRanges>> positions = positions_of(options, *model, duration);
+    if (!positions) return with_file(positions.errors());
     Result<core::certificate::Toleranced> toleranced =
-        toleranced_bodies(description::design_of_scenario(design, *scenario), file->tolerances, *model, ranges);
+        toleranced_bodies(description::design_of_scenario(design, *scenario), file->tolerances, *model, *positions);
     if (!toleranced) return with_file(toleranced.errors());
-    Subject subject = options.ranges ? subject_over(*std::move(model), std::move(ranges->ranges)) : subject_of(*std::move(model));
-    if (options.ranges && !toleranced->loops.empty())
+    toleranced->duration = duration;
+    const bool moves = options.ranges || options.kinematic;
+    Subject subject = options.ranges ? subject_over(*std::move(model), (*positions)->ranges) : subject_of(*std::move(model));
+    if (moves && !toleranced->loops.empty())
         subject.notes.emplace_back("joints of closed loops follow from what drives them, whatever their own limits are");
+    if (options.kinematic) {
+        subject.source = SubjectSource::prescribed;
+        subject.ranges = (*positions)->ranges;
+        for (size_t i = 0; i < subject.model.bodies.size(); ++i)
+            subject.model.bodies[i].type =
+                is_carried(subject.ranges->linkage, static_cast<int>(i)) ? BodyType::kinematic_body : BodyType::static_body;
+        subject.notes.push_back(core::base::formatted("for %.6g s from the start", duration));
+        if (!subject.ranges->held.empty())
+            subject.notes.push_back("--kinematic: these would move freely and are held at their start pose: " +
+                                    joined(subject.ranges->held));
+    }
     if (!subject.ranges) {
         subject.ranges.emplace();
         subject.ranges->linkage.coordinates = toleranced->coordinates;
     }
-    const std::vector<std::string> notes = notes_of_tolerances(*toleranced, options.ranges);
+    const std::vector<std::string> notes = notes_of_tolerances(*toleranced, moves);
     subject.notes.insert(subject.notes.begin(), notes.begin(), notes.end());
     subject.toleranced = *std::move(toleranced);
     subject.scene_path = file->scene_path;
     subject.warnings = file->warnings;
     subject.wanted = design_pairs(design);
-    subject.required = design_minima(design, *scenario, options.ranges ? MinimumOver::ranges : MinimumOver::assembly);
+    subject.required = design_minima(design, *scenario,
+                                     options.ranges      ? MinimumOver::ranges
+                                     : options.kinematic ? MinimumOver::motion
+                                                         : MinimumOver::assembly);
     return subject;
 }
 

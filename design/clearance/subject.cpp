@@ -39,6 +39,8 @@ const char* to_string(SubjectSource source) {
             return "over the trajectory";
         case SubjectSource::ranges:
             return "over the ranges of the joints";
+        case SubjectSource::prescribed:
+            return "over the prescribed motion";
     }
     return "";
 }

@@ -16,7 +16,7 @@
 
 namespace fettle::design::clearance {
 
-enum class SubjectSource { as_assembled, simulated, scripted, poses, trajectory, ranges };
+enum class SubjectSource { as_assembled, simulated, scripted, poses, trajectory, ranges, prescribed };
 const char* to_string(SubjectSource source);
 
 struct Subject {
@@ -35,8 +35,8 @@ struct Subject {
     std::vector<std::string> notes;     ///< what the reader of a report should know
     std::vector<std::string> files;     ///< the meshes, where nothing else was read
 
+    bool moves_over_ranges() const { return source == SubjectSource::ranges || source == SubjectSource::prescribed; }
     /// Without steps there is none, wherever the poses come from.
-    bool moves_over_ranges() const { return source == SubjectSource::ranges; }
     bool motion() const { return source != SubjectSource::as_assembled && !trajectory.steps.empty(); }
 };
 

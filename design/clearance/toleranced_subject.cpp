@@ -349,6 +349,9 @@ private:
             const Number3 position = vector(body_pointer(i) + "/position", scene_.bodies[i].pose.position);
             for (size_t k = 0; k < 3; ++k) out.rotation[k] = nodes_of(rotation[k]);
             out.place = nodes_of(sum(product(rotation, constant(model_.bodies[i].reference_point)), position));
+            if (ranges_)  // a script's, about where the body is
+                for (const core::certificate::Screw& screw : ranges_->ranges.linkage.bodies[i].screws)
+                    out.screws.push_back({screw.coordinate, out.place, nodes_of(constant(screw.axis)), screw.turn, screw.slide});
             return;
         }
         hang_on(i, *joint, out);

@@ -208,13 +208,10 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     app.flag("--no-report", options.no_report, "With --out: no report.html");
     app.option("--baseline", options.baseline, "Compare with an earlier report (--json): which findings are new, existing, resolved");
     app.flag("--tolerances", options.subject.tolerances,
-             "Over all parts within the `tolerances` of a design, in every combination (as assembled, or with --ranges)")
+             "Over all parts within the `tolerances` of a design, in every combination (as assembled, with --ranges or with --kinematic)")
         .excludes(motion)
-        .excludes(kinematic)
         .excludes(poses)
-        .excludes(touch)
-        .excludes(steps)
-        .excludes(time);
+        .excludes(touch);
     app.flag("--ranges", options.subject.ranges, "Over all positions of the joints within their limits, in every combination")
         .excludes(motion)
         .excludes(kinematic)

@@ -106,6 +106,7 @@ Result<std::optional<double>> read_minimum(const std::string& text) {
 }
 
 const char* about(const Certificate& certificate) {
+    if (certificate.toleranced && certificate.toleranced->duration > 0) return "over the prescribed motion, within tolerances";
     if (certificate.toleranced)
         return is_over_ranges(*certificate.toleranced) ? "over all positions of the joints, within tolerances"
                                                        : "as assembled, within tolerances";

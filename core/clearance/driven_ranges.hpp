@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+/// Where joints and scripted bodies go over a prescribed motion, from the start on for some time, as ranges (looped_ranges.hpp):
+///   one thing moves       its coordinate, over all that its curve comes to in that time: the same set of positions as over time
+///   several at even speed one coordinate, time [s], that all of them follow in their own rates
+/// What nothing drives must follow from what is driven, by a loop; of bodies without joints it stands where it starts, and is named.
+#pragma once
+
+#include "fettle/core/base/result.hpp"
+#include "fettle/core/clearance/looped_ranges.hpp"
+
+namespace fettle::core::clearance {
+
+/// @param duration  [s] > 0
+/// Errors, by name: those of looped_ranges; nothing that moves; a joint that nothing drives; several things of which one goes by a table;
+/// poses at times; curves whose extent is not known exactly (cubic, control_points).
+base::Result<LoopedRanges> driven_ranges(const model::Model& model, double duration);
+
+}  // namespace fettle::core::clearance
