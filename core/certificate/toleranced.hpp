@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Bodies as made, as data: what a certificate over a box of tolerances (certificate.hpp) is about. Their vertices, and the frames that
 /// their joints turn about, are formulas of deviations, each anywhere between its limits. Made from a design by
-/// design/clearance/toleranced_subject.hpp.
+/// design/problem/toleranced_bodies.hpp.
 ///
 /// `nodes` (expression/operation.hpp) are operations on the deviations; everything that may depend on them is the number of a node:
 ///   vertices       of a body, in its frame, one for each of its mesh's; none: as the mesh has them. Triangles and edges are the mesh's

@@ -110,7 +110,9 @@ nlohmann::ordered_json over_tolerances_json(const description::Design& design, c
     const description::OverTolerances over =
         of_objective ? *design.objective[index].over_tolerances : *design.constraints[index].bounds.over_tolerances;
     const bool is_sigma = over.kind == description::OverTolerances::Kind::sigma;
-    nlohmann::ordered_json json{{"kind", is_sigma ? "sigma" : "worst_case"}};
+    nlohmann::ordered_json json{{"kind", is_sigma                                                 ? "sigma"
+                                         : over.kind == description::OverTolerances::Kind::proven ? "proven"
+                                                                                                  : "worst_case"}};
     if (is_sigma) json["sigma"] = over.sigmas;
     json["tolerances"] = design.as_made->tolerances.size();
     json["drawn"] = row->drawn.value;
@@ -120,6 +122,11 @@ nlohmann::ordered_json over_tolerances_json(const description::Design& design, c
     }
     json["reserve"] = row->reserve;
     json["at_kink"] = row->is_at_kink;
+    if (row->deviations.size() > 0) {
+        json["worst_deviations"] = nlohmann::ordered_json::array();
+        for (int k = 0; k < count_of(design.as_made->tolerances); ++k)
+            json["worst_deviations"].push_back({{"of", design.as_made->tolerances[k].of}, {"value", row->deviations[k]}});
+    }
     return json;
 }
 

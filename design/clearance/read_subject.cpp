@@ -18,7 +18,7 @@
 #include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/clearance/mesh_parts.hpp"
-#include "fettle/design/clearance/toleranced_subject.hpp"
+#include "fettle/design/problem/toleranced_bodies.hpp"
 
 namespace fettle::design::clearance {
 
@@ -231,14 +231,14 @@ Result<Subject> from_tolerances(const SubjectOptions& options, const reading::In
     const Result<problem::DesignProblem> problem = problem::DesignProblem::create(file->design);
     if (!problem) return problem.errors();
     const description::Design& design = problem->design();
-    const VectorX base = description::with_deviations(design, file->tolerances, base_of(file->tolerances));
+    const VectorX base = description::with_deviations(design, file->tolerances, problem::base_of(file->tolerances));
     Result<core::model::Model> model = problem->model_at(base, *scenario);
     if (!model) return model.errors();
     const double duration = options.kinematic ? duration_of(options, *model, problem->steps(*scenario)) : 0;
     const Result<std::optional<core::clearance::LoopedRanges>> positions = positions_of(options, *model, duration);
     if (!positions) return with_file(positions.errors());
     Result<core::certificate::Toleranced> toleranced =
-        toleranced_bodies(description::design_of_scenario(design, *scenario), file->tolerances, *model, *positions);
+        problem::toleranced_bodies(description::design_of_scenario(design, *scenario), file->tolerances, *model, *positions);
     if (!toleranced) return with_file(toleranced.errors());
     toleranced->duration = duration;
     const bool moves = options.ranges || options.kinematic;

@@ -49,8 +49,20 @@ std::string reserve_text(const DesignEvaluation& evaluation, bool of_objective, 
 
 std::string reserves_text(const description::Design& design) {
     if (!design.as_made) return {};
+    const auto is_proven = [](const auto& over) { return over && over->kind == description::OverTolerances::Kind::proven; };
+    const auto is_computed = [&](const auto& over) { return over && !is_proven(over); };
+    const bool all_proven =
+        std::none_of(design.constraints.begin(), design.constraints.end(),
+                     [&](const auto& c) { return is_computed(c.bounds.over_tolerances); }) &&
+        std::none_of(design.relations.begin(), design.relations.end(),
+                     [&](const auto& r) { return is_computed(r.bounds.over_tolerances); }) &&
+        std::none_of(design.objective.begin(), design.objective.end(), [&](const auto& t) { return is_computed(t.over_tolerances); });
+    const bool some_proven = std::any_of(design.constraints.begin(), design.constraints.end(),
+                                         [&](const auto& c) { return is_proven(c.bounds.over_tolerances); });
+    if (all_proven) return "over all combinations of " + core::base::counted(design.as_made->tolerances.size(), "tolerance") + ": proven";
     return "over " + core::base::counted(design.as_made->tolerances.size(), "tolerance") +
-           ", to first order of the derivatives: computed, not proven";
+           (some_proven ? ", to first order of the derivatives: computed, not proven, but for what is asked to be proven"
+                        : ", to first order of the derivatives: computed, not proven");
 }
 
 EvaluateOptions for_several(EvaluateOptions options) {

@@ -41,7 +41,7 @@ struct ContinuedRow {
 };
 
 /// A constraint or a term of the objective that is asked for over the tolerances: its measurement has its reserve for them, is computed and
-/// not proven, and keeps the certificate of what is drawn.
+/// not proven (but for what is asked to be: proven_clearance.hpp), and keeps the certificate of what is drawn.
 struct RobustRow {
     bool of_objective = false;
     int index = 0;                   ///< of the constraint or term
@@ -50,6 +50,7 @@ struct RobustRow {
     double standard_deviation = 0;   ///< over the tolerances, SI
     double reserve = 0;              ///< what is added to the drawn value, SI
     VectorX gradient;                ///< d value / d deviation, per tolerance, SI
+    VectorX deviations{};            ///< of what is proven: those of the worst parts, SI
     bool is_at_kink = false;         ///< gradients jump close by: how the reserve changes from there is not known, and counts as nothing
 };
 

@@ -271,10 +271,13 @@ DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions
     return evaluation;
 }
 
+EvaluateAsMade DesignProblem::as_made() const {
+    return {[this](const VectorX& at, const EvaluateOptions& asked) { return as_made_->evaluate(at, asked); },
+            [this](const VectorX& at) { return as_made_->rest_rows(at); }, [this](const VectorX& at) { return as_made_->model_at(at); }};
+}
+
 DesignEvaluation DesignProblem::evaluate_robust(const VectorX& p, const EvaluateOptions& options) const {
-    const EvaluateAsMade as_made{[this](const VectorX& at, const EvaluateOptions& asked) { return as_made_->evaluate(at, asked); },
-                                 [this](const VectorX& at) { return as_made_->rest_rows(at); }};
-    DesignEvaluation evaluation = evaluate_over_tolerances(design_, as_made, p, options);
+    DesignEvaluation evaluation = evaluate_over_tolerances(design_, as_made(), p, options);
     evaluation.relations = relations(p);
     if (!evaluation.usable) return evaluation;
     for (size_t i = 0; i < design_.relations.size(); ++i)
@@ -297,7 +300,7 @@ std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const
         if (!rows) return rows;
         rows->values.conservativeResize(count_of(indices));
         rows->jacobian.conservativeResize(count_of(indices), rows->jacobian.cols());
-        add_reserves(design_, indices, *rows);
+        if (!add_reserves(design_, as_made(), p, indices, *rows)) return std::nullopt;
         return rows;
     }
     optimisers::Rows rows{VectorX(indices.size()), MatrixX::Zero(static_cast<Eigen::Index>(indices.size()), parameter_count())};

@@ -18,6 +18,7 @@
 #include "fettle/core/model/build_mechanism.hpp"
 #include "fettle/design/description/design.hpp"
 #include "fettle/design/problem/design_evaluation.hpp"
+#include "fettle/design/problem/evaluate_over_tolerances.hpp"
 #include "fettle/design/problem/moved_scene.hpp"
 
 namespace fettle::design::problem {
@@ -93,6 +94,7 @@ private:
     static Result<core::model::Model> build(const Setting& setting, const core::scene::Scene& scene);
     static Result<MovedScene> trial_scene(const Setting& setting, const VectorX& p, SceneDerivative derivative);
     Errors undefined(const optimisers::Rows& relations) const;
+    EvaluateAsMade as_made() const;
     DesignEvaluation evaluate_robust(const VectorX& p, const EvaluateOptions& options) const;
     std::string simulate(int scenario, const EvaluateOptions& options, Run& run) const;
     void measure(DesignEvaluation& evaluation) const;

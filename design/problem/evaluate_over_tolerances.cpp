@@ -7,6 +7,7 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/design/description/made_design.hpp"
+#include "fettle/design/problem/proven_clearance.hpp"
 #include "fettle/design/problem/stopwatch.hpp"
 
 namespace fettle::design::problem {
@@ -25,6 +26,37 @@ struct AskedNumber {
     int side = 1;
     description::OverTolerances over;
 };
+
+bool is_proven(const description::OverTolerances& over) { return over.kind == description::OverTolerances::Kind::proven; }
+
+/// A requirement's certified bounds over the tolerances, and the gradient of its worst parts, in the parameters as drawn.
+struct ProvenRow {
+    ProvenClearance clearance;
+    double value = 0;  // of the worst parts: between the bounds
+    VectorX gradient;
+};
+
+constexpr double finest_proof = 1e-7;  // [m] between the bounds
+
+Result<ProvenRow> proven_row(const Design& design, const EvaluateAsMade& as_made, const VectorX& p, int constraint) {
+    const MadeDesign& made = *design.as_made;
+    const VectorX here = made.extended(p);
+    const Result<core::model::Model> model = as_made.model_at(base_point(made, here));
+    if (!model) return model.errors();
+    const auto* quantity = dynamic_cast<const quantities::Clearance*>(design.constraints[constraint].quantity.get());
+    if (quantity == nullptr) return Error{ErrorCode::unsupported, design.constraints[constraint].name, "only a clearance can be proven"};
+    Result<ProvenClearance> found =
+        proven_clearance(made, here, *model, quantity->range(), std::max(design.clearance_tolerance, finest_proof));
+    if (!found) return found.errors();
+    const std::optional<optimisers::Rows> rows = as_made.rest_rows(here + made.moved_by(found->deviations));
+    if (!rows) return Error{ErrorCode::inconsistent, design.constraints[constraint].name, "its worst parts cannot be made"};
+    Eigen::Index row = 0;
+    for (int i = 0; i < constraint; ++i)
+        if (design.constraints[i].quantity->is_at_rest()) ++row;
+    ProvenRow out{*std::move(found), rows->values[row], VectorX(rows->jacobian.row(row).head(p.size()))};
+    out.value = std::clamp(out.value, out.clearance.lower, std::max(out.clearance.lower, out.clearance.upper));
+    return out;
+}
 
 std::vector<AskedNumber> asked_numbers(const Design& design) {
     std::vector<AskedNumber> out;
@@ -82,9 +114,20 @@ public:
         out_.parameters = p;
         if (!out_.usable) return std::move(out_);
         const MatrixX search = search_jacobian(out_);
-        for (const AskedNumber& number : asked_) {
-            offsets_.push_back(offset_of(number, search.row(number.made)));
-            out_.robust.push_back({number.of_objective, number.index, {}, 0, 0, 0, made_.by_deviation(search.row(number.made)), false});
+        proven_.resize(asked_.size());
+        for (std::size_t r = 0; r < asked_.size(); ++r) {
+            const AskedNumber& number = asked_[r];
+            if (is_proven(number.over)) {
+                Result<ProvenRow> row = proven_row(design_, as_made_, p, number.index);
+                if (!row) {
+                    give_up(row.errors().front().where + ": " + row.errors().front().message);
+                    leave_as_drawn();
+                    return std::move(out_);
+                }
+                proven_[r] = *std::move(row);
+            }
+            offsets_.push_back(offset_of(r, search.row(number.made), out_.constraints));
+            out_.robust.push_back({number.of_objective, number.index, {}, 0, 0, 0, made_.by_deviation(search.row(number.made)), {}, false});
         }
         if (options_.gradients) {
             const Stopwatch differences;
@@ -98,6 +141,14 @@ public:
     }
 
 private:
+    // Of what is proven: what lies between the two values.
+    RobustOffset offset_of(std::size_t r, const VectorX& gradient, const std::vector<description::Measurement>& drawn) const {
+        if (!proven_[r]) return offset_of(asked_[r], gradient);
+        RobustOffset out;
+        out.offset = proven_[r]->value - drawn[asked_[r].index].value;
+        out.direction = VectorX::Zero(scales_.size());
+        return out;
+    }
     RobustOffset offset_of(const AskedNumber& number, const VectorX& gradient) const {
         return description::offset_of(number.over, made_.by_deviation(gradient), made_.deviations, number.side);
     }
@@ -174,6 +225,7 @@ private:
                 return give_up("made with deviations of 1/32 of a standard deviation: " + reasons[2 * k]);
         const VectorX ranges = ranges_of_parameters();
         for (std::size_t r = 0; r < asked_.size(); ++r) {
+            if (proven_[r]) changes_[r] = proven_[r]->gradient - search.row(asked_[r].made).head(n_).transpose();
             for (const auto& [direction, multiple] : parts[r]) {
                 const Change change = change_of(differences[direction], asked_[r].made, robust_step, ranges);
                 changes_[r] += multiple * change.value;
@@ -220,7 +272,7 @@ private:
             RobustRow& row = out_.robust[r];
             description::Measurement& measured = (number.of_objective ? out_.terms : out_.constraints)[number.index];
             // What the search sees of a constraint that is continued has a gradient of its own.
-            const RobustOffset own = offset_of(number, out_.jacobian.row(number.made));
+            const RobustOffset own = offset_of(r, out_.jacobian.row(number.made), out_.constraints);
             row.drawn = measured;
             row.mean = own.mean;
             row.standard_deviation = own.standard_deviation;
@@ -229,6 +281,14 @@ private:
             measured.lower += own.offset;
             measured.upper += own.offset;
             measured.is_proven = false;
+            if (proven_[r]) {
+                const ProvenClearance& of = proven_[r]->clearance;
+                measured.lower = of.lower;
+                measured.upper = std::max(of.lower, of.upper);
+                measured.is_proven = true;
+                if (!of.fault.empty()) measured.fault = of.fault;
+                row.deviations = of.deviations;
+            }
             number.of_objective ? add_to_objective(r) : add_to_constraint(r);
         }
     }
@@ -255,14 +315,15 @@ private:
         }
         if (!has_changes()) return;
         out_.jacobian.row(number.index).head(n_) += changes_[r].transpose();
-        add_to_branches(number, changes_[r], out_.constraint_branches);
+        add_to_branches(number, changes_[r], out_.constraint_branches, proven_[r] ? std::optional(offsets_[r].offset) : std::nullopt);
     }
 
     // Each with the reserve of its own derivatives, which changes as that of the one that the value is.
-    void add_to_branches(const AskedNumber& number, const VectorX& change, optimisers::Branches& branches) const {
+    void add_to_branches(const AskedNumber& number, const VectorX& change, optimisers::Branches& branches,
+                         std::optional<double> same_offset = {}) const {
         for (Eigen::Index k = 0; k < branches.values.size(); ++k) {
             if (branches.of[static_cast<std::size_t>(k)] != number.index) continue;
-            branches.values[k] += offset_of(number, branches.jacobian.row(k)).offset;
+            branches.values[k] += same_offset ? *same_offset : offset_of(number, branches.jacobian.row(k)).offset;
             branches.jacobian.row(k).head(n_) += change.transpose();
         }
     }
@@ -313,9 +374,10 @@ private:
     VectorX scales_;
     VectorX here_;
     DesignEvaluation out_;
-    std::vector<RobustOffset> offsets_;  // of what the search sees
-    std::vector<VectorX> directions_;    // of length 1
-    std::vector<VectorX> changes_;       // of the offsets, per parameter as drawn; empty: not asked for
+    std::vector<std::optional<ProvenRow>> proven_;  // of each number that is asked for
+    std::vector<RobustOffset> offsets_;             // of what the search sees
+    std::vector<VectorX> directions_;               // of length 1
+    std::vector<VectorX> changes_;                  // of the offsets, per parameter as drawn; empty: not asked for
 };
 
 }  // namespace
@@ -325,15 +387,25 @@ DesignEvaluation evaluate_over_tolerances(const Design& design, const EvaluateAs
     return RobustEvaluation(design, as_made, options).at(p);
 }
 
-void add_reserves(const Design& design, const std::vector<int>& constraints, optimisers::Rows& rows) {
+bool add_reserves(const Design& design, const EvaluateAsMade& as_made, const VectorX& p, const std::vector<int>& constraints,
+                  optimisers::Rows& rows) {
     const MadeDesign& made = *design.as_made;
     for (Eigen::Index k = 0; k < rows.values.size(); ++k) {
-        const description::Bounds& bounds = design.constraints[constraints[static_cast<std::size_t>(k)]].bounds;
+        const int constraint = constraints[static_cast<std::size_t>(k)];
+        const description::Bounds& bounds = design.constraints[constraint].bounds;
         if (!bounds.over_tolerances) continue;
+        if (is_proven(*bounds.over_tolerances)) {
+            const Result<ProvenRow> row = proven_row(design, as_made, p, constraint);
+            if (!row) return false;
+            rows.values[k] = row->value;
+            rows.jacobian.row(k).head(p.size()) = row->gradient.transpose();
+            continue;
+        }
         const VectorX gradient = made.by_deviation(rows.jacobian.row(k));
         rows.values[k] += description::offset_of(*bounds.over_tolerances, gradient, made.deviations, description::side_of(bounds)).offset;
     }
     rows.jacobian = MatrixX(rows.jacobian.leftCols(count_of(design.parameters)));
+    return true;
 }
 
 }  // namespace fettle::design::problem

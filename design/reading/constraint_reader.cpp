@@ -36,14 +36,31 @@ public:
         } else {
             read_bounded(node, *find_quantity_type(*type), read);
         }
-        for (Constraint& constraint : read)
-            constraint.bounds.over_tolerances = read_over_tolerances_of(node, constraint.bounds, context_.over_tolerances);
+        for (Constraint& constraint : read) {
+            constraint.bounds.over_tolerances =
+                read_over_tolerances_of(node, constraint.bounds, context_.over_tolerances, *type == "clearance");
+            check_proven(node, constraint);
+        }
         for (const Constraint& constraint : read)
             for (ScenarioQuantity& one : in_scenarios(node, constraint.quantity, context_.scenarios))
                 out.push_back({unique_name(constraint.name + one.suffix, names_), constraint.bounds, std::move(one.quantity)});
     }
 
 private:
+    void check_proven(const JsonNode& node, const Constraint& constraint) const {
+        const auto& over = constraint.bounds.over_tolerances;
+        if (!over || over->kind != description::OverTolerances::Kind::proven) return;
+        const auto* clearance = dynamic_cast<const quantities::Clearance*>(constraint.quantity.get());
+        const bool can_be = clearance != nullptr && !clearance->range().motion && clearance->range().faces_a.empty() &&
+                            clearance->range().faces_b.empty() && context_.scenarios.names.size() < 2;
+        if (!can_be)
+            node["over_tolerances"].fail(
+                ErrorCode::unsupported,
+                "\"proven\" is for a clearance of whole bodies, as assembled or over the ranges of the joints, with a "
+                "number as its minimum, in a design without scenarios; a motion in contact cannot be proven for "
+                "all parts: say {\"sigma\": 3} or \"worst_case\"");
+    }
+
     // Among the constraints of the same choice of scenarios.
     std::string name_of(const JsonNode& node, const std::string& otherwise) {
         return unique_name(node["name"].string().value_or(otherwise), names_of_choice_[node["scenario"].shown()]);

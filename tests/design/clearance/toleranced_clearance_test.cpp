@@ -12,7 +12,7 @@
 #include "fettle/design/clearance/certificate_claims.hpp"
 #include "fettle/design/clearance/read_subject.hpp"
 #include "fettle/design/clearance/report_json.hpp"
-#include "fettle/design/clearance/toleranced_subject.hpp"
+#include "fettle/design/problem/toleranced_bodies.hpp"
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/toleranced_subject.hpp"
+#include "fettle/design/problem/toleranced_bodies.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 #include "fettle/core/scene_files/scene_formulas.hpp"
 #include "fettle/design/problem/moved_scene.hpp"
 
-namespace fettle::design::clearance {
+namespace fettle::design::problem {
 
 namespace {
 
@@ -59,8 +59,8 @@ public:
 
     Result<Toleranced> run() {
         const VectorX base = base_of(tolerances_);
-        const Result<problem::MovedScene> moved =
-            problem::move_scene(design_, description::with_deviations(design_, tolerances_, base), problem::SceneDerivative::not_wanted);
+        const Result<MovedScene> moved =
+            move_scene(design_, description::with_deviations(design_, tolerances_, base), SceneDerivative::not_wanted);
         if (!moved) return moved.errors();
         scene_ = moved->scene;
         record_numbers(base);
@@ -471,4 +471,4 @@ Result<Toleranced> toleranced_bodies(const Design& design, const std::vector<Tol
     return recorder.run();
 }
 
-}  // namespace fettle::design::clearance
+}  // namespace fettle::design::problem

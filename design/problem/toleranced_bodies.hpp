@@ -18,7 +18,7 @@
 #include "fettle/design/description/design.hpp"
 #include "fettle/design/description/tolerance.hpp"
 
-namespace fettle::design::clearance {
+namespace fettle::design::problem {
 
 /// Where the base is: 0 for each tolerance, or the middle of limits that do not contain it [SI].
 VectorX base_of(const std::vector<description::Tolerance>& tolerances);
@@ -32,4 +32,4 @@ Result<core::certificate::Toleranced> toleranced_bodies(const description::Desig
                                                         const core::model::Model& model,
                                                         const std::optional<core::clearance::LoopedRanges>& ranges);
 
-}  // namespace fettle::design::clearance
+}  // namespace fettle::design::problem
