@@ -36,7 +36,11 @@ struct ProvenRow {
     VectorX gradient;
 };
 
-constexpr double finest_proof = 1e-7;  // [m] between the bounds
+// Between the bounds [m]: well within the requirement's margin, or what is proven at one design scatters beside the next.
+double proof_tolerance(const description::Bounds& bounds) {
+    constexpr double finest = 1e-8, usual = 1e-7;
+    return bounds.margin > 0 ? std::clamp(bounds.margin / 20, finest, usual) : usual;
+}
 
 Result<ProvenRow> proven_row(const Design& design, const EvaluateAsMade& as_made, const VectorX& p, int constraint) {
     const MadeDesign& made = *design.as_made;
@@ -46,7 +50,7 @@ Result<ProvenRow> proven_row(const Design& design, const EvaluateAsMade& as_made
     const auto* quantity = dynamic_cast<const quantities::Clearance*>(design.constraints[constraint].quantity.get());
     if (quantity == nullptr) return Error{ErrorCode::unsupported, design.constraints[constraint].name, "only a clearance can be proven"};
     Result<ProvenClearance> found =
-        proven_clearance(made, here, *model, quantity->range(), std::max(design.clearance_tolerance, finest_proof));
+        proven_clearance(made, here, *model, quantity->range(), proof_tolerance(design.constraints[constraint].bounds));
     if (!found) return found.errors();
     const std::optional<optimisers::Rows> rows = as_made.rest_rows(here + made.moved_by(found->deviations));
     if (!rows) return Error{ErrorCode::inconsistent, design.constraints[constraint].name, "its worst parts cannot be made"};

@@ -104,7 +104,7 @@ TEST_CASE("A hundred thousand samples of each of many random trees are never bel
 TEST_CASE("Certificates of random trees within tolerances are accepted", "[toleranced]") {
     std::mt19937 random(11);
     int accepted = 0;
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < 6; ++i) {
         const TolerancedTree tree = random_toleranced_tree(random, 3e-4);
         ProvenClearances proven;
         const PairClearance found = certified(tree, 1e-2 * size_of(tree), 20'000, &proven);
@@ -115,7 +115,7 @@ TEST_CASE("Certificates of random trees within tolerances are accepted", "[toler
         CHECK(report.accepted());
         ++accepted;
     }
-    CHECK(accepted >= 3);
+    CHECK(accepted >= 2);
 }
 
 }  // namespace fettle::core::clearance::toleranced_clearance_test

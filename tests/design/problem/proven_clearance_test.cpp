@@ -30,8 +30,8 @@ const char* const scene = R"json({"fettle_scene": 1, "units": "mm", "timestep": 
        "limits": [-50, 30]}]})json";
 
 std::string design(const std::string& constraint, const std::string& more = "") {
-    return R"json({"fettle_design": 1, "scene": "x.scene.json", "units": "mm", "simulation": {"steps": 1, "clearance_tolerance": 2e-3},
-        "parameters": [{"name": "fore_length", "lower": 30, "upper": 60}, {"name": "width", "lower": 10, "upper": 20}],
+    return R"json({"fettle_design": 1, "scene": "x.scene.json", "units": "mm", "simulation": {"steps": 1},
+        "parameters": [{"name": "fore_length", "value": 50, "lower": 30, "upper": 60}, {"name": "width", "value": 19, "lower": 10, "upper": 20}],
         "objective": [{"type": "mass", "bodies": ["fore"], "weight": -1}], "constraints": [)json" +
            constraint + R"json(],
         "tolerances": {"upper_length": "+-0.1 mm", "fore_length": {"lower": -0.3, "upper": 0.2}, "width": "+-0.1 mm", "post_at": "+-0.4 mm"})json" +
@@ -60,7 +60,7 @@ TEST_CASE("A clearance proven over the tolerances, and its derivative, against t
     REQUIRE(file);
     const auto problem = DesignProblem::create(file->design);
     REQUIRE(problem);
-    for (const auto& [fore, width] : {std::pair{40e-3, 12e-3}, {52e-3, 10e-3}, {35e-3, 19e-3}}) {
+    for (const auto& [fore, width] : {std::pair{40e-3, 12e-3}, {52e-3, 19e-3}}) {
         const VectorX p = Vector2(fore, width);
         EvaluateOptions options;
         options.gradients = true;
@@ -70,7 +70,7 @@ TEST_CASE("A clearance proven over the tolerances, and its derivative, against t
         const auto& measured = e.constraints[0];
         CHECK(measured.is_proven);
         CHECK(measured.lower <= least(fore, width) + 1e-12);
-        CHECK(measured.upper - measured.lower <= 2e-6);
+        CHECK(measured.upper - measured.lower <= 1e-7);
         CHECK(measured.value == Approx(least(fore, width)).epsilon(1e-9));
         const double way = std::hypot(fore + 0.2e-3, (width + 0.1e-3) / 2);
         CHECK(e.jacobian(0, 0) == Approx(-(fore + 0.2e-3) / way).epsilon(1e-8));
@@ -92,7 +92,7 @@ TEST_CASE("A clearance proven over the tolerances, and its derivative, against t
     }
 }
 
-TEST_CASE("The optimum under a clearance that is proven over the tolerances", "[toleranced]") {
+TEST_CASE("The optimum under a clearance that is proven over the tolerances", "[toleranced][slow]") {
     const Folder folder;
     const auto file = folder.read(design(proven));
     REQUIRE(file);
