@@ -102,21 +102,28 @@ std::string axis_below(const Scale& x, double y, const std::string& label) {
     std::string out = line_from(x.first, y, x.last, y, "axis");
     for (const double value : round_numbers(x.from, x.to, 4)) {
         out += line_from(x(value), y, x(value), y + 4, "axis");
-        out += text_at(x(value), y + 17, "middle", number_text(value), "faint");
+        const std::string text = number_text(value);
+        const double half = 4.2 * static_cast<double>(text.size());  // of its width, nearly: numbers at the ends stay within the chart
+        out += text_at(std::clamp(x(value), half, chart_width - half), y + 17, "middle", text, "faint");
     }
-    return out + text_at((x.first + x.last) / 2, y + 35, "middle", shortened(label, 60));
+    return out + text_at((x.first + x.last) / 2, y + 35, "middle", shortened(label, 44));
 }
 
-// Words of marks above a chart, each in a row of its own, so that none lies over another.
-std::string marked(const ChartMark& mark, int row, const Scale& x, double top, double bottom, const std::string& unit) {
+// Words of a mark above a chart, each in a row of its own, so that none lies over another.
+std::string mark_words(const ChartMark& mark, int row, const Scale& x, const std::string& unit) {
     const double y = 13 + 15 * row;
     const std::string value = mark.text + " " + with_unit(number_text(mark.value), unit);
     if (mark.value < x.from) return text_at(x.first, y, "start", "\u2190 " + value, mark.kind);
     if (mark.value > x.to) return text_at(x.last, y, "end", value + " \u2192", mark.kind);
     const double at = x(mark.value);
     const bool is_left = at < (x.first + x.last) / 2;
-    return line_from(at, y + 3 < top ? y - 9 : top, at, bottom, mark.kind) +
-           text_at(is_left ? at + 4 : at - 4, y, is_left ? "start" : "end", value, mark.kind);
+    return text_at(is_left ? at + 4 : at - 4, y, is_left ? "start" : "end", value, mark.kind);
+}
+
+// Its line, from its words down; none where it is farther off.
+std::string mark_line(const ChartMark& mark, int row, const Scale& x, double bottom) {
+    if (mark.value < x.from || mark.value > x.to) return {};
+    return line_from(x(mark.value), 4 + 15 * row, x(mark.value), bottom, mark.kind);
 }
 
 }  // namespace
@@ -153,7 +160,7 @@ std::string tornado_svg(const std::string& title, const std::vector<TornadoBar>&
                         " at the lower limit, " + with_unit(change_text(each.at_upper), unit) + " at the upper one; " +
                         percent(each.share) + " of the variance") +
                "</title>\n";
-        out += text_at(0, top + 14, "start", shortened(each.of, 48));
+        out += text_at(0, top + 14, "start", shortened(each.of, 42));
         out += text_at(chart_width, top + 14, "end", percent(each.share), "faint");
         out += bar_at(place(0), top + 20, place(each.at_lower), bar, "lower");
         out += bar_at(place(0), top + 20 + bar, place(each.at_upper), bar, "upper");
@@ -208,7 +215,8 @@ std::string histogram_svg(const std::string& title, const std::vector<double>& v
         out += "<path class=\"predicted\" d=\"" + path + "\"/>\n";
     }
     out += axis_below(x, bottom, unit.empty() ? "value" : unit);
-    for (std::size_t k = 0; k < marks.size(); ++k) out += marked(marks[k], static_cast<int>(k), x, top, bottom, unit);
+    for (std::size_t k = 0; k < marks.size(); ++k) out += mark_line(marks[k], static_cast<int>(k), x, bottom);
+    for (std::size_t k = 0; k < marks.size(); ++k) out += mark_words(marks[k], static_cast<int>(k), x, unit);
     return chart(title, bottom + below, out);
 }
 
@@ -233,7 +241,7 @@ std::string scatter_svg(const std::string& title, const std::vector<ScatterPoint
             y1 = std::max(y1, limit.value);
         }
     const Scale x = scale_of(x0, x1, left, chart_width - 8), y = scale_of(y0, y1, bottom - failed_row, top);
-    std::string out = text_at(0, 13, "start", shortened(y_label, 60));
+    std::string out = text_at(0, 13, "start", shortened(y_label, 48));
     for (const double value : round_numbers(y.from, y.to, 5)) {
         out += line_from(x.first, y(value), x.last, y(value), "grid");
         out += text_at(left - 6, y(value) + 4, "end", number_text(value), "faint");

@@ -52,6 +52,7 @@ constexpr const char* chart_style = R"css(
 .spread line.drawn { stroke: var(--ink); stroke-width: 1.5; }
 .spread line.mean { stroke: var(--accent); stroke-width: 1.5; stroke-dasharray: 2 3; }
 .spread line.limit { stroke: var(--bad); stroke-width: 1.5; stroke-dasharray: 6 4; }
+.spread text.drawn, .spread text.mean, .spread text.limit { paint-order: stroke; stroke: var(--paper); stroke-width: 4px; stroke-linejoin: round; }
 .spread text.mean { fill: var(--accent); }
 .spread text.limit { fill: var(--bad); }
 .spread .met { fill: none; stroke: var(--accent); stroke-width: 4; stroke-linecap: round; opacity: 0.55; }
