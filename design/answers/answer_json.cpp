@@ -17,6 +17,13 @@ using core::clearance::PairClearance;
 using core::clearance::PairStatus;
 using Json = nlohmann::ordered_json;
 
+std::string shell_word(const std::string& word) {
+    if (!word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
 Json vector_json(const Vector3& v) { return Json(Json::array_t(v.begin(), v.end())); }
 
 Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }

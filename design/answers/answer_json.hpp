@@ -14,6 +14,9 @@
 
 namespace fettle::design::answers {
 
+/// A word of a command as it can be typed: in quotes where a shell would take it apart or change it.
+std::string shell_word(const std::string& word);
+
 nlohmann::ordered_json vector_json(const Vector3& v);
 
 /// The number; null where it is infinite or none.

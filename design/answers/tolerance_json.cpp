@@ -8,7 +8,6 @@
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/description/requirement_text.hpp"
 
 namespace fettle::design::answers {
 
@@ -34,12 +33,6 @@ using tolerances::Yield;
 
 const char* word_of(Response::Kind kind) {
     return kind == Response::Kind::objective ? "objective" : kind == Response::Kind::constraint ? "constraint" : "relation";
-}
-
-// Relations name no unit: of them it is that of their bounds.
-CountedUnit unit_of(const Design& design, const Response& response) {
-    if (response.kind == Response::Kind::constraint) return description::counted_unit(design.constraints[response.index]);
-    return {response.bounds.unit};
 }
 
 Json yield_json(const Yield& yield) { return {{"within", yield.within}, {"ppm_outside", ppm_outside(yield)}}; }
@@ -184,8 +177,9 @@ std::string yield_text(const Yield& yield) { return formatted("%.4g%%", 100 * yi
 
 class Text {
 public:
-    Text(const Design& design, const std::vector<Tolerance>& tolerances, const ToleranceReport& report)
-        : design_(design), tolerances_(tolerances), report_(report) {}
+    // @param process  That was asked for in place of the design's.
+    Text(const reading::DesignFile& file, const std::string& process, const ToleranceReport& report)
+        : path_(file.path), process_(process), design_(file.design), tolerances_(file.tolerances), report_(report) {}
 
     std::string all() const {
         std::string text = "tolerances:\n";
@@ -234,7 +228,7 @@ private:
             if (s.controlled_mean)
                 row("",
                     "with the prediction as control: mean " + amount(s.controlled_mean->mean) + " +- " + amount(s.controlled_mean->error),
-                    s.controlled_yield ? yield_text(*s.controlled_yield) : "");
+                    s.controlled_yield ? yield_text(*s.controlled_yield) : "as sampled, which is known better so");
             row("", "from " + amount(s.least) + " to " + amount(s.most) + capability(s), "");
             if (s.unexplained > studies::much_unexplained)
                 row("",
@@ -289,10 +283,24 @@ private:
         const std::vector<const MadeSample*> failed = failed_of(report_);
         if (!failed.empty())
             text += core::base::counted(failed.size(), "sample") + " could not be made or simulated, and count as misses:\n";
-        for (std::size_t k = 0; k < std::min(failed.size(), most_told); ++k)
-            text += "  sample " + std::to_string(failed[k]->number) + ": " + failed[k]->reason + "\n";
+        const std::vector<studies::FailureKind> kinds = studies::kinds_of_failure(report_);
+        for (std::size_t k = 0; k < std::min(kinds.size(), most_told); ++k)
+            text += "  sample " + std::to_string(kinds[k].first) + ": " + kinds[k].reason +
+                    (kinds[k].count > 1 ? formatted(" (%d so)", kinds[k].count) : "") + "\n    " + to_see(kinds[k].first);
+        if (kinds.size() > most_told) text += formatted("  and %zu kinds more\n", kinds.size() - most_told);
+        if (const auto worst = studies::worst_sample(report_))
+            text += "sample " + std::to_string(worst->sample) + " is the one " +
+                    (worst->is_beyond ? "farthest beyond what is required, of " : "nearest to a bound, that of ") +
+                    report_.responses[worst->response].name + "\n  " + to_see(worst->sample);
         for (const studies::SwitchedContacts& switched : report_.switched) text += of_contacts(switched);
         return report_.interrupted ? text + "interrupted\n" : text;
+    }
+
+    // The command that simulates one of the samples.
+    std::string to_see(int sample) const {
+        return "to see it: fettle simulate " + shell_word(path_) + formatted(" --made %d", sample) +
+               (report_.seed == 1 ? "" : formatted(" --seed %llu", static_cast<unsigned long long>(report_.seed))) +
+               (process_.empty() ? "" : " --process " + shell_word(process_)) + " --out FOLDER\n";
     }
 
     std::string of_contacts(const studies::SwitchedContacts& switched) const {
@@ -332,12 +340,19 @@ private:
         return text.empty() ? text : "what to do:\n" + text;
     }
 
+    const std::string &path_, &process_;
     const Design& design_;
     const std::vector<Tolerance>& tolerances_;
     const ToleranceReport& report_;
 };
 
 }  // namespace
+
+// Relations name no unit: of them it is that of their bounds.
+CountedUnit unit_of(const Design& design, const Response& response) {
+    if (response.kind == Response::Kind::constraint) return description::counted_unit(design.constraints[response.index]);
+    return {response.bounds.unit};
+}
 
 Json tolerance_json(const Design& design, const std::vector<Tolerance>& tolerances, const ToleranceReport& report) {
     Json json = {{"status", status_of(report)}, {"message", message_of(report)}};
@@ -348,7 +363,7 @@ Json tolerance_json(const Design& design, const std::vector<Tolerance>& toleranc
         for (const Response& response : report.responses) json["responses"].push_back(response_json(design, tolerances, response, report));
     const std::vector<const MadeSample*> failed = failed_of(report);
     const int samples = count_of(report.samples);
-    json["samples"] = {{"count", samples}, {"met", report.met_all}, {"failed", failed.size()}};
+    json["samples"] = {{"count", samples}, {"seed", report.seed}, {"met", report.met_all}, {"failed", failed.size()}};
     json["samples"]["yield"] = samples > 0 ? yield_json(tolerances::counted_yield(report.met_all, samples, confidence)) : Json();
     json["samples"]["controlled_yield"] = report.controlled_yield ? yield_json(*report.controlled_yield) : Json();
     json["tighten"] = Json::array();
@@ -359,6 +374,12 @@ Json tolerance_json(const Design& design, const std::vector<Tolerance>& toleranc
                                    {"factor", t.factor}});
     json["loosen"] = Json::array();
     for (const int k : studies::what_may_be_loosened(report, tolerances)) json["loosen"].push_back(tolerances[k].of);
+    json["worst_sample"] = nullptr;
+    if (const auto worst = studies::worst_sample(report))
+        json["worst_sample"] = {{"sample", worst->sample}, {"of", report.responses[worst->response].name}, {"beyond", worst->is_beyond}};
+    json["kinds_of_failure"] = Json::array();
+    for (const studies::FailureKind& kind : studies::kinds_of_failure(report))
+        json["kinds_of_failure"].push_back({{"sample", kind.first}, {"count", kind.count}, {"reason", kind.reason}});
     json["failed"] = Json::array();
     for (const MadeSample* sample : failed)
         json["failed"].push_back({{"sample", sample->number},
@@ -377,8 +398,8 @@ Json tolerance_json(const reading::DesignFile& file, const ToleranceReport& repo
     return json;
 }
 
-std::string tolerance_text(const reading::DesignFile& file, const ToleranceReport& report) {
-    std::string text = Text(file.design, file.tolerances, report).all();
+std::string tolerance_text(const reading::DesignFile& file, const ToleranceReport& report, const std::string& process) {
+    std::string text = Text(file, process, report).all();
     if (!file.untoleranced.empty()) text += "without a tolerance (\"*\" leaves them out):\n";
     for (const reading::Untoleranced& each : file.untoleranced) text += "  " + each.name + ": " + each.why + "\n";
     return text;

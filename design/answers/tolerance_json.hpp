@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "fettle/design/description/requirement_text.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/tolerance_study.hpp"
 
@@ -19,6 +20,10 @@ nlohmann::ordered_json tolerance_json(const description::Design& design, const s
 /// With the process that the file goes by, and what has no tolerance.
 /// @param file  As made.
 nlohmann::ordered_json tolerance_json(const reading::DesignFile& file, const studies::ToleranceReport& report);
-std::string tolerance_text(const reading::DesignFile& file, const studies::ToleranceReport& report);
+/// The unit in which people read a response.
+description::CountedUnit unit_of(const description::Design& design, const studies::Response& response);
+
+/// @param process  That was asked for in place of the design's; empty: none.
+std::string tolerance_text(const reading::DesignFile& file, const studies::ToleranceReport& report, const std::string& process = {});
 
 }  // namespace fettle::design::answers

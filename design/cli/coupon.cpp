@@ -50,15 +50,18 @@ Result<CouponKind> kind_of(const std::string& out) {
 }
 
 // "hole=3mm..8mm"
-Result<coupons::SizeRange> size_range(const std::string& text) {
+Result<coupons::SizeRange> size_range(const std::string& text, CouponKind coupon) {
     const Error fault{ErrorCode::parse, "--sizes", "found \"" + text + "\"; sizes are given as hole=3mm..8mm"};
     const std::size_t equals = text.find('='), dots = text.find("..");
     if (equals == std::string::npos || dots == std::string::npos || dots < equals) return fault;
     const std::string name = text.substr(0, equals);
     const auto kind = tolerances::feature_kind(name);
-    if (!kind)
+    std::vector<std::string_view> names;
+    for (const tolerances::FeatureKind each : coupons::sized_kinds(coupon)) names.emplace_back(tolerances::to_string(each));
+    if (!kind || std::find(names.begin(), names.end(), name) == names.end())
         return Error{ErrorCode::out_of_range, "--sizes",
-                     "\"" + name + "\" is no kind of feature; " + core::files::did_you_mean(name, tolerances::feature_kind_names())};
+                     "a coupon " + std::string(coupon == CouponKind::cut ? "to cut" : "to print") + " has no features of kind \"" + name +
+                         "\"; " + core::files::did_you_mean(name, names)};
     const auto from = core::base::parse_length(text.substr(equals + 1, dots - equals - 1), "--sizes");
     const auto up_to = core::base::parse_length(text.substr(dots + 2), "--sizes");
     if (!from) return from.errors();
@@ -72,7 +75,7 @@ Result<coupons::CouponOptions> options_of(const CouponArguments& arguments) {
     coupons::CouponOptions options{*kind, arguments.steps, {}};
     Errors errors;
     for (const std::string& text : arguments.sizes) {
-        const auto range = size_range(text);
+        const auto range = size_range(text, *kind);
         errors.insert(errors.end(), range.errors().begin(), range.errors().end());
         if (range) options.sizes.push_back(*range);
     }

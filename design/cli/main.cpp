@@ -15,6 +15,7 @@
 #include "fettle/core/base/stop.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/nearest_word.hpp"
+#include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/named_files.hpp"
@@ -56,18 +57,7 @@ std::string usage_message(const ParseOutcome& parsed, const std::vector<Command>
 // As it can be typed again: words that a shell would take apart or change are quoted.
 std::string typed(int argc, char** argv) {
     std::string text = "fettle";
-    for (int k = 1; k < argc; ++k) {
-        const std::string word = argv[k];
-        const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[]{}()<>|&;#~!") == std::string::npos;
-        text += ' ';
-        if (plain) {
-            text += word;
-            continue;
-        }
-        text += '\'';
-        for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-        text += '\'';
-    }
+    for (int k = 1; k < argc; ++k) text += ' ' + design::answers::shell_word(argv[k]);
     return text;
 }
 

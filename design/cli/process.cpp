@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// fettle process FORM --name NAME: a process from what was measured of a coupon (tolerances/process_fit.hpp).
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -25,7 +26,8 @@ using tolerances::Process;
 using tolerances::ProcessFit;
 
 struct ProcessArguments {
-    std::string form, name, base = "fdm", folder = ".";
+    std::vector<std::string> forms;
+    std::string name, base = "fdm", folder = ".";
     bool replace = false;
 };
 
@@ -48,6 +50,10 @@ Json kind_json(const KindFit& kind) {
             {"spread", interval_json(kind.spread)},
             {"spread_without_measuring", kind.process_spread},
             {"spread_bound", kind.spread_bound},
+            {"prints", kind.prints},
+            {"between_prints", kind.components ? interval_json(kind.components->between) : Json()},
+            {"shared", kind.components ? interval_json(kind.components->share) : Json()},
+            {"taken", taken_spread(kind)},
             {"degrees_of_freedom", kind.degrees_of_freedom},
             {"outliers", std::move(outliers)}};
 }
@@ -62,11 +68,21 @@ Json fit_json(const ProcessFit& fit, const std::string& file, const std::string&
             {"confidence", 0.95},
             {"repeatability", fit.repeats > 0 ? Json(fit.repeatability) : Json()},
             {"repeats", fit.repeats},
+            {"prints", fit.prints},
             {"kinds", std::move(kinds)},
             {"too_few", std::move(too_few)}};
 }
 
 std::string in_mm(double metres) { return formatted("%.3f", metres * 1e3); }
+
+// How prints differ, where there are several.
+std::string between_text(const KindFit& kind) {
+    if (!kind.components) return {};
+    const tolerances::Interval &between = kind.components->between, &share = kind.components->share;
+    return " within a print, " + in_mm(between.value) + " mm (" + in_mm(between.least) + " to " + in_mm(between.most) + ") between " +
+           std::to_string(kind.prints) + " prints, which share " +
+           formatted("%.0f%% (%.0f%% to %.0f%%)", 100 * share.value, 100 * share.least, 100 * share.most) + " of the variance";
+}
 
 std::string kind_text(const KindFit& kind, const std::string& base) {
     std::string text = formatted("%-7s %2d, %.3g to %.3g mm: ", to_string(kind.kind), kind.features, kind.from * 1e3, kind.up_to * 1e3);
@@ -75,14 +91,25 @@ std::string kind_text(const KindFit& kind, const std::string& base) {
         text += formatted(" at %.3g mm, %+.2f%% of the size (%+.2f to %+.2f)", kind.mean_size * 1e3, kind.bias_per_size.value * 100,
                           kind.bias_per_size.least * 100, kind.bias_per_size.most * 100);
     if (has_spread(kind))
-        text += "; spread " + in_mm(kind.spread.value) + " mm (" + in_mm(kind.spread.least) + " to " + in_mm(kind.spread.most) +
-                "), taken as " + in_mm(kind.spread_bound) + "\n";
+        text += "; spread " + in_mm(kind.spread.value) + " mm (" + in_mm(kind.spread.least) + " to " + in_mm(kind.spread.most) + ")" +
+                between_text(kind) + ", taken as " + in_mm(taken_spread(kind)) + "\n";
     else
         text += "; no spread is seen, since all are off by the same: limits about the bias as " + base + "; measure in finer steps\n";
     for (const auto& outlier : kind.outliers)
         text += "        " + outlier.name + " lies " + formatted("%+.3f", outlier.residual * 1e3) + " mm off the others' line (" +
                 formatted("%.1f", std::abs(outlier.studentised)) + " of their spreads): measure it again; it is in the fit as it is\n";
     return text;
+}
+
+std::string of_prints(const ProcessFit& fit, const Process& base) {
+    const std::string taken =
+        formatted("%.0f%%", base.correlation * 100) + " of their variance (`correlation`) is taken from " + base.name + "\n";
+    if (fit.prints == 1) return "one print does not show how prints differ: that its features share " + taken;
+    std::string text = "how prints differ is what the features of one print share (`correlation` of each kind)";
+    if (fit.prints < tolerances::least_bounded_prints)
+        text += formatted("; of %d prints it is taken as it was found, and may be far more: of %d on it is bounded", fit.prints,
+                          tolerances::least_bounded_prints);
+    return text + "\nthat features of kinds that were measured in one print, or none, share " + taken;
 }
 
 std::string fit_text(const ProcessFit& fit, const Process& base, const std::string& file) {
@@ -95,8 +122,7 @@ std::string fit_text(const ProcessFit& fit, const Process& base, const std::stri
     text += fit.repeats > 0 ? "measuring itself spreads by " + in_mm(fit.repeatability) + " mm, which is in the spreads above\n"
                             : std::string("no feature was measured twice: how much of the spread is the caliper's is not known\n");
     return text + "tolerances take the larger spread, which the true one is below with 95% confidence: more features bring it down\n" +
-           "one print does not show how prints differ: that its features share " + formatted("%.0f%%", base.correlation * 100) +
-           " of their variance (`correlation`) is taken from " + base.name + "\n";
+           of_prints(fit, base);
 }
 
 Errors name_errors(const ProcessArguments& arguments, const fs::path& file) {
@@ -111,12 +137,35 @@ Errors name_errors(const ProcessArguments& arguments, const fs::path& file) {
     return {};
 }
 
+// A print each.
+Result<std::vector<tolerances::MeasuredFeature>> read_forms(const std::vector<std::string>& forms) {
+    std::vector<tolerances::MeasuredFeature> all;
+    Errors errors;
+    for (std::size_t k = 0; k < forms.size(); ++k) {
+        std::error_code code;
+        for (std::size_t j = 0; j < k; ++j)
+            if (fs::equivalent(forms[j], forms[k], code))
+                errors.push_back({ErrorCode::inconsistent, forms[k], "is given twice: each form is of a print of its own"});
+        const auto features = coupons::read_form(forms[k]);
+        errors.insert(errors.end(), features.errors().begin(), features.errors().end());
+        if (!features) continue;
+        const bool is_empty = std::all_of(features->begin(), features->end(), [](const auto& each) { return each.measured.empty(); });
+        if (is_empty && forms.size() > 1) errors.push_back({ErrorCode::out_of_range, forms[k], "nothing is measured in it"});
+        for (tolerances::MeasuredFeature feature : *features) {
+            feature.print = static_cast<int>(k);
+            all.push_back(std::move(feature));
+        }
+    }
+    if (!errors.empty()) return errors;
+    return all;
+}
+
 int run_process(const ProcessArguments& arguments, Console& console) {
     const fs::path file = (fs::path(arguments.folder) / (arguments.name + reading::process_ending)).lexically_normal();
     if (const Errors errors = name_errors(arguments, file); !errors.empty()) return console.input_errors(errors);
-    const auto features = coupons::read_form(arguments.form);
+    const Result<std::vector<tolerances::MeasuredFeature>> features = read_forms(arguments.forms);
     if (!features) return console.input_errors(features.errors());
-    const Result<ProcessFit> fit = tolerances::fit_process(*features, arguments.form);
+    const Result<ProcessFit> fit = tolerances::fit_process(*features, core::base::joined(arguments.forms));
     if (!fit) return console.input_errors(fit.errors());
     const Process& base = *tolerances::find_known_process(arguments.base);
     const Process fitted = fitted_process(*fit, arguments.name, base);
@@ -137,7 +186,7 @@ std::vector<std::string> known_names() {
 Command add_process(CommandLine& program) {
     CommandLine app = program.command("process", "Makes a process of what you measured of a coupon: bias and spread by kind of feature");
     auto options = std::make_shared<ProcessArguments>();
-    app.option("FORM", options->form, "The coupon's form with what you measured, X.csv").required();
+    app.option("FORMS", options->forms, "The coupon's form with what you measured, X.csv; of several prints, each with its own").required();
     app.option("--name", options->name, "What it is called: NAME.process.json is written").required();
     app.option("--based-on", options->base, "What holds for kinds that are not measured (default fdm)").one_of(known_names());
     app.option("--in", options->folder, "Folder to write into (default: this one)");
@@ -146,7 +195,8 @@ Command add_process(CommandLine& program) {
         "Example:  fettle process coupon.csv --name mine && fettle tolerance made.design.json --process mine\n"
         "Fits, for each kind of feature, how much larger than drawn it comes out (by size, from five features of three sizes on) and how\n"
         "much it spreads, with 95% intervals. Rows that are empty are left out; rows may be added. Tolerances take the upper bound of\n"
-        "the spread, not the estimate, which from few features is often too small.");
+        "the spread, not the estimate, which from few features is often too small. Of several prints, a form each, how they differ is\n"
+        "fitted too: what the parts of one print share.");
     return {app, [options](Console& console) { return run_process(*options, console); }};
 }
 

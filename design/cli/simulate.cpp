@@ -20,6 +20,7 @@
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/answers/growing_tables.hpp"
 #include "fettle/design/answers/growing_trajectory.hpp"
+#include "fettle/design/answers/made_json.hpp"
 #include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/answers/simulate_json.hpp"
@@ -28,6 +29,7 @@
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/report_made.hpp"
+#include "fettle/design/studies/made_sample.hpp"
 
 namespace fettle::design::cli {
 
@@ -44,7 +46,23 @@ struct SimulateArguments {
     int steps = -1;
     double time = -1;
     bool no_report = false;
+    int made = -1;  // sample of the design's tolerances; none
+    int seed = 1;
+    std::string process, samples_file;
 };
+
+// What is simulated: the file as it stands, or a sample of its tolerances.
+Result<LoadedModel> load_subject(const SimulateArguments& options, const CommonOptions& common, Json& json, std::string& told) {
+    if (options.made < 0) return load_model(options.path, common);
+    begin_to_read(options.path);
+    Result<studies::MadeMechanism> made =
+        studies::load_made(options.path, input_options(common),
+                           {options.made, static_cast<std::uint64_t>(options.seed), options.samples_file, options.process});
+    if (!made) return made.errors();
+    json["made"] = answers::made_json(*made, options.made);
+    told = answers::made_text(*made, options.made);
+    return std::move(made->loaded);
+}
 
 void add_balance(const core::model::Model& model, const core::stepper::Balance& balance, const std::string& file, Json& json,
                  Console& console) {
@@ -88,6 +106,7 @@ struct Writing {
 
 struct FinishedRun {
     const LoadedModel& loaded;
+    const std::string& about;         // what the answer begins with
     Simulation& simulation;           // nodes may be added to its path
     const Simulation& earlier;        // that it went on with
     std::optional<Writing>& writing;  // with --out
@@ -219,7 +238,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
         console.unwritten(errors);
         written = errors.empty();
     }
-    std::string told = answer_text(outcome, simulation, proof, written ? options.out : "", model.length_unit, console);
+    std::string told = run.about + answer_text(outcome, simulation, proof, written ? options.out : "", model.length_unit, console);
     if (balance) told += balance_text(*balance);
     if (run.writing && (written || !writes_out)) run.writing->trajectory.remove();
     if (written && !options.no_report)
@@ -234,7 +253,10 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
 int run_simulate(SimulateArguments options, const CommonOptions& common, Console& console) {
     options.earlier = answers::run_to_continue(options.earlier);
     const auto begin = std::chrono::steady_clock::now();
-    Result<LoadedModel> loaded = load_model(options.path, common);
+    Json json;
+    json["status"] = "";
+    std::string about;
+    Result<LoadedModel> loaded = load_subject(options, common, json, about);
     if (!loaded) return console.input_errors(loaded.errors());
     const core::model::Model& model = loaded->model;
     tell_warnings(console, loaded->warnings, options.path);
@@ -271,8 +293,6 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
     }
     const Errors unwritable = try_outputs(options);
     if (!unwritable.empty()) return console.input_errors(unwritable);
-    Json json;
-    json["status"] = "";
     json["start_seconds"] = seconds_since(begin);
     if (!loaded->warnings.empty()) json["warnings"] = loaded->warnings;
     if (!options.out.empty()) writing.emplace(options, *loaded);
@@ -280,7 +300,7 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
         writing->tables.go_on_with(options.earlier, (earlier.checkpoint.step + 0.5) * earlier.trajectory.timestep);
     Simulation simulation = core::stepper::simulate(model, simulate_options);
     simulation.report.wall_seconds -= prover.seconds();
-    return finish(options, common, {*loaded, simulation, earlier, writing, prover}, std::move(json), console);
+    return finish(options, common, {*loaded, about, simulation, earlier, writing, prover}, std::move(json), console);
 }
 
 }  // namespace
@@ -301,9 +321,19 @@ Command add_simulate(CommandLine& program, const CommonOptions& common) {
     app.option("--poses", options->poses, "Write the poses at the ends of the steps for other programs (.csv or .json)");
     app.option("--joint-gap", options->joint_gap,
                "Largest distance by which joints may part between nodes, with its unit: 0.01mm (adds nodes; default: any gap)");
+    Option made = app.option("--made", options->made,
+                             "Of a design with `tolerances`: sample number K of fettle tolerance, as made, in place of the design as drawn")
+                      .at_least(0);
+    Option seed = app.option("--seed", options->seed, "With --made: that fettle tolerance had (default 1)").at_least(0).needs(made);
+    app.option("--samples-file", options->samples_file,
+               "With --made: the file that fettle tolerance kept its samples in, whose seed is taken; the answer tells what it has of K")
+        .needs(made)
+        .excludes(seed);
+    app.option("--process", options->process, "With --made: that fettle tolerance had").needs(made);
     app.closing_words(
         "Example:  fettle simulate examples/slider_crank/slider_crank.scene.json --steps 50 --out out\n"
-        "          fettle simulate examples/slider_crank/slider_crank.scene.json --continue out/trajectory.json --steps 100 --out out");
+        "          fettle simulate examples/slider_crank/slider_crank.scene.json --continue out/trajectory.json --steps 100 --out out\n"
+        "          fettle simulate examples/slider_crank/robust.design.json --made 17 --out out_17");
     return {app, [options, &common](Console& console) { return run_simulate(*options, common, console); }};
 }
 

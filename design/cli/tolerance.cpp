@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/design/answers/allocation_json.hpp"
+#include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/answers/tolerance_json.hpp"
 #include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/report/tolerance_report.hpp"
 #include "fettle/design/studies/tolerance_file.hpp"
 
 namespace fettle::design::cli {
@@ -20,7 +22,7 @@ struct Options {
     int seed = 1;
     bool first_order = false, worst_case = false, allocate = false;
     double yield = 0.9973;
-    std::string samples_file;
+    std::string samples_file, report;
 };
 
 // What goes by the process that the user names.
@@ -32,7 +34,21 @@ void tell_unused_process(Console& console, const reading::DesignFile& file, cons
                   path);
 }
 
-int run_allocation(const Options& options, const reading::DesignFile& file, const studies::ToleranceOptions& study, Console& console) {
+// Names it in the answer, and says at its end where it is.
+void leave_report(const Options& options, const CommonOptions& common, const report::ToleranceReportSource& source, Console& console,
+                  nlohmann::ordered_json& json, std::string& told) {
+    if (options.report.empty()) return;
+    report::ToleranceReportSource whole = source;
+    whole.answer = told;
+    whole.command = common.command;
+    const Errors errors = report::write_tolerance_report(options.report, whole);
+    console.unwritten(errors);
+    json["report"] = errors.empty() ? nlohmann::ordered_json(options.report) : nlohmann::ordered_json();
+    if (errors.empty()) told += "report: " + options.report + "\n";
+}
+
+int run_allocation(const Options& options, const CommonOptions& common, const reading::DesignFile& file,
+                   const studies::ToleranceOptions& study, Console& console) {
     studies::AllocationOptions allocation;
     allocation.yield = options.yield;
     allocation.worst_case = options.worst_case;
@@ -40,8 +56,12 @@ int run_allocation(const Options& options, const reading::DesignFile& file, cons
     const Result<studies::AllocationReport> report = studies::allocate(file, allocation);
     console.end_progress();
     if (!report) return console.input_errors(report.errors());
-    console.result(answers::allocation_json(file.design, file.tolerances, allocation, *report),
-                   answers::allocation_text(file.design, file.tolerances, allocation, *report));
+    nlohmann::ordered_json json = answers::allocation_json(file.design, file.tolerances, allocation, *report);
+    std::string told = answers::allocation_text(file.design, file.tolerances, allocation, *report);
+    reading::DesignFile allocated = file;
+    allocated.tolerances = report->tolerances;
+    leave_report(options, common, {allocated, report->study}, console, json, told);
+    console.result(json, told);
     return report->status == studies::AllocationStatus::held       ? exit_done
            : report->status == studies::AllocationStatus::not_held ? exit_violated
                                                                    : exit_undecided;
@@ -63,11 +83,16 @@ int run_tolerance(const Options& options, const CommonOptions& common, Console& 
     study.worst_case = options.worst_case;
     study.should_stop = interrupted;
     study.on_simulation = [&](int done, int of) { console.progress("simulating", done, of); };
-    if (options.allocate) return run_allocation(options, *file, study, console);
+    if (const Errors errors = options.report.empty() ? Errors{} : answers::try_output_file(options.report); !errors.empty())
+        return console.input_errors(errors);
+    if (options.allocate) return run_allocation(options, common, *file, study, console);
     const Result<studies::ToleranceReport> report = studies::study_tolerances(*file, options.samples_file, study);
     console.end_progress();
     if (!report) return console.input_errors(report.errors());
-    console.result(answers::tolerance_json(*file, *report), answers::tolerance_text(*file, *report));
+    nlohmann::ordered_json json = answers::tolerance_json(*file, *report);
+    std::string told = answers::tolerance_text(*file, *report, options.process);
+    leave_report(options, common, {*file, *report}, console, json, told);
+    console.result(json, told);
     return report->reason.empty() && report->no_second_order.empty() && !report->interrupted ? exit_done : exit_undecided;
 }
 
@@ -85,6 +110,8 @@ Command add_tolerance(CommandLine& program, const CommonOptions& common) {
     app.option("--seed", options->seed, "Of the samples (default 1)").at_least(0);
     app.option("--samples-file", options->samples_file,
                "Where the samples are kept, a line each: those that are there are not simulated again, so that a run can be interrupted");
+    app.option("--report", options->report,
+               "Write a page (.html) of it: what moves each number, how it came out in the samples, over what it depends on most");
     app.flag("--first-order", options->first_order, "Predict from one simulation, without the 2 per tolerance that the second order takes");
     app.flag("--worst-case", options->worst_case, "Search for the worst cases by simulations: two searches for each requirement");
     const Option allocate = app.flag("--allocate", options->allocate,

@@ -70,8 +70,7 @@ private:
             errors_.push_back({ErrorCode::out_of_range, "--steps",
                                "found " + std::to_string(options_.steps) + "; a coupon has " + std::to_string(least_steps) + " to " +
                                    std::to_string(most_steps) + " features of each kind"});
-        std::vector<FeatureKind> kinds = kinds_of(options_.kind);
-        if (options_.kind == CouponKind::printed) kinds.push_back(FeatureKind::height);
+        const std::vector<FeatureKind> kinds = sized_kinds(options_.kind);
         for (const SizeRange& range : options_.sizes)
             if (std::find(kinds.begin(), kinds.end(), range.kind) == kinds.end())
                 errors_.push_back({ErrorCode::unsupported, "--sizes",
@@ -182,6 +181,12 @@ std::string size_text(double metres) { return core::base::formatted("%g", std::r
 std::vector<FeatureKind> kinds_of(CouponKind kind) {
     std::vector<FeatureKind> kinds;
     for (const Row& row : rows_of(kind)) kinds.push_back(row.kind);
+    return kinds;
+}
+
+std::vector<FeatureKind> sized_kinds(CouponKind kind) {
+    std::vector<FeatureKind> kinds = kinds_of(kind);
+    if (kind == CouponKind::printed) kinds.push_back(FeatureKind::height);
     return kinds;
 }
 

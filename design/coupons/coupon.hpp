@@ -61,6 +61,9 @@ std::string size_text(double metres);
 /// Kinds that such a coupon has, in the order of its rows.
 std::vector<tolerances::FeatureKind> kinds_of(CouponKind kind);
 
+/// Kinds whose sizes can be asked for: those, and of a printed one heights, of its pins' tops.
+std::vector<tolerances::FeatureKind> sized_kinds(CouponKind kind);
+
 /// Sizes in equal steps, rounded to 0.1 mm.
 /// Errors (out_of_range): steps, a range that is empty or whose steps would round to the same size, sizes that cannot be made or measured
 /// (over 0.1 mm, up to 40 mm), a plate of more than 200 mm; unsupported: a kind that the coupon does not have.

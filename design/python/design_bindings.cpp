@@ -114,10 +114,10 @@ namespace {
 // A record has no place for the design as made, and would leave the reserves out without a word.
 reading::DesignFile as_drawn(reading::DesignFile file) {
     if (file.design.as_made)
-        raise_if_any(
-            Errors{{ErrorCode::unsupported, file.path,
-                    "it asks for numbers over its tolerances (`over_tolerances`), which a fettle.Design does not hold: optimise_file and "
-                    "`fettle optimise` take the file itself; without the key, or with \"as_drawn\", it can be read here"}});
+        raise_if_any(Errors{{ErrorCode::unsupported, file.path,
+                             "it asks for numbers over its tolerances (`over_tolerances`), which a fettle.Design does not hold: "
+                             "DesignProblem.of_file, optimise_file and `fettle optimise` take the file itself; without the key, or with "
+                             "\"as_drawn\", it can be read here"}});
     return file;
 }
 

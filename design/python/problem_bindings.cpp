@@ -8,6 +8,7 @@
 #include "fettle/design/python/design_records.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/watch.hpp"
+#include "fettle/design/reading/design_reader.hpp"
 
 namespace fettle::design::python {
 
@@ -33,6 +34,21 @@ std::shared_ptr<DesignProblem> create(const description::Design& design) {
     description::Design whole = with_formulas(design);
     const py::gil_scoped_release unlocked;
     return std::make_shared<DesignProblem>(value_or_raise(DesignProblem::create(std::move(whole))));
+}
+
+std::shared_ptr<DesignProblem> of_file(const Path& path, const std::vector<Path>& mesh_dirs, bool allow_programs) {
+    const reading::DesignReadOptions options{texts_of(mesh_dirs), allow_programs ? reading::Programs::allowed : reading::Programs::refused};
+    const py::gil_scoped_release unlocked;
+    return std::make_shared<DesignProblem>(
+        value_or_raise(DesignProblem::create(value_or_raise(reading::read_design(path.string(), options)).design)));
+}
+
+// A record has no place for the design as made, and would leave the reserves out without a word.
+description::Design design_of(const DesignProblem& self) {
+    if (self.design().as_made)
+        raise_if_any(Errors{{ErrorCode::unsupported, "design",
+                             "it asks for numbers over its tolerances (`over_tolerances`), which a fettle.Design does not hold"}});
+    return self.design();
 }
 
 VectorX checked(const DesignProblem& self, const py::object& given) {
@@ -92,8 +108,10 @@ void bind_problem(py::module_& module) {
         "left out as the design has them: {\"radius\": \"9mm\"}. What is farther "
         "beyond its bounds than they are apart is refused: Error, code out_of_range.")
         .def(py::init(&create), py::arg("design"))
-        .def_property_readonly(
-            "design", [](const DesignProblem& self) { return self.design(); }, "A copy.")
+        .def_property_readonly("design", &design_of,
+                               "A copy. Raises Error where the problem is of a robust design, which only a file can say.")
+        .def_static("of_file", &of_file, py::arg("path"), py::arg("mesh_dirs") = std::vector<Path>(), py::arg("allow_programs") = false,
+                    "Of a *.design.json, robust ones (`over_tolerances`) too: their values and gradients have the reserves in them.")
         .def_property_readonly("parameter_names", &parameter_names)
         .def_property_readonly(
             "values", [](const DesignProblem& self) { return each(self, &description::Parameter::value); }, "(n), the design's own, SI")

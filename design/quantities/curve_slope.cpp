@@ -5,6 +5,8 @@
 #include <array>
 #include <vector>
 
+#include "fettle/core/base/types.hpp"
+
 namespace fettle::design::quantities {
 
 using core::scene::Curve;

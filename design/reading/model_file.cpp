@@ -81,22 +81,8 @@ Result<LoadedModel> load_design(const std::string& path, InputOptions options) {
     const std::string wanted = std::exchange(options.scenario, {});
     Result<DesignFile> file = open_design(path, options);
     if (!file) return file.errors();
-    const Result<int> scenario = scenario_of(file->design, wanted, path);
-    if (!scenario) return scenario.errors();
-    LoadedModel loaded;
-    loaded.kind = FileKind::design;
-    loaded.scene_path = file->scene_path;
-    loaded.warnings = file->warnings;
     const VectorX values = description::values_of(file->design.parameters);
-    Result<problem::DesignProblem> problem = problem::DesignProblem::create(std::move(file->design));
-    if (!problem) return problem.errors();
-    Result<core::model::Model> model = problem->model_at(values, *scenario);
-    if (!model) return model.errors();
-    loaded.steps = problem->steps(*scenario);
-    loaded.model = std::move(model).value();
-    loaded.problem = std::make_shared<const problem::DesignProblem>(std::move(problem).value());
-    loaded.model.warnings = loaded.problem->warnings();  // a design's own models take its meshes as sound
-    return loaded;
+    return loaded_design(std::move(file).value(), values, wanted);
 }
 
 Result<LoadedModel> load_scene(const std::string& path, const InputOptions& options) {
@@ -161,13 +147,34 @@ Result<LoadedModel> load_model(const std::string& path, FileKind kind, const Inp
     return loaded;
 }
 
+Result<LoadedModel> loaded_design(DesignFile file, const VectorX& values, const std::string& wanted) {
+    const Result<int> scenario = scenario_of(file.design, wanted, file.path);
+    if (!scenario) return scenario.errors();
+    LoadedModel loaded;
+    loaded.kind = FileKind::design;
+    loaded.scene_path = file.scene_path;
+    loaded.warnings = file.warnings;
+    Result<problem::DesignProblem> problem = problem::DesignProblem::create(std::move(file.design));
+    if (!problem) return problem.errors();
+    Result<core::model::Model> model = problem->model_at(values, *scenario);
+    if (!model) return model.errors();
+    loaded.steps = problem->steps(*scenario);
+    loaded.model = std::move(model).value();
+    loaded.problem = std::make_shared<const problem::DesignProblem>(std::move(problem).value());
+    loaded.model.warnings = loaded.problem->warnings();  // a design's own models take its meshes as sound
+    return loaded;
+}
+
 Result<DesignFile> open_design(const std::string& path, const InputOptions& options) {
     if (is_foreign(path)) return foreign_error(path);
     if (!options.scenario.empty())
         return Error{ErrorCode::unsupported, "--scenario",
                      "this is about all scenarios of a design; simulate, clearance, draw and export take one of them"};
     const auto made = std::make_shared<std::vector<MadePart>>();
-    Result<DesignFile> file = read_design(path, {.mesh_dirs = options.mesh_dirs, .programs = options.programs, .made = made});
+    DesignReadOptions read{.mesh_dirs = options.mesh_dirs, .programs = options.programs, .made = made};
+    read.as_made = options.as_made;
+    read.process = options.process;
+    Result<DesignFile> file = read_design(path, read);
     if (!file) {
         Errors errors = not_wanted(path, file_kind(path), "design");
         return errors.empty() ? file.errors() : errors;

@@ -32,6 +32,8 @@ struct InputOptions {
     bool check_start = true;                ///< false: a scene whose bodies intersect at the start is taken all the same
     std::function<bool()> should_stop;      ///< optional, asked often
     std::string scenario;                   ///< of a design: which is taken; empty: the first
+    bool as_made = false;                   ///< of a design: numbers with tolerances are parameters (DesignReadOptions)
+    std::string process = {};               ///< as made: in place of the design's
 };
 
 /// A scene or a design, opened once: a model to simulate, and for how many steps (negative: the model's own end time).
@@ -48,6 +50,9 @@ struct LoadedModel {
 /// program's file) is named with what is read instead; with `strict` its warnings too. @param kind  of the file
 Result<LoadedModel> load_model(const std::string& path, FileKind kind, const InputOptions& options);
 Result<LoadedModel> load_model(const std::string& path, const InputOptions& options);
+
+/// The same of a design in hand, at these values of its parameters. Errors: no such scenario, what cannot be made there.
+Result<LoadedModel> loaded_design(DesignFile file, const VectorX& values, const std::string& scenario = {});
 
 /// A design, for what takes nothing else, and all of its scenarios. Errors: one is asked for; a file that is something else by its name and
 /// first character is named with what is read instead; with `strict` also faults of its meshes, and what is doubted of its scene.

@@ -83,7 +83,7 @@ private:
     FeatureSpread read_feature(const JsonNode& node) const {
         FeatureSpread feature;
         node.allow_keys({"bias", "bias_per_size", "spread", "tolerance", "tolerance_per_size", "per_size_over", "general", "from", "up_to",
-                         "source", "measured"});
+                         "correlation", "source", "measured"});
         if (!node.is_object()) return feature;
         feature.bias = node["bias"].length(unit_).value_or(0);
         feature.bias_per_size = node["bias_per_size"].number({-1, 1}).value_or(0);
@@ -104,6 +104,7 @@ private:
         feature.from = node["from"].length(unit_, not_negative).value_or(feature.from);
         feature.up_to = node["up_to"].length(unit_, positive).value_or(feature.up_to);
         if (feature.from > feature.up_to) node["from"].fail(ErrorCode::inconsistent, "`from` is above `up_to`");
+        if (node["correlation"].exists()) feature.correlation = node["correlation"].number({0, 1});
         feature.source = node["source"].string().value_or(path_);
         return feature;
     }
@@ -158,12 +159,18 @@ Json feature_json(const FeatureSpread& feature, const tolerances::KindFit& fit) 
     }
     json["from"] = in_mm(feature.from);
     json["up_to"] = in_mm(feature.up_to);
+    if (feature.correlation) json["correlation"] = rounded(*feature.correlation);
     json["source"] = feature.source;
     json["measured"] = {{"features", fit.features},
                         {"measurements", fit.measurements},
                         {"mean_size", in_mm(fit.mean_size)},
                         {"bias_at_mean_size", {in_mm(fit.bias.value), in_mm(fit.bias.least), in_mm(fit.bias.most)}},
                         {"spread", {in_mm(fit.spread.value), in_mm(fit.spread.least), in_mm(fit.spread.most)}}};
+    if (!fit.components) return json;
+    const tolerances::Interval &between = fit.components->between, &share = fit.components->share;
+    json["measured"]["prints"] = fit.prints;
+    json["measured"]["between_prints"] = {in_mm(between.value), in_mm(between.least), in_mm(between.most)};
+    json["measured"]["shared"] = {rounded(share.value), rounded(share.least), rounded(share.most)};
     return json;
 }
 

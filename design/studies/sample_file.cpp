@@ -2,10 +2,12 @@
 #include "fettle/design/studies/sample_file.hpp"
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "fettle/core/base/version.hpp"
+#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_text.hpp"
 
 namespace fettle::design::studies {
@@ -49,6 +51,37 @@ std::pair<int, SampleOutcome> parsed_sample(const std::string& line, const Sampl
     return {number, out};
 }
 
+struct FoundSamples {
+    KeptSamples samples;
+    std::size_t good = 0;  // lines that are whole
+};
+
+// @param seed_counts  must it be the header's?
+Result<FoundSamples> found_in(const std::vector<std::string>& lines, const std::string& path, SampleFileHeader header, bool seed_counts) {
+    const Json found = core::files::is_safe_json_text(lines.front()) ? Json::parse(lines.front(), nullptr, false) : Json();
+    if (found.is_discarded() || !found.is_object() || !found.contains("fettle_samples"))
+        return Error{ErrorCode::parse, path + ": line 1", "this is not a file of samples of fettle; name another file"};
+    if (!seed_counts && found.contains("seed") && found["seed"].is_number_unsigned()) header.seed = found["seed"].get<std::uint64_t>();
+    if (found != header_json(header))
+        return Error{ErrorCode::inconsistent, path,
+                     seed_counts
+                         ? "these are samples of another design, version, seed, or of other tolerances; name another file, or delete "
+                           "this one"
+                         : "these are samples of another design, version, or of other tolerances (is a --process missing?)"};
+    FoundSamples out;
+    out.samples.seed = header.seed;
+    for (out.good = 1; out.good < lines.size(); ++out.good) {
+        try {
+            out.samples.outcomes.insert(parsed_sample(lines[out.good], header));
+        } catch (const std::exception& e) {
+            if (out.good + 1 == lines.size()) break;  // a machine that lost power
+            return Error{ErrorCode::parse, path + ": line " + std::to_string(out.good + 1),
+                         std::string("damaged: ") + e.what() + "; take the line out, or name another file"};
+        }
+    }
+    return out;
+}
+
 }  // namespace
 
 Result<SampleFile> SampleFile::open(const std::string& path, const SampleFileHeader& header) {
@@ -60,6 +93,18 @@ Result<SampleFile> SampleFile::open(const std::string& path, const SampleFileHea
     return out;
 }
 
+Result<KeptSamples> read_samples(const std::string& path, const SampleFileHeader& header) {
+    const Result<std::string> text = core::files::read_file(path);
+    if (!text) return text.errors();
+    std::vector<std::string> lines;
+    std::istringstream stream(text->substr(0, text->rfind('\n') + 1));
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    if (lines.empty()) return Error{ErrorCode::parse, path, "there are no samples in it"};
+    Result<FoundSamples> found = found_in(lines, path, header, false);
+    if (!found) return found.errors();
+    return std::move(found->samples);
+}
+
 Errors SampleFile::read_found(const std::string& path) {
     const std::vector<std::string>& lines = file_.found();
     if (lines.empty()) {
@@ -68,23 +113,10 @@ Errors SampleFile::read_found(const std::string& path) {
         file_.append(header_json(header_).dump());
         return unwritten();
     }
-    const Json found = core::files::is_safe_json_text(lines.front()) ? Json::parse(lines.front(), nullptr, false) : Json();
-    if (found.is_discarded() || !found.is_object() || !found.contains("fettle_samples"))
-        return {{ErrorCode::parse, path + ": line 1", "this is not a file of samples of fettle; name another file"}};
-    if (found != header_json(header_))
-        return {{ErrorCode::inconsistent, path,
-                 "these are samples of another design, version, seed, or of other tolerances; name another file, or delete this one"}};
-    std::size_t good = 1;
-    for (; good < lines.size(); ++good) {
-        try {
-            known_.insert(parsed_sample(lines[good], header_));
-        } catch (const std::exception& e) {
-            if (good + 1 == lines.size()) break;  // a machine that lost power
-            return {{ErrorCode::parse, path + ": line " + std::to_string(good + 1),
-                     std::string("damaged: ") + e.what() + "; take the line out, or name another file"}};
-        }
-    }
-    return file_.keep(good);
+    Result<FoundSamples> found = found_in(lines, path, header_, true);
+    if (!found) return found.errors();
+    known_ = std::move(found->samples.outcomes);
+    return file_.keep(found->good);
 }
 
 const SampleOutcome* SampleFile::find(int sample) const {
@@ -92,7 +124,9 @@ const SampleOutcome* SampleFile::find(int sample) const {
     return found == known_.end() ? nullptr : &found->second;
 }
 
-void SampleFile::append(int sample, const SampleOutcome& outcome) {
+std::string header_line(const SampleFileHeader& header) { return header_json(header).dump(); }
+
+std::string sample_line(int sample, const SampleOutcome& outcome) {
     Json json = {{"sample", sample}};
     if (outcome.failed()) {
         json["reason"] = outcome.reason;
@@ -100,7 +134,19 @@ void SampleFile::append(int sample, const SampleOutcome& outcome) {
         json["values"] = std::vector<double>(outcome.values.begin(), outcome.values.end());
         json["met"] = outcome.met;
     }
-    file_.append(json.dump());
+    return json.dump();
+}
+
+void SampleFile::append(int sample, const SampleOutcome& outcome) { file_.append(sample_line(sample, outcome)); }
+
+Errors SampleFile::append_line(const std::string& line) {
+    try {
+        const auto [number, outcome] = parsed_sample(line, header_);
+        append(number, outcome);
+    } catch (const std::exception& e) {
+        return {{ErrorCode::parse, "a worker's sample", e.what()}};
+    }
+    return {};
 }
 
 }  // namespace fettle::design::studies

@@ -33,6 +33,20 @@ struct SampleOutcome {
     bool failed() const { return values.size() == 0; }
 };
 
+/// The first line of a file of these samples: the same for the same samples, wherever they are made.
+std::string header_line(const SampleFileHeader& header);
+/// The line of sample k, which says it bit for bit.
+std::string sample_line(int sample, const SampleOutcome& outcome);
+
+/// What a file of samples holds.
+struct KeptSamples {
+    std::uint64_t seed = 1;
+    std::map<int, SampleOutcome> outcomes;  ///< by their numbers
+};
+/// For those who add none. @param header  that it must have, but for the seed.
+/// Errors: as of SampleFile::open; a file that is not there or is empty.
+Result<KeptSamples> read_samples(const std::string& path, const SampleFileHeader& header);
+
 class SampleFile {
 public:
     /// Errors: a file of other samples (inconsistent), a damaged line other than the last (parse), those of LineFile::open.
@@ -41,6 +55,8 @@ public:
     /// What is there of sample k; null: nothing.
     const SampleOutcome* find(int sample) const;
     void append(int sample, const SampleOutcome& outcome);
+    /// A sample_line that another process made. Errors: it is none of these samples (parse).
+    Errors append_line(const std::string& line);
     Errors unwritten() const { return file_.unwritten(); }
 
 private:

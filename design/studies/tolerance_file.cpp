@@ -8,8 +8,6 @@
 
 namespace fettle::design::studies {
 
-namespace {
-
 Error no_tolerances(const reading::DesignFile& file) {
     if (!file.untoleranced.empty()) {
         std::string all;
@@ -22,14 +20,11 @@ Error no_tolerances(const reading::DesignFile& file) {
             "without one"};
 }
 
-Result<SampleFile> open_samples(const std::string& path, std::uint64_t seed, const reading::DesignFile& file,
-                                const problem::DesignProblem& problem) {
+SampleFileHeader samples_header(const reading::DesignFile& file, const description::Design& design, std::uint64_t seed) {
     SampleFileHeader header{reading::design_hash(file), seed, file.tolerances, {}};
-    for (const AskedNumber& number : asked_numbers(problem.design())) header.responses.push_back(number.name);
-    return SampleFile::open(path, header);
+    for (const AskedNumber& number : asked_numbers(design)) header.responses.push_back(number.name);
+    return header;
 }
-
-}  // namespace
 
 Result<ToleranceReport> study_tolerances(const reading::DesignFile& file, const std::string& samples_file, ToleranceOptions options) {
     if (file.tolerances.empty()) return no_tolerances(file);
@@ -37,7 +32,7 @@ Result<ToleranceReport> study_tolerances(const reading::DesignFile& file, const 
     if (!problem) return problem.errors();
     std::optional<SampleFile> samples;
     if (!samples_file.empty()) {
-        Result<SampleFile> opened = open_samples(samples_file, options.seed, file, *problem);
+        Result<SampleFile> opened = SampleFile::open(samples_file, samples_header(file, problem->design(), options.seed));
         if (!opened) return opened.errors();
         options.file = &samples.emplace(std::move(opened).value());
     }

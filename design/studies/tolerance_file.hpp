@@ -10,6 +10,12 @@
 
 namespace fettle::design::studies {
 
+/// Why a design without tolerances cannot be studied.
+Error no_tolerances(const reading::DesignFile& file);
+
+/// Of a file of its samples. @param design  As made, `file.design` or what has become of it.
+SampleFileHeader samples_header(const reading::DesignFile& file, const description::Design& design, std::uint64_t seed);
+
 /// @param file          Read as made (reading::DesignReadOptions::as_made).
 /// @param samples_file  Where the samples are kept (sample_file.hpp); empty: nowhere. `options.file` is set by it.
 /// Errors: no tolerances, the design's (DesignProblem::create), the samples' file.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -36,6 +37,7 @@ public:
     }
 
     ToleranceReport run() {
+        report_.seed = options_.seed;
         for (const AskedNumber& number : made_.numbers()) {
             Response response;
             static_cast<AskedNumber&>(response) = number;
@@ -120,11 +122,6 @@ private:
         const double before = std::pow(response.second_order->standard_deviation, 2), after = std::pow(all.standard_deviation, 2);
         response.is_rough = std::abs(after - before) > much * before;
         if (!response.is_rough) response.second_order = all;
-    }
-
-    double predicted(const Response& response, const VectorX& deviations) const {
-        const double linear = response.nominal + response.gradient.dot(deviations);
-        return response.curvature.size() == 0 ? linear : linear + 0.5 * deviations.dot(response.curvature * deviations);
     }
 
     void predict(Response& response) const {
@@ -240,7 +237,7 @@ private:
         response.sampled = out;
     }
 
-    bool is_predicted_good(const Response& response, const VectorX& deviations) const {
+    static bool is_predicted_good(const Response& response, const VectorX& deviations) {
         const double value = predicted(response, deviations);
         return value >= response.bounds.lower && value <= response.bounds.upper;
     }
@@ -273,13 +270,19 @@ private:
                 if (!met && good[i] != 0) ++lost[i];
             }
         }
-        const auto estimate = [&](int i) {
-            return tolerances::controlled_yield(static_cast<double>(predicted_good[i]) / predicted_samples, gained[i], lost[i],
-                                                count_of(report_.samples), confidence);
+        // Where predictions err seldom but samples nearly all agree, the count alone says more.
+        const auto estimate = [&](int i, int met) -> std::optional<tolerances::CountedYield> {
+            const int n = count_of(report_.samples);
+            const auto width = [](const tolerances::CountedYield& yield) { return yield.most.within - yield.least.within; };
+            const auto controlled =
+                tolerances::controlled_yield(static_cast<double>(predicted_good[i]) / predicted_samples, gained[i], lost[i], n, confidence);
+            if (!(width(controlled) < width(tolerances::counted_yield(met, n, confidence)))) return std::nullopt;
+            return controlled;
         };
         for (int i = 0; i < m; ++i)
-            if (has_bounds(report_.responses[i])) report_.responses[i].sampled->controlled_yield = estimate(i);
-        report_.controlled_yield = estimate(all);
+            if (has_bounds(report_.responses[i]))
+                report_.responses[i].sampled->controlled_yield = estimate(i, report_.responses[i].sampled->met);
+        report_.controlled_yield = estimate(all, report_.met_all);
     }
 
     void find_switched_contacts() {
@@ -327,10 +330,58 @@ private:
 
 }  // namespace
 
+double predicted(const Response& response, const VectorX& deviations) {
+    const double linear = response.nominal + response.gradient.dot(deviations);
+    return response.curvature.size() == 0 ? linear : linear + 0.5 * deviations.dot(response.curvature * deviations);
+}
+
 tolerances::RequirementLimits limits_of(const Response& response) { return {response.bounds.lower, response.bounds.upper}; }
 
 ToleranceReport study_tolerances(const DesignProblem& problem, const std::vector<Tolerance>& tolerances, const ToleranceOptions& options) {
     return ToleranceStudy(problem, tolerances, options).run();
+}
+
+std::optional<WorstSample> worst_sample(const ToleranceReport& report) {
+    std::optional<WorstSample> worst;
+    double most = 0;
+    for (int i = 0; i < count_of(report.responses); ++i) {
+        const Response& response = report.responses[i];
+        if (!response.sampled || !has_bounds(response)) continue;
+        const double sigma = response.sampled->moments.moments.standard_deviation;
+        if (!(sigma > 0)) continue;
+        for (const MadeSample& sample : report.samples) {
+            if (sample.failed()) continue;
+            const double value = sample.values[i];
+            const double beyond = std::max(response.bounds.lower - value, value - response.bounds.upper) / sigma;
+            if (worst && !(beyond > most)) continue;
+            worst = WorstSample{sample.number, i, !sample.met[i]};
+            most = beyond;
+        }
+    }
+    return worst;
+}
+
+std::vector<FailureKind> kinds_of_failure(const ToleranceReport& report) {
+    const auto without_numbers = [](const std::string& reason) {
+        std::string out;
+        for (const char c : reason)
+            if (std::strchr("0123456789.+-", c) == nullptr) out += c;
+        return out;
+    };
+    std::vector<std::pair<std::string, FailureKind>> kinds;
+    for (const MadeSample& sample : report.samples) {
+        if (!sample.failed()) continue;
+        const std::string kind = without_numbers(sample.reason);
+        const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const auto& each) { return each.first == kind; });
+        if (found == kinds.end())
+            kinds.push_back({kind, {sample.number, 1, sample.reason}});
+        else
+            ++found->second.count;
+    }
+    std::stable_sort(kinds.begin(), kinds.end(), [](const auto& a, const auto& b) { return a.second.count > b.second.count; });
+    std::vector<FailureKind> out;
+    for (auto& each : kinds) out.push_back(std::move(each.second));
+    return out;
 }
 
 std::vector<Tightening> what_to_tighten(const ToleranceReport& report) {

@@ -65,7 +65,8 @@ struct SampledResponse {
     double unexplained = 0;  ///< root mean square of sampled - predicted, over the samples' standard deviation; 0 where nothing varies
     /// With the prediction as control variate; nothing where there are fewer than 3 samples, or no second order.
     std::optional<tolerances::ControlledMean> controlled_mean;
-    std::optional<tolerances::CountedYield> controlled_yield;  ///< at `confidence`; nothing too where there are no bounds
+    /// At `confidence`; nothing too where there are no bounds, or where the count's own interval is no wider: then that one is to be told.
+    std::optional<tolerances::CountedYield> controlled_yield;
 };
 inline constexpr double confidence = 0.95;  ///< of the intervals
 
@@ -88,6 +89,8 @@ struct Response : AskedNumber {
     std::optional<SampledResponse> sampled;
 };
 tolerances::RequirementLimits limits_of(const Response& response);
+/// By the second order where there is one, else to first order. @param deviations  per tolerance, SI
+double predicted(const Response& response, const VectorX& deviations);
 
 /// A mechanism of the samples.
 struct MadeSample : SampleOutcome {
@@ -106,6 +109,7 @@ struct ToleranceReport {
     std::vector<Response> responses;  ///< objective, constraints, relations
     std::string no_second_order;      ///< why there is none, though it was asked for; empty: there is, or it was not
     std::vector<MadeSample> samples;  ///< that came to an end: simulated or failed; in the order of their numbers
+    std::uint64_t seed = 1;           ///< of the samples
     int met_all = 0;                  ///< that meet every requirement
     std::optional<tolerances::CountedYield> controlled_yield;  ///< of all requirements together, as that of one
     std::vector<SwitchedContacts> switched;
@@ -116,6 +120,22 @@ struct ToleranceReport {
 /// @param problem  Of the design as made (description/tolerance.hpp).
 ToleranceReport study_tolerances(const problem::DesignProblem& problem, const std::vector<description::Tolerance>& tolerances,
                                  const ToleranceOptions& options = {});
+
+/// The sample that is farthest beyond a bound, in standard deviations of its response; where none is, the one that is nearest to a bound.
+struct WorstSample {
+    int sample = 0, response = 0;
+    bool is_beyond = false;
+};
+/// Nothing: no sample was simulated, or nothing has a bound and varies.
+std::optional<WorstSample> worst_sample(const ToleranceReport& report);
+
+/// Samples that failed for the same reason, but for the numbers in it.
+struct FailureKind {
+    int first = 0, count = 0;  ///< number of the first, and how many there are
+    std::string reason;        ///< of the first
+};
+/// The most frequent first.
+std::vector<FailureKind> kinds_of_failure(const ToleranceReport& report);
 
 /// What would bring a requirement to Cpk 1 by the predicted moments (99.73% of a normal response within two limits, 99.87% within one).
 struct Tightening {

@@ -102,11 +102,12 @@ Result<ProcessDeviation> process_deviation(const Process& process, FeatureKind k
 }
 
 SharedPart shared_part(const Process& process, FeatureKind kind) {
-    if (process.correlation == 0 || kind == FeatureKind::angle) return {};
-    if (kind == FeatureKind::length || kind == FeatureKind::height)
-        return {process.name + " " + to_string(kind) + "s", process.correlation};
+    const FeatureSpread* feature = find_feature(process, kind);
+    const double correlation = feature != nullptr ? feature->correlation.value_or(process.correlation) : process.correlation;
+    if (correlation == 0 || kind == FeatureKind::angle) return {};
+    if (kind == FeatureKind::length || kind == FeatureKind::height) return {process.name + " " + to_string(kind) + "s", correlation};
     const bool is_inside = kind == FeatureKind::hole || kind == FeatureKind::slot || kind == FeatureKind::gap;
-    return {process.name, is_inside ? -process.correlation : process.correlation};
+    return {process.name, is_inside ? -correlation : correlation};
 }
 
 }  // namespace fettle::design::tolerances

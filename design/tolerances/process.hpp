@@ -52,6 +52,7 @@ struct FeatureSpread {
     std::string general_class = {};                                    ///< of ISO 2768-1: "m"; then the three before are 0
     double from = 0, up_to = std::numeric_limits<double>::infinity();  ///< sizes for which the bias is known [m]
     std::string source = {};                                           ///< whose figures these are, and what is uncertain
+    std::optional<double> correlation = {};                            ///< of this kind, in place of the process'
 };
 
 /// How far a face of a part may lie off its drawing, by the part's size.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -17,8 +16,6 @@ namespace {
 
 constexpr double confidence = 0.95;
 using DoublesAlone = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
-
-double chi_square_quantile(int freedom, double p) { return 2 * boost::math::gamma_p_inv(freedom / 2.0, p, DoublesAlone()); }
 
 // The t that |t| exceeds with probability `outside`.
 double student_t(int freedom, double outside) {
@@ -116,6 +113,72 @@ std::vector<OutlyingFeature> outliers_of(const std::vector<const MeasuredFeature
     return found;
 }
 
+void set_spread(double s, int f, double measuring, KindFit& fit) {
+    const double tail = (1 - confidence) / 2;
+    fit.degrees_of_freedom = f;
+    fit.spread = {s, s * std::sqrt(f / chi_square_quantile(f, 1 - tail)), s * std::sqrt(f / chi_square_quantile(f, tail))};
+    fit.spread_bound = s * std::sqrt(f / chi_square_quantile(f, 1 - confidence));
+    fit.process_spread = std::sqrt(std::max(0.0, s * s - measuring));
+}
+
+/// What the features of one print come to.
+struct PrintMean {
+    int features = 0;
+    double size = 0, off = 0;
+};
+
+// Of several prints (process_fit.hpp). @param print  Of each feature, 0 to prints - 1.
+void fit_prints(const Columns& data, const std::vector<int>& print, double measuring, KindFit& fit) {
+    std::vector<PrintMean> means(fit.prints);
+    for (int i = 0; i < data.count(); ++i) ++means[print[i]].features;
+    for (int i = 0; i < data.count(); ++i) {
+        PrintMean& mean = means[print[i]];
+        mean.size += data.size[i] / mean.features;
+        mean.off += data.off[i] / mean.features;
+    }
+    double moment = 0, product = 0, squares = 0;
+    for (int i = 0; i < data.count(); ++i) {
+        const double d = data.size[i] - means[print[i]].size;
+        moment += d * d;
+        product += d * data.off[i];
+    }
+    fit.has_slope = fit.has_slope && moment > 0;  // sizes may differ between prints alone
+    const double slope = fit.has_slope ? product / moment : 0;
+    for (int i = 0; i < data.count(); ++i) {
+        const PrintMean& mean = means[print[i]];
+        squares += std::pow(data.off[i] - mean.off - slope * (data.size[i] - mean.size), 2);
+    }
+    const int f = data.count() - fit.prints - (fit.has_slope ? 1 : 0);
+    set_spread(std::sqrt(squares / f), f, measuring, fit);
+    // The prints' constants at their mean size.
+    const double prints = fit.prints;
+    double size = 0, reciprocals = 0, off = 0, between = 0;
+    for (const PrintMean& mean : means) {
+        size += mean.size / prints;
+        reciprocals += 1.0 / mean.features / prints;
+    }
+    const auto at_size = [&](const PrintMean& mean) { return mean.off - slope * (mean.size - size); };
+    for (const PrintMean& mean : means) off += at_size(mean) / prints;
+    for (const PrintMean& mean : means) between += std::pow(at_size(mean) - off, 2) / (prints - 1);
+    const double error = student_t(fit.prints - 1, 1 - confidence) * std::sqrt(between / prints);
+    fit.mean_size = size;
+    fit.bias = {off, off - error, off + error};
+    if (fit.has_slope) {
+        const double slope_error = student_t(f, 1 - confidence) * fit.spread.value / std::sqrt(moment);
+        fit.bias_per_size = {slope, slope - slope_error, slope + slope_error};
+    }
+    fit.components = variance_components({between / reciprocals, squares / f, fit.prints - 1, f, 1 / reciprocals});
+}
+
+// The prints of the features, numbered from 0 without gaps.
+std::vector<int> prints_of(const std::vector<const MeasuredFeature*>& features) {
+    std::set<int> all;
+    for (const MeasuredFeature* feature : features) all.insert(feature->print);
+    std::vector<int> out;
+    for (const MeasuredFeature* feature : features) out.push_back(static_cast<int>(std::distance(all.begin(), all.find(feature->print))));
+    return out;
+}
+
 KindFit fit_kind(FeatureKind kind, const std::vector<const MeasuredFeature*>& features, double repeatability) {
     KindFit fit;
     fit.kind = kind;
@@ -133,7 +196,18 @@ KindFit fit_kind(FeatureKind kind, const std::vector<const MeasuredFeature*>& fe
     fit.from = *sizes.begin();
     fit.up_to = *sizes.rbegin();
     fit.has_slope = fit.features >= 5 && sizes.size() >= 3;
-    const int f = fit.degrees_of_freedom = fit.features - (fit.has_slope ? 2 : 1);
+    const double measuring = repeatability * repeatability * data.measurements.cwiseInverse().mean();
+    const std::vector<int> prints = prints_of(features);
+    fit.prints = 1 + *std::max_element(prints.begin(), prints.end());
+    if (fit.prints > 1) {
+        if (fit.features < fit.prints + 2) fit.has_slope = false;
+        if (fit.features > fit.prints) {
+            fit_prints(data, prints, measuring, fit);
+            return fit;
+        }
+        fit.prints = 1;  // one of each: as if they were of one print
+    }
+    const int f = fit.features - (fit.has_slope ? 2 : 1);
     const Line line = line_through(data, weights_of(data, repeatability, f, fit.has_slope), fit.has_slope);
     const double s = std::sqrt(weighted_squares(line) / f), t = student_t(f, 1 - confidence);
     const double bias_error = s / std::sqrt(line.weight);
@@ -143,11 +217,7 @@ KindFit fit_kind(FeatureKind kind, const std::vector<const MeasuredFeature*>& fe
         const double slope_error = s / std::sqrt(line.moment);
         fit.bias_per_size = {line.slope, line.slope - t * slope_error, line.slope + t * slope_error};
     }
-    const double tail = (1 - confidence) / 2;
-    fit.spread = {s, s * std::sqrt(f / chi_square_quantile(f, 1 - tail)), s * std::sqrt(f / chi_square_quantile(f, tail))};
-    fit.spread_bound = s * std::sqrt(f / chi_square_quantile(f, 1 - confidence));
-    const double measuring = repeatability * repeatability * data.measurements.cwiseInverse().mean();
-    fit.process_spread = std::sqrt(std::max(0.0, s * s - measuring));
+    set_spread(s, f, measuring, fit);
     if (has_spread(fit)) fit.outliers = outliers_of(features, data, line, f);
     return fit;
 }
@@ -156,11 +226,20 @@ KindFit fit_kind(FeatureKind kind, const std::vector<const MeasuredFeature*>& fe
 
 bool has_spread(const KindFit& fit) { return fit.spread.value > 1e-9; }
 
+double taken_spread(const KindFit& fit) {
+    if (!fit.components) return fit.spread_bound;
+    return fit.prints >= least_bounded_prints ? fit.components->total_bound : std::hypot(fit.spread_bound, fit.components->between.value);
+}
+
 double bias_at_no_size(const KindFit& fit) { return fit.bias.value - fit.bias_per_size.value * fit.mean_size; }
 
 Result<ProcessFit> fit_process(const std::vector<MeasuredFeature>& features, const std::string& where) {
     ProcessFit fit;
     measure_repeatability(features, fit);
+    std::set<int> prints;
+    for (const MeasuredFeature& feature : features)
+        if (!feature.measured.empty()) prints.insert(feature.print);
+    fit.prints = std::max(1, count_of(prints));
     for (const FeatureKind kind : feature_kinds) {
         std::vector<const MeasuredFeature*> measured;
         for (const MeasuredFeature& feature : features) {
@@ -184,11 +263,13 @@ Process fitted_process(const ProcessFit& fit, const std::string& name, const Pro
     process.name = name;
     process.description = "measured; what is not, as " + base.name;
     for (const KindFit& kind : fit.kinds) {
-        FeatureSpread feature{kind.kind, bias_at_no_size(kind), kind.bias_per_size.value, 3 * kind.spread_bound};
+        FeatureSpread feature{kind.kind, bias_at_no_size(kind), kind.bias_per_size.value, 3 * taken_spread(kind)};
+        if (kind.components) feature.correlation = kind.components->share.value;
         feature.from = kind.from;
         feature.up_to = kind.up_to;
         feature.source = core::base::counted(static_cast<std::size_t>(kind.features), "feature") + ", " +
-                         core::base::counted(static_cast<std::size_t>(kind.measurements), "measurement");
+                         core::base::counted(static_cast<std::size_t>(kind.measurements), "measurement") +
+                         (kind.prints > 1 ? ", " + std::to_string(kind.prints) + " prints" : "");
         if (const FeatureSpread* usual = find_feature(base, kind.kind); usual != nullptr && !has_spread(kind)) {
             feature.tolerance = usual->tolerance;
             feature.tolerance_per_size = usual->tolerance_per_size;

@@ -11,15 +11,22 @@
 /// Intervals hold the truth in 95 of 100 prints, where m_i are alike: of the bias at the mean size by Student's t, of s by chi-square:
 /// s sqrt(f / chi2(97.5%)) to s sqrt(f / chi2(2.5%)).
 ///
-/// Of one print nothing shows how much the next one differs as a whole: what all its features share is in the bias.
+/// Of one print nothing shows how much the next one differs as a whole: what all its features share is in the bias. Of P prints:
+/// y_pi = b0 + b1 d_i + u_p + e_pi, u_p normal of variance s_b^2, a number of the kind and the print.
+///   b1       least squares within the prints, each with a constant of its own; f = n - P - 1, or n - P without it; s^2 = sum e_i^2 / f
+///   b0       mean of the prints' constants at the mean size; its interval by Student's t of P - 1, from how these differ
+///   s_b      variance_components.hpp, and the share s_b^2 / (s_b^2 + s^2) that features of one print have in common
+/// All measurements count alike there, whatever their number.
 /// Sources: Paule and Mandel 1982, J. Research NBS 87(5); Cook and Weisberg 1982, Residuals and Influence in Regression, 2.2 (outliers).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/design/tolerances/process.hpp"
+#include "fettle/design/tolerances/variance_components.hpp"
 
 namespace fettle::design::tolerances {
 
@@ -28,10 +35,7 @@ struct MeasuredFeature {
     FeatureKind kind = FeatureKind::length;
     double nominal = 0;            ///< [m]
     std::vector<double> measured;  ///< [m]; none: not measured
-};
-
-struct Interval {
-    double value = 0, least = 0, most = 0;
+    int print = 0;                 ///< 0, 1, ...: that it is of
 };
 
 /// A feature further from the fit than one of its number by chance, at 5%: its residual over the standard deviation that the others say.
@@ -49,12 +53,21 @@ struct KindFit {
     Interval bias;               ///< at the mean size [m]
     Interval bias_per_size;      ///< b1 [1]; all 0 where has_slope is not
     bool has_slope = false;
-    Interval spread;                        ///< s [m]
-    int degrees_of_freedom = 0;             ///< f
-    double process_spread = 0;              ///< s less what measuring adds: sqrt(max(0, s^2 - r^2 / m)) [m]
-    double spread_bound = 0;                ///< s sqrt(f / chi2(5%)): at most this, with 95% confidence [m]
-    std::vector<OutlyingFeature> outliers;  ///< they stay in the fit
+    Interval spread;                                    ///< s [m]
+    int degrees_of_freedom = 0;                         ///< f
+    double process_spread = 0;                          ///< s less what measuring adds: sqrt(max(0, s^2 - r^2 / m)) [m]
+    double spread_bound = 0;                            ///< s sqrt(f / chi2(5%)): at most this, with 95% confidence [m]
+    std::vector<OutlyingFeature> outliers;              ///< they stay in the fit; not looked for where there are several prints
+    int prints = 1;                                     ///< that it was measured in
+    std::optional<VarianceComponents> components = {};  ///< of several prints
 };
+
+/// With fewer prints, how much they differ has no upper bound that is of use (of two, 16 times what is found): what is found counts.
+inline constexpr int least_bounded_prints = 4;
+
+/// One standard deviation as tolerances take it [m]: spread_bound of one print; of several the total's bound, or, of fewer than
+/// least_bounded_prints, spread_bound with s_b as it is found.
+double taken_spread(const KindFit& fit);
 
 /// Is there more than rounding? Where all features are off by the same, the measuring tool's steps hide what they spread.
 bool has_spread(const KindFit& fit);
@@ -71,6 +84,7 @@ struct ProcessFit {
     std::vector<TooFew> too_few;  ///< kinds that are measured, but fewer than least_features of them
     double repeatability = 0;     ///< r [m]; 0 where nothing was measured twice
     int repeats = 0;              ///< degrees of freedom of r; 0: it is not known, and counted as 0
+    int prints = 1;               ///< that something was measured in
 };
 
 inline constexpr int least_features = 3;
@@ -79,8 +93,9 @@ inline constexpr int least_features = 3;
 /// Contract: sizes over 0, everything finite, no angles.
 Result<ProcessFit> fit_process(const std::vector<MeasuredFeature>& features, const std::string& where);
 
-/// The fit as a process: what it does not have, of `base`. Its tolerance is three times `spread_bound`, not three times s: of few features
+/// The fit as a process: what it does not have, of `base`. Its tolerance is three times taken_spread, not three times s: of few features
 /// s is too small in more than half of the prints, of six features by half in one of ten, and a yield that rests on it promises too much.
+/// What the features of a kind share is, of several prints, the share that was found.
 /// Where no spread is seen (has_spread), the limits about the bias are those of `base`.
 Process fitted_process(const ProcessFit& fit, const std::string& name, const Process& base);
 

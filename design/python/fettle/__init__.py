@@ -32,6 +32,7 @@ from ._fettle import (
     OpaqueQuantity as OpaqueQuantity,
     OpaqueShape as OpaqueShape,
     Simulated as Simulated,
+    SharedSamples as SharedSamples,
     ThreadLimit as ThreadLimit,
     Trajectory as Trajectory,
     __version__ as __version__,
@@ -84,7 +85,6 @@ from ._fettle import (
     sqrt as sqrt,
     start_of_seed as start_of_seed,
     tan as tan,
-    tolerance as tolerance,
     to_si as to_si,
     units as units,
     view_page as view_page,
@@ -202,10 +202,11 @@ from .scene import (
     Variable as Variable,
     held as held,
 )
+from .tolerances import tolerance as tolerance
 
 for _name, _function in list(globals().items()):
     if isinstance(_function, _types.BuiltinFunctionType):
         globals()[_name] = _in_plain_words(_function)
 
-_MODULES = ("design", "errors", "exploration", "notebook", "results", "scene")
+_MODULES = ("design", "errors", "exploration", "notebook", "results", "scene", "tolerances")
 __all__ = [name for name in dir() if not name.startswith("_") and name not in _MODULES]

@@ -48,9 +48,9 @@ Progress = Callable[[int, int, Result], object]
 
 @dataclasses.dataclass(frozen=True)
 class Job:
-    """One design to evaluate (`point`, SI) or one run of the optimiser to make (`seed`)."""
+    """One design to evaluate (`point`, SI), one run of the optimiser (`seed`), or one sample of tolerances (its number as `seed`) to make."""
 
-    kind: str  # "evaluate" or "optimise"
+    kind: str  # "evaluate", "optimise" or "sample"
     point: Tuple[float, ...] = ()
     seed: int = 0
 
@@ -94,6 +94,7 @@ class _Worker:
     """What a process keeps between jobs: the problem."""
 
     problems: Dict[str, _fettle.DesignProblem] = {}
+    samples: Dict[str, _fettle.SharedSamples] = {}
 
     @classmethod
     def problem(cls, name: str, design: bytes) -> _fettle.DesignProblem:
@@ -101,6 +102,18 @@ class _Worker:
             cls.problems.clear()
             cls.problems[name] = _fettle.DesignProblem(pickle.loads(design))
         return cls.problems[name]
+
+
+    @classmethod
+    def sample(cls, name: str, arguments: bytes, number: int) -> Result:
+        """Of fettle.tolerance (tolerances.py)."""
+        if name not in cls.samples:
+            cls.samples.clear()
+            shared = _fettle.SharedSamples(*pickle.loads(arguments))
+            if shared.name != name:
+                raise ValueError("the files of the design that this worker finds are others, or its fettle is")
+            cls.samples[name] = shared
+        return {"status": "made", "line": cls.samples[name].line_of(number)}
 
 
 def _evaluated(problem: _fettle.DesignProblem, job: Job) -> Result:
@@ -138,6 +151,8 @@ def run_job(name: str, design: bytes, job: Job) -> Result:
     begin = time.perf_counter()
     limit = _fettle.ThreadLimit(1)
     try:
+        if job.kind == "sample":
+            return {"key": job.key, "kind": job.kind, "seed": job.seed, **_Worker.sample(name, design, job.seed)}
         problem = _Worker.problem(name, design)
         start = job.point if job.kind == "evaluate" else tuple(_fettle.start_of_seed(problem, job.seed))
         result: Result = {"parameters": dict(zip(problem.parameter_names, map(float, start)))}

@@ -116,6 +116,62 @@ TEST_CASE("coupon, form, process, tolerance") {
     CHECK(run("clearance two.scene.json --process cnc", true, in).says("says nothing of the clearance that parts need"));
 }
 
+TEST_CASE("process: of several prints") {
+    const TemporaryFolder folder;
+    const std::string in = "cd '" + folder.path.string() + "' && ";
+    const double shift[] = {-0.05, 0.02, 0.06, -0.03};  // of the prints, mm
+    std::string forms;
+    for (int p = 0; p < 4; ++p) {
+        std::string text = "feature,kind,nominal_mm,measured_1_mm\n";
+        for (int d = 3; d <= 8; ++d)
+            text += "H" + std::to_string(d) + ",hole," + std::to_string(d) + "," +
+                    std::to_string(d - 0.1 + shift[p] + (d % 2 ? 0.01 : -0.01)) + "\n";
+        folder.write("print" + std::to_string(p) + ".csv", text);
+        forms += "print" + std::to_string(p) + ".csv ";
+    }
+    const Answer told = run("process " + forms + "--name mine", true, in);
+    CAPTURE(told.out);
+    REQUIRE(told.code == 0);
+    CHECK(told.says("between 4 prints, which share 9"));
+    CHECK(told.says("how prints differ is what the features of one print share"));
+    const Json json = run("process " + forms + "--name mine --replace --json", false, in).json();
+    CHECK(json.at("prints") == 4);
+    const Json& hole = json.at("kinds").at(0);
+    CHECK(hole.at("prints") == 4);
+    // Standard deviation of the shifts, but for what 6 features within a print add.
+    CHECK(hole.at("between_prints").at("value").get<double>() == Approx(49.67e-6).epsilon(0.01));
+    CHECK(hole.at("between_prints").at("least").get<double>() < 30e-6);
+    CHECK(hole.at("between_prints").at("most").get<double>() > 100e-6);
+    CHECK(hole.at("taken").get<double>() > 100e-6);
+    const Json file = Json::parse(text_of(folder.file("mine.process.json")));
+    CHECK(file.at("features").at("hole").at("correlation").get<double>() == Approx(hole.at("shared").at("value").get<double>()));
+    // What the parts of one print share is that.
+    folder.write("small.scene.json",
+                 R"({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.01, "variables": {"bore": "6 mm"},
+        "bodies": [{"name": "plate", "type": "static", "shape": {"part": "plate_with_hole",
+                    "dimensions": {"size_x": 40, "size_y": 40, "thickness": 8, "hole_radius": "= bore / 2"}}}]})");
+    folder.write("small.design.json", R"json({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+        "parameters": [{"name": "depth", "value": 8, "lower": 5, "upper": 20}], "set": {"/bodies/plate/shape/dimensions/thickness": "= depth"},
+        "objective": [{"type": "expression", "expression": "depth / 1 mm"}], "tolerances": {"bore": "hole"}})json");
+    const Answer made = run("tolerance small.design.json --process mine --first-order --json", false, in);
+    CAPTURE(made.out);
+    CHECK(made.json().at("tolerances").at(0).at("correlation").get<double>() == Approx(-hole.at("shared").at("value").get<double>()));
+
+    CHECK(run("process print0.csv print1.csv --name two", true, in).says("of 2 prints it is taken as it was found, and may be far more"));
+    const auto refused = [&](const std::string& arguments, const std::string& says) {
+        const Answer answer = run(arguments, true, in);
+        CAPTURE(arguments, answer.out);
+        CHECK(answer.code == 3);
+        CHECK(answer.says(says));
+    };
+    refused("process print0.csv ./print0.csv --name twice", "is given twice");
+    refused("process print0.csv none.csv --name none", "none.csv");
+    folder.write("empty.csv", "feature,kind,nominal_mm,measured_1_mm\nH3,hole,3,\n");
+    refused("process print0.csv empty.csv --name none", "nothing is measured in it");
+    refused("process --name none", "FORMS");
+    CHECK(!std::filesystem::exists(folder.file("none.process.json")));
+}
+
 TEST_CASE("coupon: to cut, and what is wrong is told") {
     const TemporaryFolder folder;
     const std::string in = "cd '" + folder.path.string() + "' && ";
@@ -135,7 +191,11 @@ TEST_CASE("coupon: to cut, and what is wrong is told") {
     refused("coupon --out x.step", "a coupon to print is X.3mf, X.stl or X.obj");
     refused("coupon --out x.3mf --steps 2", "--steps");
     refused("coupon --out x.3mf --sizes hole=3..8", "--sizes");
-    refused("coupon --out x.3mf --sizes bore=3mm..8mm", "\"bore\" is no kind of feature");
+    refused("coupon --out x.3mf --sizes bore=3mm..8mm", "has no features of kind \"bore\"");
+    refused("coupon --out x.3mf --sizes length=3mm..8mm", "a coupon to print has no features of kind \"length\"");
+    refused("coupon --out x.svg --sizes pin=3mm..8mm", "a coupon to cut has no features of kind \"pin\"");
+    CHECK_FALSE(run("coupon --out x.3mf --sizes bore=3mm..8mm", true, in).says("angle"));
+    CHECK_FALSE(run("coupon --out x.3mf --sizes bore=3mm..8mm", true, in).says("length"));
     refused("coupon --out x.3mf --sizes hole", "sizes are given as hole=3mm..8mm");
     refused("process none.csv --name mine", "none.csv");
     refused("process plate.csv --name fdm", "is a known process; give yours another name: my_fdm");

@@ -422,6 +422,26 @@ def test_on_a_dask_cluster_one_of_whose_workers_is_killed(tmp_path, cluster):
     assert {r["key"]: r["objective"] for r in found.results} == {r["key"]: r["objective"] for r in local.results}
 
 
+@pytest.mark.programs
+def test_samples_of_tolerances_on_a_dask_cluster(tmp_path, cluster):
+    address, _ = cluster
+    body = {"name": "block", "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 10, "size_y": 10, "size_z": 10}}}
+    (tmp_path / "block.scene.json").write_text(json.dumps({"fettle_scene": 1, "units": "mm", "bodies": [body]}))
+    design = {
+        "fettle_design": 1,
+        "scene": "block.scene.json",
+        "units": "mm",
+        "parameters": [{"name": "depth", "value": 10, "lower": 5, "upper": 20}],
+        "set": {"/bodies/block/shape/dimensions/size_y": "= depth"},
+        "objective": [{"type": "mass", "bodies": ["block"]}],
+        "tolerances": {"depth": "+-0.3 mm"},
+    }
+    path = tmp_path / "block.design.json"
+    path.write_text(json.dumps(design))
+    shared = fettle.tolerance(path, samples=9, dask=address)
+    assert shared.answer == fettle.tolerance(path, samples=9).answer
+
+
 @pytest.mark.parametrize(
     "line",
     [

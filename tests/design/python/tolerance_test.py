@@ -81,3 +81,55 @@ def test_what_is_missing_is_told(block):
         fettle.tolerance(block)
     with pytest.raises(fettle.Error, match="samples"):
         fettle.tolerance(block, samples=-1)
+
+
+def test_samples_of_workers_are_the_same(block, tmp_path):
+    alone = fettle.tolerance(block, samples=12, seed=3)
+    for workers in (1, 3):
+        seen = []
+        shared = fettle.tolerance(block, samples=12, seed=3, workers=workers, progress=lambda done, of: seen.append((done, of)))
+        np.testing.assert_array_equal(shared.values, alone.values)
+        np.testing.assert_array_equal(shared.deviations, alone.deviations)
+        assert shared.answer == alone.answer
+        assert seen[-1] == (17, 17) and len(seen) == 17
+    # Kept samples are not made again, and those of workers go on with those of threads.
+    kept = str(tmp_path / "made.jsonl")
+    fettle.tolerance(block, samples=5, seed=3, samples_file=kept)
+    seen = []
+    more = fettle.tolerance(block, samples=12, seed=3, samples_file=kept, workers=2, progress=lambda done, of: seen.append((done, of)))
+    assert seen[-1] == (12, 12)
+    assert more.answer == alone.answer
+    assert len(open(kept).readlines()) == 13
+    assert fettle.tolerance(block, workers=2).answer == fettle.tolerance(block).answer
+
+
+def test_workers_of_what_cannot_be(block, tmp_path):
+    with pytest.raises(fettle.Error, match="workers"):
+        fettle.tolerance(block, samples=2, workers=0)
+    with pytest.raises(fettle.Error, match="none.design.json"):
+        fettle.tolerance(tmp_path / "none.design.json", samples=2, workers=1)
+    with pytest.raises(fettle.Error, match="dask"):
+        fettle.tolerance(block, samples=2, dask="nowhere")
+    with pytest.raises(fettle.Error):
+        fettle.tolerance(block, samples=2, workers=1, samples_file=str(tmp_path))
+
+
+def test_a_robust_design_has_values_and_gradients(block):
+    text = json.loads(block.read_text())
+    text["over_tolerances"] = {"sigma": 3}
+    text["tolerances"] = {"depth": "+-0.3 mm", "length": "+-0.6 mm"}
+    block.write_text(json.dumps(text))
+    problem = fettle.DesignProblem.of_file(block)
+    for depth in (9.5e-3, 10e-3):
+        _, _, values, jacobian = problem.values_and_jacobians([depth])
+        # Mass 1 g/cm^3 length depth height, with sigma 0.1 mm of the depth and 0.2 mm of the length.
+        sigma = 10.0 * np.hypot(10e-3 * 0.1e-3, depth * 0.2e-3)
+        assert values[0] == pytest.approx(10.0 * 10e-3 * depth + 3 * sigma, rel=1e-9)
+        slope = 10.0 * depth * 0.2e-3**2 / np.hypot(10e-3 * 0.1e-3, depth * 0.2e-3)
+        assert jacobian[0, 0] == pytest.approx(10.0 * 10e-3 + 3 * slope, rel=1e-5)
+    with pytest.raises(fettle.Error, match="over_tolerances"):
+        problem.design
+    with pytest.raises(fettle.Error, match="of_file"):
+        fettle.read_design(block)
+    with pytest.raises(fettle.Error, match="nowhere"):
+        fettle.DesignProblem.of_file("nowhere.design.json")

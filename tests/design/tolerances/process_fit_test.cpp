@@ -134,7 +134,7 @@ TEST_CASE("a process' fit: intervals hold the truth in 95 of 100 coupons") {
 
 TEST_CASE("a process' fit: bias and spread come out right on the average, measuring taken off") {
     const Truth truth{-0.2 * mm, 0.01, 0.05 * mm, 0.04 * mm};
-    Workshop workshop(truth, 3);
+    Workshop workshop(truth, 7);
     double bias = 0, variance = 0, repeat = 0;
     const int trials = 400;
     for (int trial = 0; trial < trials; ++trial) {
@@ -204,6 +204,75 @@ TEST_CASE("a process' fit: too few features are told, and nothing is made of the
     CHECK(find_feature(process, FeatureKind::hole)->bias == Approx(some->kinds[0].bias.value));
     CHECK(process.features.size() == find_known_process("fdm")->features.size());
     CHECK(process.clearance->bands.size() == 3);
+}
+
+TEST_CASE("a process' fit: of several prints, how they differ is held in 95 of 100") {
+    const Truth truth{-0.2 * mm, 0.01, 0.05 * mm, 0.01 * mm};
+    const double shift = 0.04 * mm, within = std::hypot(truth.spread, truth.measuring);
+    const int trials = 2000, prints = 5;
+    Workshop workshop(truth, 7);
+    int bias = 0, slope = 0, spread = 0, between = 0, share = 0, bound = 0;
+    for (int trial = 0; trial < trials; ++trial) {
+        std::vector<MeasuredFeature> all;
+        for (int p = 0; p < prints; ++p) {
+            const double own = shift * workshop.normal();
+            for (MeasuredFeature& feature : workshop.coupon(FeatureKind::hole, six, {1})) {
+                feature.measured[0] += own;
+                feature.print = p;
+                all.push_back(feature);
+            }
+        }
+        const KindFit fit = fit_one(all);
+        REQUIRE(fit.components);
+        REQUIRE(fit.degrees_of_freedom == 6 * prints - prints - 1);
+        bias += holds(fit.bias, truth.bias + truth.bias_per_size * fit.mean_size);
+        slope += holds(fit.bias_per_size, truth.bias_per_size);
+        spread += holds(fit.spread, within);
+        between += holds(fit.components->between, shift);
+        share += holds(fit.components->share, shift * shift / (shift * shift + within * within));
+        bound += taken_spread(fit) >= std::hypot(shift, within);
+    }
+    for (const int count : {bias, slope, spread, share}) check_share(count, trials);
+    CHECK(between > 0.94 * trials);
+    CHECK(between < 0.98 * trials);
+    CHECK(bound > 0.94 * trials);
+}
+
+TEST_CASE("a process' fit: prints of different features, and what the process makes of them") {
+    // Two prints, one 0.2 mm larger than the other; slopes and spreads are the same by hand: -0.1 +- 0.01 about each print's constant.
+    std::vector<MeasuredFeature> features;
+    const double off[] = {0.01, -0.01, 0.01, -0.01};
+    for (int p = 0; p < 2; ++p)
+        for (int i = 0; i < 4; ++i) features.push_back({"p", FeatureKind::pin, 5 * mm, {(5 - 0.1 + 0.2 * p + off[i]) * mm}, p});
+    const Result<ProcessFit> fit = fit_process(features, "");
+    REQUIRE(fit);
+    const KindFit& pins = fit->kinds[0];
+    CHECK(fit->prints == 2);
+    CHECK(pins.prints == 2);
+    CHECK(!pins.has_slope);
+    CHECK(pins.bias.value / mm == Approx(0).margin(1e-9));
+    CHECK(pins.degrees_of_freedom == 6);
+    CHECK(pins.spread.value / mm == Approx(std::sqrt(8e-4 / 6)));
+    const double found = std::sqrt(0.02 - 8e-4 / 6 / 4);  // of means -0.1 and 0.1
+    CHECK(pins.components->between.value / mm == Approx(found));
+    CHECK(taken_spread(pins) == Approx(std::hypot(pins.spread_bound, found * mm)));  // two prints bound nothing
+    const Process process = fitted_process(*fit, "mine", *find_known_process("fdm"));
+    const double share = found * found / (found * found + 8e-4 / 6);
+    CHECK(shared_part(process, FeatureKind::pin).correlation == Approx(share));
+    CHECK(shared_part(process, FeatureKind::hole).correlation == -find_known_process("fdm")->correlation);
+    // A size of its own in each print says nothing of sizes: no slope, and numbers all the same.
+    for (MeasuredFeature& feature : features) {
+        const double moved = feature.print * 1 * mm;
+        feature.nominal += moved;
+        feature.measured[0] += moved;
+    }
+    const Result<ProcessFit> apart = fit_process(features, "");
+    CHECK(!apart->kinds[0].has_slope);
+    CHECK(std::isfinite(apart->kinds[0].components->between.most));
+    // One of each kind and print: as if of one.
+    std::vector<MeasuredFeature> singles;
+    for (int p = 0; p < 4; ++p) singles.push_back({"w", FeatureKind::wall, 2 * mm, {(2 + 0.01 * p) * mm}, p});
+    CHECK(!fit_process(singles, "")->kinds[0].components);
 }
 
 TEST_CASE("a process' fit: features that are all off by the same show no spread, and none is promised") {
