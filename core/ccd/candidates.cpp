@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
-#include "fettle/core/ccd/leaf_search.hpp"
+#include "fettle/core/ccd/pair_motion.hpp"
 #include "fettle/core/ccd/plane_edges.hpp"
+#include "fettle/core/ccd/primitive_search.hpp"
 #include "fettle/core/ccd/swept_pair.hpp"
 
 namespace fettle::core::ccd {
@@ -18,69 +18,8 @@ namespace {
 using kinematics::PathSegment;
 using kinematics::Pose;
 
-constexpr double slack = 1 + 1e-12;  // of sums of a few products
 constexpr int pairs_a_query = 32;    // pairs of bodies that a thread takes at a time
-
-// Bound of how far points of two bodies move relative to one another along their segments.
-double most_relative_motion(const PathSegment& a, const PathSegment& b, double radius_a, double radius_b) {
-    return slack * ((a.position_step - b.position_step).norm() + a.rotation_vector_step.norm() * radius_a +
-                    b.rotation_vector_step.norm() * radius_b);
-}
-
-// |R1 - R2|_F / sqrt 2 bounds |(R1 - R2) X| / |X|.
-double turn(const Matrix3& r1, const Matrix3& r2) { return (r1 - r2).norm() * std::sqrt(0.5); }
-
-// The same between two pairs of poses: distances of points do not change when both bodies move alike, so the least of what is seen from
-// the world and from each body holds.
-double most_relative_motion(const Pose& a1, const Pose& b1, const Pose& a2, const Pose& b2, double radius_a, double radius_b) {
-    const Vector3 offset1 = b1.position - a1.position, offset2 = b2.position - a2.position;
-    double least = (offset2 - offset1).norm() + turn(a1.rotation, a2.rotation) * radius_a + turn(b1.rotation, b2.rotation) * radius_b;
-    const Matrix3 relative1 = a1.rotation.transpose() * b1.rotation, relative2 = a2.rotation.transpose() * b2.rotation;
-    const double turned = turn(relative1, relative2);
-    least = std::min(least, (a2.rotation.transpose() * offset2 - a1.rotation.transpose() * offset1).norm() + turned * radius_b);
-    least = std::min(least, (b2.rotation.transpose() * offset2 - b1.rotation.transpose() * offset1).norm() + turned * radius_a);
-    return slack * least;
-}
-
-// Distances are taken at rounded vertices.
-double rounding_of(const Pose& a, const Pose& b, double radius_a, double radius_b) {
-    return search_rounding * (a.position.norm() + b.position.norm() + radius_a + radius_b);
-}
-
-// Where two bodies are to one another, in one chart: differences of two such points are linear along segments, and the sum of the norms of
-// such a difference's parts bounds how much nearer their points are.
-struct PairPoint {
-    Vector3 offset, arc_a, arc_b;  // [m]
-    double norm() const { return offset.norm() + arc_a.norm() + arc_b.norm(); }
-    double dot(const PairPoint& o) const { return offset.dot(o.offset) + arc_a.dot(o.arc_a) + arc_b.dot(o.arc_b); }
-};
-
-PairPoint difference(const PairPoint& x, const PairPoint& y, double share = 1) {
-    return {x.offset - share * y.offset, x.arc_a - share * y.arc_a, x.arc_b - share * y.arc_b};
-}
-
-PairPoint pair_point(const PathSegment& a, const PathSegment& b, double t, double radius_a, double radius_b) {
-    return {a.position_t0 - b.position_t0 + t * (a.position_step - b.position_step),
-            radius_a * (a.rotation_vector_t0 + t * a.rotation_vector_step), radius_b * (b.rotation_vector_t0 + t * b.rotation_vector_step)};
-}
-
-// How far two bodies on the segments a and b are from where they were somewhere along `from`, in the same chart. Each end is held against
-// the point that is about nearest, and the way between against the way between those: their difference is convex, largest at an end.
-double deviation(const std::array<PathSegment, 2>& from, const PathSegment& a, const PathSegment& b, double radius_a, double radius_b) {
-    if (from[0].base != a.base || from[1].base != b.base) return std::numeric_limits<double>::infinity();
-    const PairPoint start = pair_point(from[0], from[1], 0, radius_a, radius_b);
-    const PairPoint step = difference(pair_point(from[0], from[1], 1, radius_a, radius_b), start);
-    const double square = step.dot(step);
-    double largest = 0;
-    for (const double t : {0.0, 1.0}) {
-        const PairPoint off = difference(pair_point(a, b, t, radius_a, radius_b), start);
-        const double nearest = square > 0 ? std::clamp(off.dot(step) / square, 0.0, 1.0) : 0.0;
-        const double distance = difference(off, step, nearest).norm();
-        if (!(distance <= largest)) largest = distance;
-        if (std::isnan(largest)) break;
-    }
-    return slack * largest;
-}
+constexpr double known_share = 0.5;  // of the allowance: as far as a way that was searched is worth going on with
 
 // How far the surface that is in contact may be from the body's mesh.
 double reach_of(const model::Model& model, const model::Body& body) {
@@ -157,21 +96,85 @@ void take_over(std::vector<std::pair<int, int>> wanted, Candidates& candidates) 
     candidates.bodies = std::move(wanted);
 }
 
+bool is_same(const PathSegment& x, const PathSegment& y) {
+    return x.rotation_vector_step == y.rotation_vector_step && x.position_step == y.position_step && x.position_t0 == y.position_t0 &&
+           x.rotation_vector_t0 == y.rotation_vector_t0 && x.base == y.base;
+}
+
 // What the pairs are searched along.
 struct Search {
     const model::Model& model;
     const std::vector<PathSegment>& segments;
     const std::vector<SweptBody>& swept;
     double allowance;
-    SweptPair of(const BodyPairCandidates& pair) const {
+    // @param longer  memory for bodies that are searched beyond the segments' ends
+    SweptPair of(const BodyPairCandidates& pair, std::array<SweptBody, 2>& longer) const {
         const model::Body &a = model.bodies[pair.a], &b = model.bodies[pair.b];
-        SweptPair out =
-            swept_pair(swept[pair.a], swept[pair.b], model.dmin + model.dhat + allowance + reach_of(model, a) + reach_of(model, b));
+        const auto on_the_way = [&](int body, std::size_t k) -> const SweptBody& {
+            if (is_same(pair.along[k], segments[body])) return swept[body];
+            return longer[k] = swept_body(model.bodies[body], pair.along[k]);
+        };
+        SweptPair out = swept_pair(on_the_way(pair.a, 0), on_the_way(pair.b, 1),
+                                   model.dmin + model.dhat + allowance + reach_of(model, a) + reach_of(model, b));
         out.plane_a = plane_features_of(model, a);
         out.plane_b = plane_features_of(model, b);
         return out;
     }
 };
+
+void sort_by_distance(geometry::PrimitivePairs& pairs) {
+    for (auto* list : {&pairs.vertex_triangle, &pairs.triangle_vertex, &pairs.edge_edge})
+        std::sort(list->begin(), list->end(), [](const geometry::PrimitivePair& x, const geometry::PrimitivePair& y) {
+            if (x.distance != y.distance) return x.distance < y.distance;
+            return x.a != y.a ? x.a < y.a : x.b < y.b;
+        });
+}
+
+// The segments that a pair is searched along: twice as far as they go where two bodies go on as the last search made expect. Then the next
+// step's way is known too.
+std::array<PathSegment, 2> search_way(const Search& search, const BodyPairCandidates& pair) {
+    constexpr double farther = 2, bent = 0.25;  // times the segments; of the allowance
+    const PathSegment &a = search.segments[pair.a], &b = search.segments[pair.b];
+    if (!(pair.allowance > 0)) return {a, b};
+    const double radius_a = search.model.bodies[pair.a].radius, radius_b = search.model.bodies[pair.b].radius;
+    const double arcs =
+        0.125 * farther * farther * (a.rotation_vector_step.squaredNorm() * radius_a + b.rotation_vector_step.squaredNorm() * radius_b);
+    if (!(arcs <= bent * search.allowance)) return {a, b};
+    const auto longer = [](const PathSegment& s) { return sub_segment(s, 0, farther); };
+    const std::array<PathSegment, 2> expected{longer(pair.along[0]), longer(pair.along[1])};
+    if (!(deviation_in_space(expected, a, b, radius_a, radius_b) <= known_share * search.allowance)) return {a, b};
+    return {longer(a), longer(b)};
+}
+
+enum class Need { nothing, known_way, search };
+
+// How far a pair's segments are from the way that was searched last.
+double off_known_way(const Search& search, const BodyPairCandidates& pair) {
+    const PathSegment &a = search.segments[pair.a], &b = search.segments[pair.b];
+    const double radius_a = search.model.bodies[pair.a].radius, radius_b = search.model.bodies[pair.b].radius;
+    return deviation_in_space(pair.along, a, b, radius_a, radius_b);
+}
+
+Need need_of(const Search& search, const BodyPairCandidates& pair) {
+    if (pair.fresh) return Need::search;
+    const auto& swept = search.swept;
+    if (motion_over(search.model, pair, search.segments, swept[pair.a].ends[0], swept[pair.b].ends[0]) <= pair.allowance)
+        return Need::nothing;
+    return off_known_way(search, pair) <= known_share * pair.allowance ? Need::known_way : Need::search;
+}
+
+// The segments are on the way that was searched: among what was found there is all that comes near along them, and what of the allowance
+// they leave.
+void take_known_way(const Search& search, BodyPairCandidates& pair) {
+    pair.allowance -= off_known_way(search, pair) * (1 + 1e-12);
+    pair.along = {search.segments[pair.a], search.segments[pair.b]};
+    if (pair.empty()) return;
+    std::array<SweptBody, 2> longer;
+    SweptPair swept = search.of(pair, longer);
+    swept.margin -= search.allowance - pair.allowance;
+    search_again(swept, pair);
+    sort_by_distance(pair);
+}
 
 // A part of a pair's work: what a thread does in one go.
 struct Task {
@@ -193,7 +196,8 @@ std::vector<Task> make_tasks(const std::vector<BodyPairCandidates*>& searched, c
             tasks.push_back({k, {0, 0}, {}});
             continue;
         }
-        for (const NodePair& from : close_nodes(along.of(*searched[k]), {0, 0}, parts)) tasks.push_back({k, from, {}});
+        std::array<SweptBody, 2> longer;
+        for (const NodePair& from : close_nodes(along.of(*searched[k], longer), parts)) tasks.push_back({k, from, {}});
     }
     return tasks;
 }
@@ -202,20 +206,14 @@ void append(std::vector<geometry::PrimitivePair>& to, const std::vector<geometry
     to.insert(to.end(), from.begin(), from.end());
 }
 
-void sort_by_distance(geometry::PrimitivePairs& pairs) {
-    for (auto* list : {&pairs.vertex_triangle, &pairs.triangle_vertex, &pairs.edge_edge})
-        std::sort(list->begin(), list->end(), [](const geometry::PrimitivePair& x, const geometry::PrimitivePair& y) {
-            return std::tie(x.distance, x.a, x.b) < std::tie(y.distance, y.a, y.b);
-        });
-}
-
 // Fills the lists of all that are searched.
 void search(const Search& along, const std::vector<BodyPairCandidates*>& searched) {
     std::vector<Task> tasks = make_tasks(searched, along);
     base::parallel_for(count_of(tasks), 1, [&](int k) {
         Task& task = tasks[k];
-        const SweptPair pair = along.of(*searched[task.pair]);  // large, and soon made: not kept
-        search_leaves(pair, close_nodes(pair, task.from), task.found);
+        std::array<SweptBody, 2> longer;
+        const SweptPair pair = along.of(*searched[task.pair], longer);  // large, and soon made: not kept
+        search_primitives(pair, task.from, task.found);
     });
     // A pair's tasks follow one another.
     std::vector<std::size_t> first(searched.size() + 1, tasks.size());
@@ -226,7 +224,6 @@ void search(const Search& along, const std::vector<BodyPairCandidates*>& searche
     base::parallel_for(count_of(searched), geometry::pairs_at_once(searched.size(), found), [&](int p) {
         BodyPairCandidates& pair = *searched[p];
         pair.allowance = along.allowance;
-        pair.along = {along.segments[pair.a], along.segments[pair.b]};
         geometry::PrimitivePairs& out = pair;
         out = {};
         for (std::size_t k = first[p]; k < first[p + 1]; ++k) {
@@ -265,22 +262,25 @@ void cover(const model::Model& model, const std::vector<PathSegment>& segments, 
     });
     take_over(close_bodies(model, boxes, allowance, candidates.near), candidates);
 
-    static thread_local std::vector<char> fresh_memory;
-    std::vector<char>& is_fresh = fresh_memory;
-    is_fresh.resize(candidates.pairs.size());
+    static thread_local std::vector<Need> need_memory;
+    std::vector<Need>& need = need_memory;
+    need.resize(candidates.pairs.size());
+    const Search along{model, segments, swept, allowance};
     base::parallel_for(count_of(candidates.pairs), pairs_a_query, [&](int k) {
         BodyPairCandidates& pair = candidates.pairs[k];
-        pair.fresh = pair.fresh || !(motion_over(model, pair, segments, swept[pair.a].ends[0], swept[pair.b].ends[0]) <= pair.allowance);
-        is_fresh[k] = pair.fresh ? 1 : 0;
+        need[k] = need_of(along, pair);
+        if (need[k] == Need::search) pair.along = search_way(along, pair);
+        pair.fresh = need[k] != Need::nothing;
     });
     candidates.fresh.clear();
-    std::vector<BodyPairCandidates*> searched;
-    for (std::size_t k = 0; k < is_fresh.size(); ++k) {
-        if (is_fresh[k] == 0) continue;
+    std::vector<BodyPairCandidates*> searched, known;
+    for (std::size_t k = 0; k < need.size(); ++k) {
+        if (need[k] == Need::nothing) continue;
         candidates.fresh.push_back(static_cast<int>(k));
-        searched.push_back(&candidates.pairs[k]);
+        (need[k] == Need::search ? searched : known).push_back(&candidates.pairs[k]);
     }
-    search({model, segments, swept, allowance}, searched);
+    search(along, searched);
+    base::parallel_for(count_of(known), 1, [&](int k) { take_known_way(along, *known[k]); });
 }
 
 void settle(const std::vector<Pose>& poses, Candidates& candidates) {
@@ -321,8 +321,9 @@ double motion_over(const model::Model& model, const BodyPairCandidates& pair, co
     const double radius_a = model.bodies[pair.a].radius, radius_b = model.bodies[pair.b].radius;
     const double since_at =
         most_relative_motion(pair.at[0], pair.at[1], start_a, start_b, radius_a, radius_b) + most_relative_motion(a, b, radius_a, radius_b);
-    return std::min(since_at, deviation(pair.along, a, b, radius_a, radius_b)) + rounding_of(start_a, start_b, radius_a, radius_b) +
-           rounding_of(pair.at[0], pair.at[1], radius_a, radius_b) + search_rounding * (a.position_step.norm() + b.position_step.norm());
+    return std::min(since_at, deviation_in_chart(pair.along, a, b, radius_a, radius_b)) +
+           rounding_of(start_a, start_b, radius_a, radius_b) + rounding_of(pair.at[0], pair.at[1], radius_a, radius_b) +
+           search_rounding * (a.position_step.norm() + b.position_step.norm());
 }
 
 }  // namespace fettle::core::ccd

@@ -3,7 +3,8 @@
 /// given path segments, and no more than an allowance away from them.
 ///
 /// Kept per pair of bodies: what was found stays valid while the two have moved little relative to one another, wherever they have gone
-/// together and whatever the other bodies do. So a step searches anew only where something has happened.
+/// together and whatever the other bodies do. So a step searches anew only where something has happened. Where two bodies move steadily
+/// a search looks a step ahead: the next one's candidates are among those that it found.
 #pragma once
 
 #include <array>
@@ -22,9 +23,9 @@ namespace fettle::core::ccd {
 struct BodyPairCandidates : geometry::PrimitivePairs {
     int a = 0, b = 0;
     std::vector<SidePieces> sides;                 ///< of their round surfaces
-    double allowance = 0;                          ///< of the search [m]
+    double allowance = 0;                          ///< how far from `along` the candidates are complete [m]
     bool fresh = false;                            ///< found by the last cover(), and not settled yet
-    std::array<kinematics::PathSegment, 2> along;  ///< the segments that were searched
+    std::array<kinematics::PathSegment, 2> along;  ///< the way that was searched: the segments, or as far again where it is known ahead
     std::array<kinematics::Pose, 2> at;            ///< where on them the bodies went
 };
 

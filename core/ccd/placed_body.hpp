@@ -1,99 +1,62 @@
 // SPDX-License-Identifier: MIT
-/// Vertices and elements of a body at both ends of its segment: those that a search for candidates has looked at, each placed once.
+/// What a search for candidates looks at of a body, each placed once: vertices at both ends of the segment, and boxes as both bodies of the
+/// pair see them.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
 
 #include "fettle/core/ccd/four_separations.hpp"
+#include "fettle/core/ccd/placed_box.hpp"
 #include "fettle/core/ccd/swept_pair.hpp"
 
 namespace fettle::core::ccd {
 
-/// Axis-aligned, of places at both ends; the last of four numbers is on no axis.
-struct SweptBox {
-    static constexpr double nowhere = -1e300;
-    std::array<double, 4> low{nowhere, nowhere, nowhere, nowhere}, minus_high = low;
-
-    [[gnu::always_inline]] bool is_apart(const SweptBox& other, double margin) const {
-        base::Four l, h, other_l, other_h;
-        base::load(low.data(), l);
-        base::load(minus_high.data(), h);
-        base::load(other.low.data(), other_l);
-        base::load(other.minus_high.data(), other_h);
-        const auto is_along = (l + other_h > margin) | (other_l + h > margin);
-        return (is_along[0] | is_along[1] | is_along[2] | is_along[3]) != 0;
-    }
-    SweptBox joined(const SweptBox& other) const {
-        SweptBox out;
-        for (std::size_t k = 0; k < 4; ++k) {
-            out.low[k] = std::min(low[k], other.low[k]);
-            out.minus_high[k] = std::min(minus_high[k], other.minus_high[k]);
-        }
-        return out;
-    }
-};
-
 struct PlacedVertex {
     SweptVertex x;
-    SweptBox box;
-};
-
-struct PlacedEdge {
-    int edge;                 ///< into the mesh's
-    std::array<int, 2> ends;  ///< placed vertices
-    SweptBox box;
-};
-
-struct PlacedElement {
-    int element = 0;             ///< into BodyHierarchy::elements()
-    std::array<int, 3> corners;  ///< placed vertices, as in BodyHierarchy::faces(): of edges and points repeated to three
-    SweptBox box;
-    int details = -1;  ///< among those made; -1: not made
-};
-
-/// What is asked of elements whose boxes are near another's.
-struct PlacedDetails {
-    Vector3 normal;  ///< at the start, of length at most 1: separations along it are no more than they are; zero: it has none
-    int edge_count = 0;
-    std::array<PlacedEdge, 3> edges;  ///< those of HierarchyElement::owned_edges that are looked at
+    PlacedBox box;
 };
 
 class PlacedBody {
 public:
     /// Forgets what was placed, in the time that it took to place it.
-    /// @param origin  what positions are relative to, at each end
-    /// @param plane   where the body's plane edges are left out (plane_edges.hpp); null: nowhere
-    void start(const SweptBody& body, const std::array<Vector3, 2>& origin, const geometry::FlatFeatures* plane);
+    /// @param is_first  is it body a of the pair?
+    /// @param origin    what the positions of SweptVertex are relative to, at each end
+    void start(const SweptBody& body, const SeenMotion& seen, bool is_first, const std::array<Vector3, 2>& origin);
 
-    /// Number of an element of the hierarchy among those placed, which now it is.
-    int place(int element) {
-        int& at = element_at_[element];
-        return at >= 0 ? at : at = place_element(element);
-    }
-    const PlacedElement& element(int i) const { return elements_[i]; }
-    /// Makes them if they are not there. They stay where they are until the next is made.
-    const PlacedDetails& details(int i) {
-        const int at = elements_[i].details;
-        return details_[at >= 0 ? at : make_details(i)];
+    /// Number of a vertex of the mesh among those placed, which now it is.
+    int place(int vertex) {
+        int& at = vertex_at_[vertex];
+        return at >= 0 ? at : at = place_vertex(vertex);
     }
     const PlacedVertex& vertex(int i) const { return vertices_[i]; }
+    const geometry::BodyHierarchy& hierarchy() const { return *body_->body->hierarchy; }
+    const geometry::Mesh& mesh() const { return body_->body->mesh; }
+    /// Of an axis-aligned box in the body's frame whose points are within `radius`.
+    void place_box(const geometry::HierarchyNode& node, PlacedBox& out) const;
+    void place_box(const geometry::OwnedBox& box, double radius, PlacedBox& out) const;
+    /// Sum of the box's edges in the body's own frame, [m].
+    float size_of(const PlacedBox& box) const {
+        float size = 0;
+        for (std::size_t k = own_; k < own_ + 3; ++k) size -= box.low[k] + box.minus_high[k];
+        return size;
+    }
 
 private:
-    int place_element(int element);
+    /// Columns of a rotation and an offset, four numbers each.
+    using Placing = std::array<std::array<double, 4>, 4>;
+    static Placing placing(const Matrix3& rotation, const Vector3& offset);
+
     int place_vertex(int vertex);
-    int make_details(int i);
 
     const SweptBody* body_ = nullptr;
-    const geometry::FlatFeatures* plane_ = nullptr;
-    std::array<Vector3, 2> origin_;
-    std::vector<int> element_at_, vertex_at_;  // by their number in the body: among those placed; -1: not placed
-    std::vector<PlacedElement> elements_;
-    std::vector<PlacedDetails> details_;
+    std::size_t own_ = 0;                   ///< the body's own axes among the numbers of a PlacedBox
+    SeenMotion loss_;                       ///< of its points, as the other body sees them
+    std::array<Placing, 2> seen_, placed_;  ///< at each end: in the other body's frame; along the world's axes
+    std::vector<int> vertex_at_;            ///< [vertex] among those placed; -1: not placed
     std::vector<PlacedVertex> vertices_;
-    std::vector<int> placed_vertices_;  // their numbers in the body
+    std::vector<int> placed_vertices_;  ///< their numbers in the body
 };
 
 }  // namespace fettle::core::ccd

@@ -37,13 +37,55 @@ std::array<RoundedSides::Place, 2> rectangles_of(const RoundedSides& sides, int 
     return out;
 }
 
+// The same of many faces, each worked out once.
+class RectanglesOf {
+public:
+    RectanglesOf(const RoundedSides& sides, std::vector<int>& number) : sides_(sides), number_(number) {
+        if (number_.size() < sides.of_triangle.size()) number_.resize(sides.of_triangle.size(), -1);
+    }
+    ~RectanglesOf() {
+        for (const int face : faces_) number_[face] = -1;
+    }
+    RectanglesOf(const RectanglesOf&) = delete;
+    RectanglesOf& operator=(const RectanglesOf&) = delete;
+
+    const std::array<RoundedSides::Place, 2>& operator()(int face) {
+        if (face >= count_of(sides_.of_triangle)) return none_;
+        int& number = number_[face];
+        if (number < 0) {
+            number = count_of(faces_);
+            faces_.push_back(face);
+            rectangles_.push_back(rectangles_of(sides_, face));
+        }
+        return rectangles_[number];
+    }
+
+private:
+    const RoundedSides& sides_;
+    std::vector<int>& number_;  // [face] among those worked out; -1: not there
+    std::vector<int> faces_;
+    std::vector<std::array<RoundedSides::Place, 2>> rectangles_;
+    std::array<RoundedSides::Place, 2> none_;
+};
+
+// The corners that an edge's ends are of, each once: both ends of a corner's line are of one.
+void find_ends(const RoundedSides& sides, const geometry::Edge& edge, std::vector<RoundedSides::Place>& out) {
+    out.clear();
+    for (const int v : edge)
+        for (const RoundedSides::Place& at : sides.of_vertex[v]) {
+            const auto is_same = [&at](const RoundedSides::Place& other) { return other.side == at.side && other.at == at.at; };
+            if (std::none_of(out.begin(), out.end(), is_same)) out.push_back(at);
+        }
+}
+
 // Corners that candidates have, of one side.
 class Corners {
 public:
-    void add(const RoundedSide& side, const RoundedSides::Place& place, bool is_rectangle) {
-        named_.resize(side.corners.size(), 0);
-        named_[place.at] = 1;
-        if (is_rectangle) named_[(place.at + 1) % named_.size()] = 1;
+    explicit Corners(const RoundedSide& side) : named_(side.corners.size(), 0) {}
+    void add(const RoundedSides::Place& place, bool is_rectangle) {
+        const auto at = static_cast<std::size_t>(place.at);
+        named_[at] = 1;
+        if (is_rectangle) named_[at + 1 < named_.size() ? at + 1 : 0] = 1;
     }
 
     // With their neighbours, and the rectangles beside them.
@@ -68,35 +110,53 @@ std::vector<SidePieces> side_pieces(const model::Model& model, int body_a, int b
     const model::Body &a = model.bodies[body_a], &b = model.bodies[body_b];
     if (!a.round || !b.round || !(a.round->any() || b.round->any())) return {};
     const RoundedSides &sides_a = a.round->mesh_sides, &sides_b = b.round->mesh_sides;
-    std::map<std::pair<int, int>, std::pair<Corners, Corners>> near;
+    struct Named {
+        Corners a, b;
+        bool is_round;
+    };
+    using Near = std::map<std::pair<int, int>, Named>;
+    Near near;
+    auto last = near.end();  // most candidates are of the same two sides as the one before
     const auto add = [&](const RoundedSides::Place& at_a, bool rectangle_a, const RoundedSides::Place& at_b, bool rectangle_b) {
         if (at_a.side < 0 || at_b.side < 0) return;
-        const RoundedSide &side_a = sides_a.sides[at_a.side], &side_b = sides_b.sides[at_b.side];
-        if (!side_a.is_round() && !side_b.is_round()) return;
-        auto& [corners_a, corners_b] = near[{at_a.side, at_b.side}];
-        corners_a.add(side_a, at_a, rectangle_a);
-        corners_b.add(side_b, at_b, rectangle_b);
+        const std::pair key(at_a.side, at_b.side);
+        if (last == near.end() || last->first != key) {
+            last = near.find(key);
+            if (last == near.end()) {
+                const RoundedSide &side_a = sides_a.sides[at_a.side], &side_b = sides_b.sides[at_b.side];
+                last = near.emplace(key, Named{Corners(side_a), Corners(side_b), side_a.is_round() || side_b.is_round()}).first;
+            }
+        }
+        Named& named = last->second;
+        if (!named.is_round) return;
+        named.a.add(at_a, rectangle_a);
+        named.b.add(at_b, rectangle_b);
     };
+    static thread_local std::vector<int> number_a, number_b;  // kept for their memory
+    RectanglesOf rectangles_a(sides_a, number_a), rectangles_b(sides_b, number_b);
     for (const geometry::PrimitivePair& pair : candidates.vertex_triangle)
         for (const auto& at_a : sides_a.of_vertex[pair.a])
-            for (const auto& at_b : rectangles_of(sides_b, pair.b)) add(at_a, false, at_b, true);
+            for (const auto& at_b : rectangles_b(pair.b)) add(at_a, false, at_b, true);
     for (const geometry::PrimitivePair& pair : candidates.triangle_vertex)
         for (const auto& at_b : sides_b.of_vertex[pair.b])
-            for (const auto& at_a : rectangles_of(sides_a, pair.a)) add(at_a, true, at_b, false);
-    for (const geometry::PrimitivePair& pair : candidates.edge_edge)
-        for (const int v : a.mesh.edges[pair.a])
-            for (const int w : b.mesh.edges[pair.b])
-                for (const auto& at_a : sides_a.of_vertex[v])
-                    for (const auto& at_b : sides_b.of_vertex[w]) add(at_a, false, at_b, false);
+            for (const auto& at_a : rectangles_a(pair.a)) add(at_a, true, at_b, false);
+    std::vector<RoundedSides::Place> ends_a, ends_b;
+    for (const geometry::PrimitivePair& pair : candidates.edge_edge) {
+        find_ends(sides_a, a.mesh.edges[pair.a], ends_a);
+        find_ends(sides_b, b.mesh.edges[pair.b], ends_b);
+        for (const auto& at_a : ends_a)
+            for (const auto& at_b : ends_b) add(at_a, false, at_b, false);
+    }
     std::vector<SidePieces> out;
     const std::vector<model::FacetSides>& facets = model.facet_sides;
-    for (const auto& [sides, corners] : near) {
+    for (const auto& [sides, named] : near) {
+        if (!named.is_round) continue;
         if (std::binary_search(facets.begin(), facets.end(), model::FacetSides{body_a, sides.first, body_b, sides.second})) continue;
         SidePieces& pieces = out.emplace_back();
         pieces.side_a = sides.first;
         pieces.side_b = sides.second;
-        corners.first.list(sides_a.sides[pieces.side_a], pieces.corners_a, pieces.rectangles_a);
-        corners.second.list(sides_b.sides[pieces.side_b], pieces.corners_b, pieces.rectangles_b);
+        named.a.list(sides_a.sides[pieces.side_a], pieces.corners_a, pieces.rectangles_a);
+        named.b.list(sides_b.sides[pieces.side_b], pieces.corners_b, pieces.rectangles_b);
     }
     return out;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/float_rounding.hpp"
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/geometry/half_edges.hpp"
 
@@ -235,12 +236,53 @@ private:
     std::vector<std::array<int, 2>> node_counts_;  ///< per depth, of a part of the smaller and of the larger number of elements
 };
 
+void widen(OwnedBox& box, const OwnedBox& by) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        box.low[k] = std::min(box.low[k], by.low[k]);
+        box.high[k] = std::max(box.high[k], by.high[k]);
+    }
+}
+
+void widen(OwnedBox& box, const Vector3& by) {
+    OwnedBox point;
+    for (std::size_t k = 0; k < 3; ++k) {
+        point.low[k] = base::float_below(by[static_cast<int>(k)]);
+        point.high[k] = base::float_above(by[static_cast<int>(k)]);
+    }
+    widen(box, point);
+}
+
+// Of the nodes' elements, add(element, box) each; children come after their parents.
+template <class Add>
+std::vector<OwnedBox> owned_boxes(const std::vector<HierarchyNode>& nodes, const std::vector<HierarchyElement>& elements, const Add& add) {
+    std::vector<OwnedBox> boxes(nodes.size());
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        const HierarchyNode& node = nodes[i];
+        if (node.is_leaf()) {
+            for (int k = node.first; k < node.first + node.count; ++k) add(elements[k], boxes[i]);
+        } else {
+            for (const int child : {node.left, node.right}) widen(boxes[i], boxes[child]);
+        }
+    }
+    return boxes;
+}
+
 }  // namespace
 
-BodyHierarchy::BodyHierarchy(const geometry::Mesh& mesh) : elements_(collect_elements(mesh)), faces_(faces_of(elements_)) {
+BodyHierarchy::BodyHierarchy(const geometry::Mesh& mesh, const FlatFeatures* flat)
+    : elements_(collect_elements(mesh)), faces_(faces_of(elements_)) {
     FETTLE_ASSERT(!elements_.empty(), "mesh " + mesh.name + " has no vertices");
     FETTLE_ASSERT(mesh.vertices.allFinite(), "mesh " + mesh.name + " has a vertex that is not finite");
     Builder(mesh, elements_, nodes_).build();
+    vertex_boxes_ = owned_boxes(nodes_, elements_, [&](const HierarchyElement& element, OwnedBox& box) {
+        for (int k = 0; k < element.owned_vertex_count; ++k) widen(box, mesh.vertices.col(element.owned_vertices[k]));
+    });
+    if (flat == nullptr) return;
+    edge_boxes_ = owned_boxes(nodes_, elements_, [&](const HierarchyElement& element, OwnedBox& box) {
+        for (int k = 0; k < element.owned_edge_count; ++k)
+            if (const int e = element.owned_edges[k]; !flat->is_plane_edge(e))
+                for (const int v : mesh.edges[e]) widen(box, mesh.vertices.col(v));
+    });
 }
 
 }  // namespace fettle::core::geometry

@@ -5,9 +5,11 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "fettle/core/base/types.hpp"
+#include "fettle/core/geometry/flat_features.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 
 namespace fettle::core::geometry {
@@ -34,12 +36,24 @@ struct HierarchyElement {
     std::array<std::array<int, 2>, 3> owned_edge_corners{};  ///< the same for the ends of each owned edge, in the edge's order
 };
 
+/// Axis-aligned, in the body's frame, rounded outwards to single precision. Of nothing: low above high.
+struct OwnedBox {
+    static constexpr float nowhere = std::numeric_limits<float>::infinity();
+    std::array<float, 3> low{nowhere, nowhere, nowhere}, high{-nowhere, -nowhere, -nowhere};
+    bool is_empty() const { return low[0] > high[0]; }
+};
+
 class BodyHierarchy {
 public:
+    /// @param flat  of the mesh: whose plane edges edge_boxes() leaves out; null: there are no edge_boxes()
     /// Contract: connectivity built, at least one vertex, finite coordinates.
-    explicit BodyHierarchy(const geometry::Mesh& mesh);
+    explicit BodyHierarchy(const geometry::Mesh& mesh, const FlatFeatures* flat = nullptr);
 
     const std::vector<HierarchyNode>& nodes() const { return nodes_; }  ///< root is 0
+
+    /// [node] Of the vertices that the node's elements own, and of the edges that they own and that are not plane.
+    const std::vector<OwnedBox>& vertex_boxes() const { return vertex_boxes_; }
+    const std::vector<OwnedBox>& edge_boxes() const { return edge_boxes_; }
     const std::vector<HierarchyElement>& elements() const { return elements_; }
 
     /// The mesh's triangles, then its codimensional edges as (e0, e1, e1) and points as (p, p, p), whose distances, closest points and CCD
@@ -50,6 +64,7 @@ private:
     std::vector<HierarchyNode> nodes_;
     std::vector<HierarchyElement> elements_;
     std::vector<geometry::Triangle> faces_;
+    std::vector<OwnedBox> vertex_boxes_, edge_boxes_;
 };
 
 }  // namespace fettle::core::geometry

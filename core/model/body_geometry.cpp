@@ -42,9 +42,9 @@ void complete_geometry(Body& body) {
         body.edge_length_squared.push_back((body.mesh.vertices.col(edge[1]) - body.mesh.vertices.col(edge[0])).squaredNorm());
     }
     add_areas(body);
-    body.hierarchy = std::make_shared<const geometry::BodyHierarchy>(body.mesh);
     constexpr double flatness = 1e-5;  // of the body: above single precision, and above what derivatives are checked with
     body.flat = std::make_shared<const geometry::FlatFeatures>(geometry::flat_features(body.mesh, flatness * body.radius));
+    body.hierarchy = std::make_shared<const geometry::BodyHierarchy>(body.mesh, body.flat.get());
 }
 
 void complete_geometry(std::vector<Body>& bodies, const std::vector<std::size_t>& first_of_shape) {

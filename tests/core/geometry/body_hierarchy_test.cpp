@@ -138,4 +138,62 @@ TEST_CASE("each vertex and each edge has one owner that contains it") {
     CHECK(std::all_of(edge_owners.begin(), edge_owners.end(), [](int n) { return n == 1; }));
 }
 
+namespace {
+
+bool holds(const OwnedBox& box, const Vector3& x) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double at = x[static_cast<int>(k)];
+        if (!(box.low[k] <= at && at <= box.high[k])) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("boxes of owned vertices and edges hold them, and little more") {
+    Mesh mesh = tests::torus_mesh(1, 0.4, 8);
+    mesh.vertices.conservativeResize(3, mesh.vertices.cols() + 4);
+    mesh.vertices.rightCols(4) << 2, 3, 3, 2, 0, 0, 1, 1, 0.1, 0.1, 0.1, 0.1;  // a plane square
+    const int v = static_cast<int>(mesh.vertices.cols()) - 4;
+    mesh.triangles.push_back({v, v + 1, v + 2});
+    mesh.triangles.push_back({v, v + 2, v + 3});
+    build_connectivity(mesh, {});
+    const FlatFeatures flat = flat_features(mesh, 1e-6);
+    const BodyHierarchy hierarchy(mesh, &flat);
+    CHECK(BodyHierarchy(mesh).edge_boxes().empty());
+    REQUIRE(hierarchy.vertex_boxes().size() == hierarchy.nodes().size());
+    REQUIRE(hierarchy.edge_boxes().size() == hierarchy.nodes().size());
+    int plane_edges = 0;
+    for (std::size_t i = 0; i < hierarchy.nodes().size(); ++i) {
+        const HierarchyNode& node = hierarchy.nodes()[i];
+        const OwnedBox &vertices = hierarchy.vertex_boxes()[i], &edges = hierarchy.edge_boxes()[i];
+        std::vector<Vector3> points, ends;
+        for (int e = node.first; e < node.first + node.count; ++e) {
+            const HierarchyElement& element = hierarchy.elements()[static_cast<std::size_t>(e)];
+            for (int k = 0; k < element.owned_vertex_count; ++k)
+                points.emplace_back(mesh.vertices.col(element.owned_vertices[static_cast<std::size_t>(k)]));
+            for (int k = 0; k < element.owned_edge_count; ++k) {
+                const int edge = element.owned_edges[static_cast<std::size_t>(k)];
+                plane_edges += flat.is_plane_edge(edge) && node.is_leaf();
+                if (flat.is_plane_edge(edge)) continue;
+                for (const int end : mesh.edges[static_cast<std::size_t>(edge)]) ends.emplace_back(mesh.vertices.col(end));
+            }
+        }
+        for (const auto& [box, all] : {std::pair(vertices, points), std::pair(edges, ends)}) {
+            CHECK(box.is_empty() == all.empty());
+            CHECK(std::all_of(all.begin(), all.end(), [&box = box](const Vector3& x) { return holds(box, x); }));
+            for (int k = 0; k < 3 && !all.empty(); ++k) {
+                double low = all[0][k], high = all[0][k];
+                for (const Vector3& x : all) {
+                    low = std::min(low, x[k]);
+                    high = std::max(high, x[k]);
+                }
+                CHECK(box.low[static_cast<std::size_t>(k)] >= low - 1e-6);
+                CHECK(box.high[static_cast<std::size_t>(k)] <= high + 1e-6);
+            }
+        }
+    }
+    CHECK(plane_edges == 8 * 8 + 1);  // the torus's facets are plane, too
+}
+
 }  // namespace fettle::core::geometry::body_hierarchy_test
