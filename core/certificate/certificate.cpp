@@ -6,6 +6,13 @@
 
 namespace fettle::core::certificate {
 
+char split_along(int k) { return static_cast<char>(k < 10 ? '0' + k : 'A' + (k - 10)); }
+
+int variable_of_split(char kind) {
+    if (kind >= '0' && kind <= '9') return kind - '0';
+    return kind >= 'A' && kind < 'A' + most_variables - 10 ? kind - 'A' + 10 : -1;
+}
+
 void add_leaf(BoxProof& proof, const LeafPlane& plane) {
     const bool is_one = plane.n0 == plane.n1;
     proof.splits += is_one ? '.' : ':';

@@ -18,7 +18,7 @@
 ///
 /// How it proves `lower`. For every box there is a tree of cells. A cell is a part of the box, a piece of A and a piece of B; the root is
 /// the whole box and both whole bodies. `splits` lists the cells in preorder, one character each:
-///   0..3  halved along this coordinate: first [low, m], then [m, high], m = (low + high)/2 as rounded (of a path exact: s is dyadic)
+///   0..9  halved along this coordinate: first [low, m], then [m, high], m = (low + high)/2 as rounded (of a path exact: s is dyadic)
 ///   A, B  the same of the coordinates 10 and 11
 ///   a     piece of A split into its two parts, in their order;   b  the same of B
 ///   .     a leaf whose proof is one vector;   :  a leaf whose proof is 2^k vectors, one for each corner of its part of the box, bit j of
@@ -60,6 +60,14 @@ struct BoxProof {
     std::string splits;
     std::vector<Vector3> normals;  ///< about as long as 1
 };
+
+/// How a cell is halved along variable k: '0' to '9', then 'A', 'B'.
+char split_along(int k);
+/// -1: it is no such halving.
+int variable_of_split(char kind);
+
+/// Kinds of leaves: of one vector, and of several.
+inline constexpr char still_leaf = '.', turning_leaf = ':';
 
 /// A leaf's vectors where there is one coordinate: at its low and its high end.
 struct LeafPlane {

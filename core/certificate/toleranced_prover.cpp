@@ -137,13 +137,6 @@ std::vector<int> vertices_of(const Region& region) {
 
 }  // namespace
 
-char split_along(int k) { return static_cast<char>(k < 10 ? '0' + k : 'A' + (k - 10)); }
-
-int variable_of_split(char kind) {
-    if (kind >= '0' && kind <= '9') return kind - '0';
-    return kind >= 'A' && kind < 'A' + most_variables - 10 ? kind - 'A' + 10 : -1;
-}
-
 // What the pair needs of the nodes, and where its frames and vertices are in it.
 struct TolerancedProver::Program {
     struct Screw {

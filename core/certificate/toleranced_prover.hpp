@@ -32,18 +32,11 @@
 
 namespace fettle::core::certificate {
 
-/// How a cell is halved along variable k: '0' to '9', then 'A', 'B'.
-char split_along(int k);
-/// -1: it is no such halving.
-int variable_of_split(char kind);
-
 struct VariableBox {
     using Values = std::array<double, most_variables>;
     Values low{}, high{};  ///< those beyond the pair's own are 0
 };
 
-/// Kinds of leaves: a vector that stays, and one that turns, n_0, n_1, ...
-inline constexpr char still_leaf = '.', turning_leaf = ':';
 /// Entries are the slopes' vectors.
 Model3 turning_vector(std::span<const Vector3> vectors);
 

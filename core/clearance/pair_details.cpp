@@ -23,22 +23,14 @@ double time_of(const PairMotion& pair, int segment, double s) {
 
 Witness witness_of(const PairMotion& pair, const Encounter& encounter) {
     const PairSegment& segment = pair.segments[encounter.segment];
-    const ElementPairDistance& found = encounter.pair;
-    Witness w;
+    Witness w = witness_between(pair.a, pair.b, encounter.element_a, encounter.element_b, encounter.pair);
     w.step = segment.step;
     w.segment = segment.segment;
     w.s = encounter.s;
     w.time = time_of(pair, encounter.segment, encounter.s);
-    w.kind_a = found.kind_a;
-    w.kind_b = found.kind_b;
-    w.edge_edge = found.kind_a == Primitive::edge && found.kind_b == Primitive::edge;
-    w.vertex_on_a = found.kind_a == Primitive::vertex;
-    w.primitive_a = primitive_index(pair.a, encounter.element_a, found.kind_a, found.corner_a);
-    w.primitive_b = primitive_index(pair.b, encounter.element_b, found.kind_b, found.corner_b);
     const Vector3 origin = kinematics::pose_at(segment.b->path, encounter.s).position;
-    w.point_a = origin + found.point_a;
-    w.point_b = origin + found.point_b;
-    w.distance = found.distance;
+    w.point_a += origin;
+    w.point_b += origin;
     return w;
 }
 

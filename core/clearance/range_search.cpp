@@ -11,32 +11,36 @@
 namespace fettle::core::clearance {
 namespace {
 
-struct RangeCell {
-    CoordinateBox box;
-    int a = 0, b = 0;
-    double lower = 0;
-    double loosened = 0;
-    int widest = 0;
-};
+using RangeCell = BoxCell<CoordinateBox>;
 
-constexpr char no_split = '.';
-
-// What a bound is proven with.
-struct CellProof {
-    double lower = 0;
-    std::vector<Vector3> normals;
-};
-
-// Evaluates and splits cells; remembers the nearest pair of elements that it has met.
+// Evaluates cells; remembers the nearest pair of elements that it has met.
 class CellBounds {
 public:
+    using Box = CoordinateBox;
+    using Encounter = RangeEncounter;
+
     explicit CellBounds(const ScrewedPair& pair) : pair_(pair) {}
 
     RangeSearchResult result;
 
-    RangeCell root() const { return {pair_.ranges, 0, 0, 0, 0, 0}; }
+    BoxTrees trees() const { return {pair_.a, pair_.b, pair_.count, pair_.slack}; }
+    CoordinateBox root_box() const { return pair_.ranges; }
+    void descend();
 
-    /// Sets the cell's bound and what to split it by. `wanted`: a bound of this much is enough.
+    CellProof evaluate(RangeCell& cell, double wanted, double /*tolerance*/) { return evaluate(BoxBound(pair_, cell.box), cell, wanted); }
+    void evaluate_parts(const RangeCell& whole, char by, std::array<RangeCell, 2>& parts, double /*tolerance*/) {
+        if (by == 'a' || by == 'b') {
+            const BoxBound box(pair_, whole.box);
+            for (RangeCell& part : parts) evaluate(box, part, result.upper);
+        } else {
+            for (RangeCell& part : parts) evaluate(BoxBound(pair_, part.box), part, result.upper);
+        }
+    }
+    static bool proves(const CellProof& found, double distance) { return found.lower >= distance; }
+
+    void take(const RangeEncounter& encounter) { take_upper(result, encounter, pair_.slack); }
+
+private:
     CellProof evaluate(const BoxBound& box, RangeCell& cell, double wanted) {
         ++result.bounds;
         const Piece &a = pair_.a.pieces[cell.a], &b = pair_.b.pieces[cell.b];
@@ -70,48 +74,6 @@ public:
         return proof;
     }
 
-    /// '0' + k, 'a', 'b', or no_split: at the limit of rounding.
-    char choice(const RangeCell& cell) const {
-        const Piece &a = pair_.a.pieces[cell.a], &b = pair_.b.pieces[cell.b];
-        const double size_a = a.is_element() ? -1 : a.size, size_b = b.is_element() ? -1 : b.size, size = std::max(size_a, size_b);
-        if (size < 0 || cell.loosened > 0.5 * size)
-            for (int i = 0; i < pair_.count; ++i) {
-                const auto k = static_cast<std::size_t>((cell.widest + i) % pair_.count);
-                const double middle = 0.5 * (cell.box.low[k] + cell.box.high[k]);
-                if (cell.box.low[k] < middle && middle < cell.box.high[k]) return static_cast<char>('0' + static_cast<int>(k));
-            }
-        if (size < 0) return no_split;
-        return size_a >= size_b ? 'a' : 'b';
-    }
-
-    /// Contract: a choice but no_split.
-    std::array<RangeCell, 2> split(const RangeCell& cell, char by) const {
-        std::array<RangeCell, 2> out{cell, cell};
-        const Piece &a = pair_.a.pieces[cell.a], &b = pair_.b.pieces[cell.b];
-        if (by == 'a') {
-            out[0].a = a.left;
-            out[1].a = a.right;
-        } else if (by == 'b') {
-            out[0].b = b.left;
-            out[1].b = b.right;
-        } else {
-            const auto k = static_cast<std::size_t>(by - '0');
-            out[0].box.high[k] = out[1].box.low[k] = 0.5 * (cell.box.low[k] + cell.box.high[k]);
-        }
-        return out;
-    }
-
-    void take(const RangeEncounter& encounter) {
-        const double sum = encounter.pair.distance + pair_.slack, upper = std::isnan(sum) ? infinity : sum;
-        const bool clash = encounter.pair.intersecting && encounter.pair.depth > 8 * pair_.slack;
-        const bool better = clash != result.intersecting ? clash : upper < result.upper;  // touching is not yet a clash
-        if (result.nearest.element_a >= 0 && !better) return;
-        result.upper = upper;
-        result.nearest = encounter;
-        result.intersecting = clash;
-    }
-
-private:
     static const Corners* element(const PieceTree& tree, const Piece& piece) {
         return piece.is_element() ? &tree.elements[piece.first].corners : nullptr;
     }
@@ -207,98 +169,16 @@ private:
     CellBounds& cells_;
 };
 
-class RangeSearch {
-public:
-    RangeSearch(const ScrewedPair& pair, const RangeSearchOptions& options) : pair_(pair), options_(options), cells_(pair) {}
-
-    RangeSearchResult run() {
-        Descent(pair_, cells_).run();
-        RangeCell root = cells_.root();
-        cells_.evaluate(BoxBound(pair_, root.box), root, infinity);
-        push(root);
-        while (!is_settled()) {
-            if (cells_.result.bounds >= options_.max_bounds ||
-                (options_.should_stop && cells_.result.bounds % 256 < 2 && options_.should_stop())) {
-                cells_.result.complete = false;
-                break;
-            }
-            expand(pop());
-        }
-        cells_.result.lower = std::max(0.0, lower_bound());
-        if (cells_.result.intersecting) cells_.result.lower = 0;
-        return std::move(cells_.result);
-    }
-
-private:
-    void push(const RangeCell& cell) {
-        if (cell.lower >= cells_.result.upper) return;
-        queue_.push({cell.lower, made_++, static_cast<std::uint32_t>(pool_.add(cell))});
-    }
-    RangeCell pop() { return pool_.take(static_cast<int>(queue_.pop().entry)); }
-
-    double lower_bound() const { return std::min({aside_, queue_.least(), cells_.result.upper - 2 * pair_.slack}); }
-
-    bool is_settled() const {
-        const double lower = lower_bound(), upper = cells_.result.upper;
-        if (cells_.result.intersecting || queue_.empty() || queue_.least() >= aside_ || lower >= options_.enough) return true;
-        if (!(upper - lower <= options_.tolerance)) return false;
-        if (upper - lower <= 4 * pair_.slack) return true;
-        const double finest = 1e-3 * options_.tolerance;  // where the minimum lies between, or 0 does
-        if (!(lower > 0) && upper > 64 * pair_.slack) return upper - lower <= std::min(finest, 1e-2 * upper);
-        return !(options_.minimum > lower && options_.minimum <= upper) || upper - lower <= finest;
-    }
-
-    void expand(const RangeCell& cell) {
-        const char by = cells_.choice(cell);
-        if (by == no_split) {
-            aside_ = std::min(aside_, cell.lower);
-            return;
-        }
-        std::array<RangeCell, 2> parts = cells_.split(cell, by);
-        if (by == 'a' || by == 'b') {
-            const BoxBound box(pair_, cell.box);
-            for (RangeCell& part : parts) cells_.evaluate(box, part, cells_.result.upper);
-        } else {
-            for (RangeCell& part : parts) cells_.evaluate(BoxBound(pair_, part.box), part, cells_.result.upper);
-        }
-        for (const RangeCell& part : parts) push(part);
-    }
-
-    const ScrewedPair& pair_;
-    const RangeSearchOptions& options_;
-    CellBounds cells_;
-    EntryPool<RangeCell> pool_;
-    BestFirst queue_;
-    double aside_ = infinity;  // least bound of what cannot be split
-    std::uint32_t made_ = 0;
-};
+void CellBounds::descend() { Descent(pair_, *this).run(); }
 
 }  // namespace
 
-RangeSearchResult search_ranges(const ScrewedPair& pair, const RangeSearchOptions& options) { return RangeSearch(pair, options).run(); }
+RangeSearchResult search_ranges(const ScrewedPair& pair, const BoxSearchOptions& options) {
+    return BoxSearch(CellBounds(pair), options).run();
+}
 
-certificate::BoxProof prove_ranges(const ScrewedPair& pair, double distance, const RangeSearchOptions& options) {
-    CellBounds cells(pair);
-    certificate::BoxProof proof;
-    std::vector<RangeCell> pending{cells.root()};
-    while (!pending.empty()) {
-        RangeCell cell = pending.back();
-        pending.pop_back();
-        const CellProof found = cells.evaluate(BoxBound(pair, cell.box), cell, distance);
-        if (found.lower >= distance) {
-            proof.splits += found.normals.size() == 1 ? '.' : ':';
-            proof.normals.insert(proof.normals.end(), found.normals.begin(), found.normals.end());
-            continue;
-        }
-        const char by = cells.choice(cell);
-        const bool stopped = options.should_stop && cells.result.bounds % 256 == 0 && options.should_stop();
-        if (by == no_split || cells.result.bounds > 2 * options.max_bounds || stopped) return {};
-        proof.splits += by;
-        const std::array<RangeCell, 2> parts = cells.split(cell, by);
-        pending.push_back(parts[1]);
-        pending.push_back(parts[0]);
-    }
-    return proof;
+certificate::BoxProof prove_ranges(const ScrewedPair& pair, double distance, const BoxSearchOptions& options) {
+    return prove_box(CellBounds(pair), distance, options);
 }
 
 }  // namespace fettle::core::clearance

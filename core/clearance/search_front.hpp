@@ -5,7 +5,7 @@
 /// The most promising entry comes first, and then for a while the most promising of those made last, which are mostly parts of it: what is
 /// below the cutoff has to be looked at anyway, sooner or later, and what has just been made is still at hand. Where a bound of `enough` is
 /// to be proven and nothing nearer has been seen, always one of those made last.
-/// A search over ranges of joints (range_search.hpp) shares the heap and the pool, and no more: its cells are one kind, its upper bound is
+/// A search over a box of variables (box_search.hpp) shares the heap and the pool, and no more: its cells are one kind, its upper bound is
 /// nearly the least from the start, and what ends it, what is set aside and what is a witness differ.
 #pragma once
 

@@ -17,21 +17,9 @@ using certificate::PlacedPair;
 using certificate::TaylorModel;
 using certificate::TolerancedProver;
 
-constexpr char not_to_split = '.';
 constexpr double large_angle = 0.3;  // [rad]
 
-struct TolerancedCell {
-    VariableBox box;
-    int a = 0, b = 0;
-    double lower = 0;
-    double loosened = 0;  // by what the box moves
-    int widest = 0;       // the variable that bends most
-};
-
-struct TolerancedProof {
-    double lower = 0;
-    std::vector<Vector3> normals;  // one that stays, or those of one that turns
-};
+using TolerancedCell = BoxCell<VariableBox>;
 
 // Vertices of every piece, each once.
 std::vector<std::vector<int>> piece_vertices(const PieceTree& tree) {
@@ -65,9 +53,12 @@ Corners made_corners(const PieceElement& element, const MadeBodies& made, int bo
     return out;
 }
 
-// Evaluates and splits cells; remembers the nearest pair of elements that it has met.
+// Evaluates cells; remembers the nearest pair of elements that it has met.
 class TolerancedCells {
 public:
+    using Box = VariableBox;
+    using Encounter = TolerancedEncounter;
+
     explicit TolerancedCells(const TolerancedBodies& bodies)
         : bodies_(bodies),
           prover_(bodies.toleranced, bodies.pair, bodies.a.mesh->vertices, bodies.b.mesh->vertices),
@@ -85,60 +76,25 @@ public:
 
     TolerancedSearchResult result;
 
-    bool is_bounded() const { return prover_.is_bounded(); }
-    TolerancedCell root() const { return {prover_.box(), 0, 0, 0, 0, 0}; }
-    PlacedPair placed(const VariableBox& box) { return prover_.placed(box); }
+    BoxTrees trees() const { return {bodies_.a, bodies_.b, variables_, bodies_.slack}; }
+    VariableBox root_box() const { return prover_.box(); }
+    void descend();
     auto dependents_at(const VariableBox::Values& at) { return prover_.dependents_at(at); }
 
-    /// Sets the cell's bound and what to split it by. `wanted`: a bound of this much is enough.
-    TolerancedProof evaluate(const PlacedPair& at, TolerancedCell& cell, double wanted, double tolerance) {
-        ++result.bounds;
-        const Piece &a = bodies_.a.pieces[cell.a], &b = bodies_.b.pieces[cell.b];
-        const bool elements = a.is_element() && b.is_element();
-        if (!at.is_known) {  // what drives the loop has to be halved
-            cell.loosened = infinity;
-            cell.widest = widest_coordinate(cell.box);
-            return {-infinity, {Vector3::UnitX()}};
-        }
-        look_at_motion(at, cell, elements ? 0 : std::max(a.size, b.size));
-        TolerancedProof proof;
-        proof.normals = {first_direction(at, cell, elements)};
-        proof.lower = proven(bound(at, proof.normals[0], cell));
-        if (elements && !(proof.lower >= wanted)) improve(at, cell, wanted, tolerance, proof);
-        cell.lower = std::max(cell.lower, proof.lower);
-        return proof;
+    CellProof evaluate(TolerancedCell& cell, double wanted, double tolerance) {
+        return evaluate(prover_.placed(cell.box), cell, wanted, tolerance);
     }
-
-    /// A variable's split, 'a', 'b', or not_to_split: at the limit of rounding.
-    char choice(const TolerancedCell& cell) const {
-        const Piece &a = bodies_.a.pieces[cell.a], &b = bodies_.b.pieces[cell.b];
-        const double size_a = a.is_element() ? -1 : a.size, size_b = b.is_element() ? -1 : b.size, size = std::max(size_a, size_b);
-        if (size < 0 || cell.loosened > 0.5 * size)
-            for (int i = 0; i < variables_; ++i) {
-                const int k = (cell.widest + i) % variables_;
-                const double low = cell.box.low[static_cast<std::size_t>(k)], high = cell.box.high[static_cast<std::size_t>(k)];
-                const double middle = 0.5 * (low + high);
-                if (low < middle && middle < high) return certificate::split_along(k);
-            }
-        if (size < 0) return not_to_split;
-        return size_a >= size_b ? 'a' : 'b';
+    void evaluate_parts(const TolerancedCell& /*whole*/, char by, std::array<TolerancedCell, 2>& parts, double tolerance) {
+        PlacedPair at = prover_.placed(parts[0].box);
+        evaluate(at, parts[0], result.upper, tolerance);
+        if (by != 'a' && by != 'b') at = prover_.placed(parts[1].box);
+        evaluate(at, parts[1], result.upper, tolerance);
     }
-
-    /// Contract: a choice but not_to_split.
-    std::array<TolerancedCell, 2> split(const TolerancedCell& cell, char by) const {
-        std::array<TolerancedCell, 2> out{cell, cell};
-        const Piece &a = bodies_.a.pieces[cell.a], &b = bodies_.b.pieces[cell.b];
-        if (by == 'a') {
-            out[0].a = a.left;
-            out[1].a = a.right;
-        } else if (by == 'b') {
-            out[0].b = b.left;
-            out[1].b = b.right;
-        } else {
-            const auto k = static_cast<std::size_t>(certificate::variable_of_split(by));
-            out[0].box.high[k] = out[1].box.low[k] = 0.5 * (cell.box.low[k] + cell.box.high[k]);
-        }
-        return out;
+    // A vector that turns is bounded as if it were as long as 1; one that stays as it is.
+    static bool proves(const CellProof& found, double distance) {
+        if (found.normals.size() > 1) return found.lower >= distance;
+        const Vector3& n = found.normals.front();
+        return found.lower >= geometry::upper(distance * geometry::norm_bound({n[0], n[1], n[2]}));
     }
 
     /// The two elements there, in doubles, taken as an upper bound. @return their distance
@@ -153,11 +109,29 @@ public:
             element_pair_distance(
                 made_corners(bodies_.a.elements[element_a], made, a, bodies_.a.mesh->vertices, made.pose(a, all.coordinates)),
                 made_corners(bodies_.b.elements[element_b], made, b, bodies_.b.mesh->vertices, made.pose(b, all.coordinates)))};
-        take(encounter);
+        take_upper(result, encounter, bodies_.slack);
         return encounter.pair.distance;
     }
 
 private:
+    CellProof evaluate(const PlacedPair& at, TolerancedCell& cell, double wanted, double tolerance) {
+        ++result.bounds;
+        const Piece &a = bodies_.a.pieces[cell.a], &b = bodies_.b.pieces[cell.b];
+        const bool elements = a.is_element() && b.is_element();
+        if (!at.is_known) {  // what drives the loop has to be halved
+            cell.loosened = infinity;
+            cell.widest = widest_coordinate(cell.box);
+            return {-infinity, {Vector3::UnitX()}};
+        }
+        look_at_motion(at, cell, elements ? 0 : std::max(a.size, b.size));
+        CellProof proof;
+        proof.normals = {first_direction(at, cell, elements)};
+        proof.lower = proven(bound(at, proof.normals[0], cell));
+        if (elements && !(proof.lower >= wanted)) improve(at, cell, wanted, tolerance, proof);
+        cell.lower = std::max(cell.lower, proof.lower);
+        return proof;
+    }
+
     double bound(const PlacedPair& at, const Vector3& n, const TolerancedCell& cell) const {
         return TolerancedProver::least_along(at, n, vertices_a_[cell.a], vertices_b_[cell.b]);
     }
@@ -186,7 +160,7 @@ private:
     }
 
     // Better vectors for two elements: one that turns as their nearest points do, and the best that stays.
-    void improve(const PlacedPair& at, const TolerancedCell& cell, double wanted, double tolerance, TolerancedProof& proof) {
+    void improve(const PlacedPair& at, const TolerancedCell& cell, double wanted, double tolerance, CellProof& proof) {
         if (middle_.intersecting) {
             look_at(cell, {});
             return;
@@ -302,16 +276,6 @@ private:
         }
     }
 
-    void take(const TolerancedEncounter& encounter) {
-        const double sum = encounter.pair.distance + bodies_.slack, upper = std::isnan(sum) ? infinity : sum;
-        const bool clash = encounter.pair.intersecting && encounter.pair.depth > 8 * bodies_.slack;
-        const bool better = clash != result.intersecting ? clash : upper < result.upper;  // touching is not yet a clash
-        if (result.nearest.element_a >= 0 && !better) return;
-        result.upper = upper;
-        result.nearest = encounter;
-        result.intersecting = clash;
-    }
-
     const TolerancedBodies& bodies_;
     TolerancedProver prover_;
     int variables_;
@@ -324,7 +288,7 @@ private:
 // stay the nearest.
 class TolerancedDescent {
 public:
-    TolerancedDescent(const TolerancedBodies& bodies, TolerancedCells& cells) : bodies_(bodies), cells_(cells), box_(cells.root().box) {}
+    TolerancedDescent(const TolerancedBodies& bodies, TolerancedCells& cells) : bodies_(bodies), cells_(cells), box_(cells.root_box()) {}
 
     void run() {
         const auto coordinates = static_cast<std::size_t>(count_of(bodies_.pair.coordinates));
@@ -388,70 +352,7 @@ private:
     VariableBox box_;
 };
 
-class TolerancedSearch {
-public:
-    TolerancedSearch(const TolerancedBodies& bodies, const RangeSearchOptions& options)
-        : bodies_(bodies), options_(options), cells_(bodies) {}
-
-    TolerancedSearchResult run() {
-        TolerancedDescent(bodies_, cells_).run();
-        TolerancedCell root = cells_.root();
-        cells_.evaluate(cells_.placed(root.box), root, infinity, options_.tolerance);
-        push(root);
-        while (!is_settled()) {
-            if (cells_.result.bounds >= options_.max_bounds ||
-                (options_.should_stop && cells_.result.bounds % 256 < 2 && options_.should_stop())) {
-                cells_.result.complete = false;
-                break;
-            }
-            expand(pop());
-        }
-        cells_.result.lower = std::max(0.0, lower_bound());
-        if (cells_.result.intersecting) cells_.result.lower = 0;
-        return std::move(cells_.result);
-    }
-
-private:
-    void push(const TolerancedCell& cell) {
-        if (cell.lower >= cells_.result.upper) return;
-        queue_.push({cell.lower, made_++, static_cast<std::uint32_t>(pool_.add(cell))});
-    }
-    TolerancedCell pop() { return pool_.take(static_cast<int>(queue_.pop().entry)); }
-
-    double lower_bound() const { return std::min({aside_, queue_.least(), cells_.result.upper - 2 * bodies_.slack}); }
-
-    bool is_settled() const {
-        const double lower = lower_bound(), upper = cells_.result.upper;
-        if (cells_.result.intersecting || queue_.empty() || queue_.least() >= aside_ || lower >= options_.enough) return true;
-        if (!(upper - lower <= options_.tolerance)) return false;
-        if (upper - lower <= 4 * bodies_.slack) return true;
-        const double finest = 1e-3 * options_.tolerance;  // where the minimum lies between, or 0 does
-        if (!(lower > 0) && upper > 64 * bodies_.slack) return upper - lower <= std::min(finest, 1e-2 * upper);
-        return !(options_.minimum > lower && options_.minimum <= upper) || upper - lower <= finest;
-    }
-
-    void expand(const TolerancedCell& cell) {
-        const char by = cells_.choice(cell);
-        if (by == not_to_split) {
-            aside_ = std::min(aside_, cell.lower);
-            return;
-        }
-        std::array<TolerancedCell, 2> parts = cells_.split(cell, by);
-        PlacedPair at = cells_.placed(parts[0].box);
-        cells_.evaluate(at, parts[0], cells_.result.upper, options_.tolerance);
-        if (by != 'a' && by != 'b') at = cells_.placed(parts[1].box);
-        cells_.evaluate(at, parts[1], cells_.result.upper, options_.tolerance);
-        for (const TolerancedCell& part : parts) push(part);
-    }
-
-    const TolerancedBodies& bodies_;
-    const RangeSearchOptions& options_;
-    TolerancedCells cells_;
-    EntryPool<TolerancedCell> pool_;
-    BestFirst queue_;
-    double aside_ = infinity;  // least bound of what cannot be split
-    std::uint32_t made_ = 0;
-};
+void TolerancedCells::descend() { TolerancedDescent(bodies_, *this).run(); }
 
 }  // namespace
 
@@ -488,35 +389,12 @@ AllValues all_values(const certificate::Toleranced& toleranced, const certificat
     return out;
 }
 
-TolerancedSearchResult search_toleranced(const TolerancedBodies& bodies, const RangeSearchOptions& options) {
-    return TolerancedSearch(bodies, options).run();
+TolerancedSearchResult search_toleranced(const TolerancedBodies& bodies, const BoxSearchOptions& options) {
+    return BoxSearch(TolerancedCells(bodies), options).run();
 }
 
-certificate::BoxProof prove_toleranced(const TolerancedBodies& bodies, double distance, const RangeSearchOptions& options) {
-    TolerancedCells cells(bodies);
-    certificate::BoxProof proof;
-    std::vector<TolerancedCell> pending{cells.root()};
-    while (!pending.empty()) {
-        TolerancedCell cell = pending.back();
-        pending.pop_back();
-        const TolerancedProof found = cells.evaluate(cells.placed(cell.box), cell, distance, options.tolerance);
-        const bool turns = found.normals.size() > 1;
-        const Vector3& n = found.normals.front();
-        const double length = turns ? 1 : geometry::norm_bound({n[0], n[1], n[2]});
-        if (found.lower >= (turns ? distance : geometry::upper(distance * length))) {
-            proof.splits += turns ? certificate::turning_leaf : certificate::still_leaf;
-            proof.normals.insert(proof.normals.end(), found.normals.begin(), found.normals.end());
-            continue;
-        }
-        const char by = cells.choice(cell);
-        const bool stopped = options.should_stop && cells.result.bounds % 256 == 0 && options.should_stop();
-        if (by == not_to_split || cells.result.bounds > 2 * options.max_bounds || stopped) return {};
-        proof.splits += by;
-        const std::array<TolerancedCell, 2> parts = cells.split(cell, by);
-        pending.push_back(parts[1]);
-        pending.push_back(parts[0]);
-    }
-    return proof;
+certificate::BoxProof prove_toleranced(const TolerancedBodies& bodies, double distance, const BoxSearchOptions& options) {
+    return prove_box(TolerancedCells(bodies), distance, options);
 }
 
 }  // namespace fettle::core::clearance

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Branch and bound for the least distance of two bodies over a box of tolerances: all positions of the joints between them and all
-/// deviations that matter for them (certificate/toleranced.hpp). Cells (box, piece of a, piece of b), the most promising first.
+/// The least distance of two bodies over a box of tolerances, all positions of the joints between them and all deviations that matter for
+/// them (certificate/toleranced.hpp), by branch and bound (box_search.hpp).
 ///
 /// The bound of a cell is the prover's (certificate/toleranced_prover.hpp), rigorous with its rounding; what is chosen here is the vector.
 /// Of two elements it is one that turns as the direction between their nearest points does, or the best that stays: the direction of the
@@ -13,9 +13,8 @@
 #pragma once
 
 #include "fettle/core/certificate/toleranced_prover.hpp"
+#include "fettle/core/clearance/box_search.hpp"
 #include "fettle/core/clearance/made_bodies.hpp"
-#include "fettle/core/clearance/piece_tree.hpp"
-#include "fettle/core/clearance/range_search.hpp"
 
 namespace fettle::core::clearance {
 
@@ -46,18 +45,12 @@ struct TolerancedEncounter {
     ElementPairDistance pair;            ///< in the world, with the other variables where they start
 };
 
-struct TolerancedSearchResult {
-    double lower = 0, upper = std::numeric_limits<double>::infinity();  ///< [m]
-    TolerancedEncounter nearest;                                        ///< attains `upper`, up to slack
-    long bounds = 0;
-    bool complete = true;       ///< false: out of budget, or stopped, before the tolerance was reached
-    bool intersecting = false;  ///< `nearest` is an edge through a triangle, deeper than rounding
-};
+using TolerancedSearchResult = BoxSearchResult<TolerancedEncounter>;
 
-TolerancedSearchResult search_toleranced(const TolerancedBodies& bodies, const RangeSearchOptions& options);
+TolerancedSearchResult search_toleranced(const TolerancedBodies& bodies, const BoxSearchOptions& options);
 
 /// The tree of cells that proves `distance` > 0 (certificate.hpp), by the same bounds. Contract: at most what a search has proven.
 /// Empty where a stop or the budget ended it.
-certificate::BoxProof prove_toleranced(const TolerancedBodies& bodies, double distance, const RangeSearchOptions& options);
+certificate::BoxProof prove_toleranced(const TolerancedBodies& bodies, double distance, const BoxSearchOptions& options);
 
 }  // namespace fettle::core::clearance

@@ -68,6 +68,20 @@ Encounter refined(const PairSegment& segment, const PieceTree& a, const PieceTre
     return found.pair.distance + segment.slack <= allowed ? found : encounter;
 }
 
+Witness witness_between(const PieceTree& a, const PieceTree& b, int element_a, int element_b, const ElementPairDistance& found) {
+    Witness w;
+    w.kind_a = found.kind_a;
+    w.kind_b = found.kind_b;
+    w.edge_edge = found.kind_a == Primitive::edge && found.kind_b == Primitive::edge;
+    w.vertex_on_a = found.kind_a == Primitive::vertex;
+    w.primitive_a = primitive_index(a, element_a, found.kind_a, found.corner_a);
+    w.primitive_b = primitive_index(b, element_b, found.kind_b, found.corner_b);
+    w.point_a = found.point_a;
+    w.point_b = found.point_b;
+    w.distance = found.distance;
+    return w;
+}
+
 int primitive_index(const PieceTree& tree, int element, Primitive kind, int corner) {
     const PieceElement& e = tree.elements[element];
     if (kind == Primitive::triangle) return e.primitive;

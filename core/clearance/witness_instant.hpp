@@ -28,6 +28,9 @@ double least_distance_near(const PairSegment& segment, const Corners& corners_a,
 /// The encounter at the local minimum next to it, if that is as near up to rounding; else the encounter itself.
 Encounter refined(const PairSegment& segment, const PieceTree& a, const PieceTree& b, const Encounter& encounter);
 
+/// The features and points of two elements, as a witness of no instant.
+Witness witness_between(const PieceTree& a, const PieceTree& b, int element_a, int element_b, const ElementPairDistance& found);
+
 /// Index into the mesh of the primitive that takes part. Looks through all edges for an edge.
 int primitive_index(const PieceTree& tree, int element, Primitive kind, int corner);
 
