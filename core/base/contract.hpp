@@ -13,9 +13,7 @@ public:
     using std::logic_error::logic_error;
 };
 
-[[noreturn]] inline void fail_contract(const char* condition, const char* file, int line, const std::string& message) {
-    throw ContractError(std::string(file) + ":" + std::to_string(line) + ": broken contract `" + condition + "`: " + message);
-}
+[[noreturn]] void fail_contract(const char* condition, const char* file, int line, const std::string& message);
 
 }  // namespace fettle::core::base
 

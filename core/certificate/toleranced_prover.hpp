@@ -25,36 +25,12 @@
 #include <vector>
 
 #include "fettle/core/certificate/certified_body.hpp"
-#include "fettle/core/certificate/taylor_model.hpp"
+#include "fettle/core/certificate/loop_slices.hpp"
+#include "fettle/core/certificate/placed_pair.hpp"
 #include "fettle/core/certificate/toleranced.hpp"
-#include "fettle/core/certificate/toleranced_loop.hpp"
 #include "fettle/core/kinematics/path.hpp"
 
 namespace fettle::core::certificate {
-
-struct VariableBox {
-    using Values = std::array<double, most_variables>;
-    Values low{}, high{};  ///< those beyond the pair's own are 0
-};
-
-/// Entries are the slopes' vectors.
-Model3 turning_vector(std::span<const Vector3> vectors);
-
-/// Vertices and frames over a box of deviations.
-struct ModelledPair {
-    std::vector<Model3> a, b;               ///< vertices, in the bodies' frames
-    std::vector<ChainLink> line_a, line_b;  ///< outermost first; positions: the pair's coordinates, then its dependents
-    std::vector<ModelledLoop> loops;
-};
-
-/// Where the bodies are over a box of all variables.
-struct PlacedPair {
-    std::shared_ptr<const ModelledPair> models;
-    ModelMatrix rotation;  ///< of a's frame as b's sees it
-    Model3 place;
-    std::vector<TaylorModel> positions;  ///< of the pair's coordinates, then its dependents
-    bool is_known = true;                ///< false: a loop is not enclosed over the box
-};
 
 /// Its functions are those of PathProver (interval_motion.hpp).
 class TolerancedProver {
@@ -65,14 +41,10 @@ public:
     /// @param a, b  Vertices of the bodies' meshes, of those that have no formulas. Must stay where they are.
     TolerancedProver(const Toleranced& toleranced, const TolerancedPair& pair, const Matrix3X& a, const Matrix3X& b);
 
-    int coordinates() const { return count_; }
+    int coordinates() const { return formulas_->variables(); }
     const VariableBox& box() const { return box_; }
 
     PlacedPair placed(const VariableBox& box);
-    /// A lower bound of n.(x_a - x_b) over the box, in b's frame, for the vertices of two pieces; minus infinity where nothing is known.
-    static double least_along(const PlacedPair& at, const Vector3& n, std::span<const int> a, std::span<const int> b);
-    /// The same of a vector that turns, for each pair of vertices, over max |n|.
-    static double least_turning(const PlacedPair& at, const Model3& n, std::span<const int> a, std::span<const int> b);
 
     /// 1: the vector proves dist >= lower over the box; 0: it does not.
     long prove(const Region& a, const Region& b, const VariableBox& box, char kind, std::span<const Vector3> normals, double lower);
@@ -87,35 +59,21 @@ public:
     /// Do all of its formulas have values, and bounded derivatives, over all of the box?
     bool is_bounded() const { return whole_rest_ < HUGE_VAL; }
     /// Why a loop is not known over all of its range; empty: it is.
-    const std::string& loop_fault() const { return loop_fault_; }
+    std::string loop_fault() const { return loops_ ? loops_->fault() : std::string(); }
     /// Those of the pair, in doubles; nothing where a loop is not known.
     std::optional<std::vector<double>> dependents_at(const VariableBox::Values& at);
     /// Sum of the bodies' radii [m].
     double size() const { return size_; }
 
 private:
-    struct Program;
-    /// A loop over a part of what drives it, and all deviations.
-    struct Slice {
-        double low = 0, high = 0;
-        LoopEnclosure found;
-    };
-    std::vector<TaylorModel> variables_over(const VariableBox& box) const;
-    std::optional<LoopEnclosure> over_slice(std::size_t loop, double low, double high, const std::vector<double>& guess) const;
-    void slice_loop(std::size_t loop);
-    bool extend(std::size_t loop, bool upwards, std::vector<Slice>& slices) const;
-    bool enclose_loops(const VariableBox& box, const ModelledPair& models, std::vector<TaylorModel>& positions) const;
     std::shared_ptr<const ModelledPair> models(const VariableBox& box);
-    std::shared_ptr<const ModelledPair> evaluated(const VariableBox& box) const;
 
-    std::shared_ptr<const Program> program_;
-    int count_ = 0, first_deviation_ = 0;
+    std::shared_ptr<const PairFormulas> formulas_;
     VariableBox box_, base_;
     std::map<std::vector<double>, std::shared_ptr<const ModelledPair>> known_;
     std::shared_ptr<const ModelledPair> whole_;  // over all of the box
     double whole_rest_ = 0, size_ = 0;
-    std::vector<std::vector<Slice>> slices_;  // of each loop, upwards
-    std::string loop_fault_;
+    std::shared_ptr<const LoopSlices> loops_;  // null: not bounded
 };
 
 }  // namespace fettle::core::certificate

@@ -133,7 +133,7 @@ private:
     }
 
     double bound(const PlacedPair& at, const Vector3& n, const TolerancedCell& cell) const {
-        return TolerancedProver::least_along(at, n, vertices_a_[cell.a], vertices_b_[cell.b]);
+        return certificate::least_along(at, n, vertices_a_[cell.a], vertices_b_[cell.b]);
     }
 
     // From b to a where all variables are in the middle, in b's frame.
@@ -168,7 +168,7 @@ private:
         const Vector3 first = unit_direction(middle_.difference);
         std::vector<Vector3> turning = turning_normals(at, cell, first);
         const double lower =
-            proven(TolerancedProver::least_turning(at, certificate::turning_vector(turning), vertices_a_[cell.a], vertices_b_[cell.b]));
+            proven(certificate::least_turning(at, certificate::turning_vector(turning), vertices_a_[cell.a], vertices_b_[cell.b]));
         if (lower > proof.lower) proof = {lower, std::move(turning)};
         if (proof.lower >= wanted) return;
         DifferenceHull hull(at, vertices_a_[cell.a], vertices_b_[cell.b], variables_);

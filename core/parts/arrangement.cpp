@@ -9,6 +9,7 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/parts/curve_meetings.hpp"
+#include "fettle/core/parts/fault_words.hpp"
 #include "fettle/core/parts/sampled_loops.hpp"
 
 namespace fettle::core::parts {
@@ -62,8 +63,6 @@ Vector2 arriving(const Curve& curve) {
     const Vector2 d = value(end_of(curve)) - at(curve, 63.0 / 64).position;
     return d.norm() > 0 ? Vector2(d.normalized()) : at(curve, 0.99).velocity;
 }
-
-std::string place(const Vector2& p) { return "(" + format_length(p.x(), "mm", 4) + ", " + format_length(p.y(), "mm", 4) + ")"; }
 
 bool is_closed(const Curve& curve) { return value(start_of(curve)) == value(end_of(curve)); }
 

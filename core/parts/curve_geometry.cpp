@@ -14,7 +14,7 @@ namespace {
 
 using geometry::Range;
 
-constexpr double full_turn = 2 * std::numbers::pi, half_turn = std::numbers::pi;
+constexpr double half_turn = std::numbers::pi;
 constexpr int most_facets = 100'000;
 
 template <class... Visitors>

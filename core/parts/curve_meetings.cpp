@@ -8,8 +8,6 @@
 namespace fettle::core::parts {
 namespace {
 
-constexpr double full_turn = 2 * std::numbers::pi;
-
 // u of a point of the whole line or circle; of arcs from 0 up to less than a full turn.
 double extended_parameter(const Curve& curve, const Vector2& p) {
     if (const auto* line = std::get_if<Line>(&curve)) {

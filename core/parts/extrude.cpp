@@ -7,6 +7,7 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/parts/arrangement.hpp"
+#include "fettle/core/parts/fault_words.hpp"
 #include "fettle/core/parts/levels.hpp"
 #include "fettle/core/parts/solid_builder.hpp"
 
@@ -14,9 +15,6 @@ namespace fettle::core::parts {
 namespace {
 
 using geometry::Triangle;
-
-std::string millimetres(double metres) { return format_length(metres, "mm", 4); }
-std::string quoted_feature(const std::string& feature) { return feature.empty() ? "the profile" : "`" + feature + "`"; }
 
 // What a curve that is moved along z from one level to another sweeps out; it may draw in on the way.
 Surface wall_surface(const FacetedCurve& from, const FacetedCurve& to, const Number& z0, const Number& z1, bool straight) {
@@ -205,10 +203,10 @@ Result<Step> add_step(Drawing& drawing, const Level& below, const Level& above, 
         combinatorics.push_back(piece.from);
         combinatorics.push_back(piece.to);
     }
-    drawing.note("step from " + quoted_feature(name_below) + " to " + quoted_feature(name_above), combinatorics);
+    drawing.note("step from " + quoted_profile(name_below) + " to " + quoted_profile(name_above), combinatorics);
     if (bounding(arrangement, a, b, Combination::intersect).empty())
         return Error{ErrorCode::inconsistent, name_above,
-                     quoted_feature(name_above) + " does not stand on " + quoted_feature(name_below) + ", the layer below it"};
+                     quoted_profile(name_above) + " does not stand on " + quoted_profile(name_below) + ", the layer below it"};
     std::vector<int> vertex;
     for (const Point2& p : arrangement.nodes) vertex.push_back(builder.add_vertex({p.x, p.y, below.z}));
     if (auto errors = add_step_face(drawing, arrangement, bounding(arrangement, a, b, Combination::subtract), vertex, below.z, true,
@@ -231,7 +229,7 @@ Result<Solid> stacked(Drawing& drawing, const std::vector<Layer>& layers) {
         const double gap = layers[k + 1].from.value - layers[k].to.value;
         if (std::abs(gap) > 1e-12 * std::abs(layers[k].to.value - layers[k].from.value))
             return Error{ErrorCode::inconsistent, name_of(layers[k + 1]),
-                         quoted_feature(name_of(layers[k + 1])) +
+                         quoted_profile(name_of(layers[k + 1])) +
                              (gap > 0 ? " begins " : " begins below the end of the layer before it, by ") + millimetres(std::abs(gap)) +
                              (gap > 0 ? " above the end of the layer before it" : "") + ": layers follow each other"};
     }

@@ -4,14 +4,13 @@
 #include <algorithm>
 
 #include "fettle/core/base/units.hpp"
+#include "fettle/core/parts/fault_words.hpp"
 
 namespace fettle::core::parts {
 namespace {
 
 using geometry::Edge;
 using geometry::Triangle;
-
-std::string quoted_feature(const std::string& feature) { return feature.empty() ? "a curve without a name" : "`" + feature + "`"; }
 
 void add_point(FacetedLoop& loop, const Point2& p, int curve) {
     // Points that coincide are one: a curve may end where it begins to rounding.
@@ -58,8 +57,8 @@ Error fault_of(const FacetedProfile& profile, const std::optional<std::array<Edg
     const auto [a, p] = at_point((*crossing)[0][0]);
     const std::string b = at_point((*crossing)[1][0]).first;
     return {ErrorCode::inconsistent, a,
-            "the facets of " + quoted_feature(a) + (a == b ? " cross each other" : " cross those of " + quoted_feature(b)) + " near (" +
-                format_length(p.x(), "mm", 4) + ", " + format_length(p.y(), "mm", 4) + "): take more segments, or leave more room"};
+            "the facets of " + quoted_curve(a) + (a == b ? " cross each other" : " cross those of " + quoted_curve(b)) + " near " +
+                place(p) + ": take more segments, or leave more room"};
 }
 
 }  // namespace
@@ -78,7 +77,7 @@ Result<FacetedProfile> faceted(Drawing& drawing, const Profile& profile) {
         kinds.push_back(-count_of(loop.segments));
         for (const Segment& segment : loop.segments) kinds.push_back(static_cast<int>(segment.curve.index()));
     }
-    drawing.note("outline of " + quoted_feature(profile.loops.front().segments.front().feature), kinds);
+    drawing.note("outline of " + quoted_curve(profile.loops.front().segments.front().feature), kinds);
     for (const Loop& loop : profile.loops) {
         FacetedLoop polygon;
         for (const Segment& segment : loop.segments) {
@@ -90,7 +89,7 @@ Result<FacetedProfile> faceted(Drawing& drawing, const Profile& profile) {
             Chain chain;
             if (!std::holds_alternative<Line>(segment.curve)) {
                 const auto numbers = drawing.decision(
-                    "segments of " + quoted_feature(segment.feature), [](const std::vector<int>& n) { return n.size() == 1 && n[0] >= 1; },
+                    "segments of " + quoted_curve(segment.feature), [](const std::vector<int>& n) { return n.size() == 1 && n[0] >= 1; },
                     [&] { return std::vector<int>{facet_count(segment.curve, facets)}; });
                 chain = chain_of(segment.curve, numbers[0], facets.lean);
             }
@@ -106,7 +105,7 @@ Result<FacetedProfile> faceted(Drawing& drawing, const Profile& profile) {
             const std::string& feature = loop.segments.front().feature;
             return Error{
                 ErrorCode::out_of_range, feature,
-                quoted_feature(feature) + " becomes a polygon of " + std::to_string(polygon.points.size()) + " points: take more segments"};
+                quoted_curve(feature) + " becomes a polygon of " + std::to_string(polygon.points.size()) + " points: take more segments"};
         }
         out.loops.push_back(std::move(polygon));
     }
@@ -129,7 +128,7 @@ PlaneRegion region_of(const FacetedProfile& profile) {
 Result<std::vector<Triangle>> face_triangles(Drawing& drawing, const FacetedProfile& profile, const std::string& feature) {
     const PlaneRegion region = region_of(profile);
     std::optional<std::array<Edge, 2>> crossing;
-    const std::string what = "end face of " + quoted_feature(feature);
+    const std::string what = "end face of " + quoted_curve(feature);
     const auto numbers = drawing.decision(
         what,
         [&](const std::vector<int>& kept) {

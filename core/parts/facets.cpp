@@ -8,7 +8,6 @@
 namespace fettle::core::parts {
 namespace {
 
-constexpr double full_turn = 2 * std::numbers::pi;
 constexpr double most_segments = 100000;
 
 }  // namespace

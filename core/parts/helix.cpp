@@ -6,19 +6,15 @@
 #include <numbers>
 
 #include "fettle/core/base/units.hpp"
+#include "fettle/core/parts/fault_words.hpp"
 #include "fettle/core/parts/turned_sections.hpp"
 
 namespace fettle::core::parts {
 namespace {
 
-constexpr double full_turn = 2 * std::numbers::pi;
-
-std::string quoted_feature(const std::string& feature) { return feature.empty() ? "the profile" : "`" + feature + "`"; }
-std::string millimetres(double metres) { return format_length(metres, "mm", 4); }
-
 int steps_of(Drawing& drawing, const std::string& name, double radius, double angle) {
     return drawing.decision(
-        "steps of the turn of " + quoted_feature(name), [](const std::vector<int>& n) { return n.size() == 1 && n[0] >= 1; },
+        "steps of the turn of " + quoted_profile(name), [](const std::vector<int>& n) { return n.size() == 1 && n[0] >= 1; },
         [&] {
             // A turn's worth of segments for each turn.
             const double turns = std::abs(angle) / full_turn, a_turn = segments_of(drawing.facets, radius, full_turn);
@@ -32,7 +28,7 @@ Result<Solid> along_helix(Drawing& drawing, const Profile& profile, const Number
     const auto section = faceted(drawing, profile);
     if (!section) return section.errors();
     const std::string name = profile.loops.front().segments.front().feature;
-    if (!(turns.value > 0)) return Error{ErrorCode::out_of_range, name, quoted_feature(name) + " runs along a helix of no turns"};
+    if (!(turns.value > 0)) return Error{ErrorCode::out_of_range, name, quoted_profile(name) + " runs along a helix of no turns"};
     double nearest = INFINITY, farthest = 0, low = INFINITY, high = -INFINITY;
     for (const FacetedLoop& loop : section->loops) {
         for (const Point2& p : loop.points) {
@@ -44,10 +40,10 @@ Result<Solid> along_helix(Drawing& drawing, const Profile& profile, const Number
     }
     if (!(nearest > 0))
         return Error{ErrorCode::out_of_range, name,
-                     quoted_feature(name) + " reaches over the axis of its helix by " + millimetres(-nearest)};
+                     quoted_profile(name) + " reaches over the axis of its helix by " + millimetres(-nearest)};
     if (turns.value >= 1 && !(high - low < std::abs(pitch.value)))
         return Error{ErrorCode::out_of_range, name,
-                     quoted_feature(name) + " is " + millimetres(high - low) + " high and meets itself after a turn: the pitch is " +
+                     quoted_profile(name) + " is " + millimetres(high - low) + " high and meets itself after a turn: the pitch is " +
                          millimetres(std::abs(pitch.value))};
     const Number angle = full_turn * turns;
     return turned_section(drawing, *section, SectionPlane::through_axis, 0, angle, pitch * turns,
@@ -59,7 +55,7 @@ Result<Solid> twisted(Drawing& drawing, const Profile& profile, const Number& fr
     if (!section) return section.errors();
     const std::string name = profile.loops.front().segments.front().feature;
     if (!(to.value > from.value))
-        return Error{ErrorCode::out_of_range, name, quoted_feature(name) + " has no height: " + millimetres(to.value - from.value)};
+        return Error{ErrorCode::out_of_range, name, quoted_profile(name) + " has no height: " + millimetres(to.value - from.value)};
     double farthest = 0;
     for (const FacetedLoop& loop : section->loops)
         for (const Point2& p : loop.points) farthest = std::max(farthest, value(p).norm());

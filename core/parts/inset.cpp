@@ -7,15 +7,14 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/parts/curve_geometry.hpp"
 #include "fettle/core/parts/curve_meetings.hpp"
+#include "fettle/core/parts/fault_words.hpp"
 
 namespace fettle::core::parts {
 namespace {
 
-std::string quoted_feature(const std::string& feature) { return feature.empty() ? "a curve without a name" : "`" + feature + "`"; }
-
 Error too_large(const Segment& segment, const Number& distance) {
     return {ErrorCode::out_of_range, segment.feature,
-            "a chamfer or draft of " + format_length(distance.value, "mm", 4) + " is larger than " + quoted_feature(segment.feature) +
+            "a chamfer or draft of " + millimetres(distance.value) + " is larger than " + quoted_curve(segment.feature) +
                 ", which it is cut from: take a smaller one"};
 }
 

@@ -4,13 +4,11 @@
 #include <algorithm>
 
 #include "fettle/core/base/units.hpp"
+#include "fettle/core/parts/fault_words.hpp"
 #include "fettle/core/parts/inset.hpp"
 
 namespace fettle::core::parts {
 namespace {
-
-std::string millimetres(double metres) { return format_length(metres, "mm", 4); }
-std::string quoted_feature(const std::string& feature) { return feature.empty() ? "the profile" : "`" + feature + "`"; }
 
 bool same_shape(const FacetedProfile& a, const FacetedProfile& b) {
     if (a.loops.size() != b.loops.size()) return false;
@@ -58,18 +56,18 @@ const std::string& name_of(const Layer& layer) {
 Result<std::vector<Level>> levels_of(Drawing& drawing, const Layer& layer) {
     const double height = layer.to.value - layer.from.value;
     const std::string& name = name_of(layer);
-    if (!(height > 0)) return Error{ErrorCode::out_of_range, name, quoted_feature(name) + " has no height: " + millimetres(height)};
+    if (!(height > 0)) return Error{ErrorCode::out_of_range, name, quoted_profile(name) + " has no height: " + millimetres(height)};
     double ends = 0;
     for (const End* end : {&layer.lower, &layer.upper}) {
         if (is_none(*end)) continue;
         if (!(end->height.value > 0))
             return Error{ErrorCode::out_of_range, name,
-                         "the end of " + quoted_feature(name) + " draws in by " + millimetres(end->inset.value) + " over no height"};
+                         "the end of " + quoted_profile(name) + " draws in by " + millimetres(end->inset.value) + " over no height"};
         ends += end->height.value;
     }
     if (ends > height * (1 + 1e-12))
         return Error{ErrorCode::out_of_range, name,
-                     "the ends of " + quoted_feature(name) + " draw in over " + millimetres(ends) + ", which is more than its height, " +
+                     "the ends of " + quoted_profile(name) + " draw in over " + millimetres(ends) + ", which is more than its height, " +
                          millimetres(height)};
     auto base = faceted(drawing, layer.profile);
     if (!base) return base.errors();
@@ -79,7 +77,7 @@ Result<std::vector<Level>> levels_of(Drawing& drawing, const Layer& layer) {
         FacetedProfile out = polygons_like(*base, *profile, drawing.facets);
         if (!same_shape(*base, out))
             return Error{ErrorCode::out_of_range, name,
-                         "the end of " + quoted_feature(name) + " cannot be drawn in: an edge vanishes; take a smaller inset"};
+                         "the end of " + quoted_profile(name) + " cannot be drawn in: an edge vanishes; take a smaller inset"};
         return out;
     };
     std::vector<Level> levels;

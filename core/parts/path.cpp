@@ -9,16 +9,10 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/parts/curve_geometry.hpp"
 #include "fettle/core/parts/curve_meetings.hpp"
+#include "fettle/core/parts/fault_words.hpp"
 
 namespace fettle::core::parts {
 namespace {
-
-constexpr double full_turn = 2 * std::numbers::pi;
-constexpr double same_place = 1e-9;  // of the size of what is drawn
-
-std::string millimetres(double metres) { return format_length(metres, "mm", 4); }
-std::string place(const Vector2& p) { return "(" + millimetres(p.x()) + ", " + millimetres(p.y()) + ")"; }
-std::string quoted_feature(const std::string& feature) { return feature.empty() ? "the outline" : "`" + feature + "`"; }
 
 Error fault(const std::string& feature, const std::string& message) { return {ErrorCode::inconsistent, feature, message}; }
 
@@ -88,7 +82,7 @@ Result<CutCorner> rounded_corner(const Curve& before, const Curve& after, const 
     const auto a = beside(before, aside), b = beside(after, aside);
     const Vector2 corner = value(end_of(before));
     const auto too_large = [&] {
-        return fault(feature, "the radius " + millimetres(radius.value) + " at " + place(corner) + " of " + quoted_feature(feature) +
+        return fault(feature, "the radius " + millimetres(radius.value) + " at " + place(corner) + " of " + quoted_outline(feature) +
                                   " is too large for the curves that meet there: take a smaller one");
     };
     if (!a || !b) return too_large();
@@ -128,7 +122,7 @@ std::optional<Cut> at_length(const Curve& curve, const Number& distance, bool fr
 
 Result<CutCorner> chamfered_corner(const Curve& before, const Curve& after, const Corner& corner, const std::string& feature) {
     const auto end = at_length(before, corner.before, true), start = at_length(after, corner.after, false);
-    const std::string where = place(value(end_of(before))) + " of " + quoted_feature(feature);
+    const std::string where = place(value(end_of(before))) + " of " + quoted_outline(feature);
     if (is_general(before) || is_general(after))
         return fault(feature, "the chamfer at " + where + " meets a spline or a curve of a law: round the corner instead");
     if (!end || !start)
@@ -206,7 +200,7 @@ Path& Path::add(Curve curve) {
 
 Path& Path::line_to(const Point2& end) {
     if (value(end) == value(this->end())) {
-        faults_.push_back(fault(feature_, "a line of " + quoted_feature(feature_) + " at " + place(value(end)) + " has no length"));
+        faults_.push_back(fault(feature_, "a line of " + quoted_outline(feature_) + " at " + place(value(end)) + " has no length"));
         return *this;
     }
     return add(Line{this->end(), end});
@@ -216,7 +210,7 @@ Path& Path::arc_about(const Point2& centre, const Point2& end, bool counter_cloc
     const Point2 start = this->end();
     const double at_start = (value(start) - value(centre)).norm(), at_end = (value(end) - value(centre)).norm();
     if (!(at_start > 0) || !(std::abs(at_start - at_end) <= same_place * at_start)) {
-        faults_.push_back(fault(feature_, "an arc of " + quoted_feature(feature_) + " about " + place(value(centre)) + " begins " +
+        faults_.push_back(fault(feature_, "an arc of " + quoted_outline(feature_) + " about " + place(value(centre)) + " begins " +
                                               millimetres(at_start) + " from its centre and ends " + millimetres(at_end) +
                                               " from it: the two must be equal"));
         return *this;
@@ -228,7 +222,7 @@ Path& Path::arc_through(const Point2& middle, const Point2& end) {
     const Point2 start = this->end(), a = middle - start, b = end - start;
     const Number twice_area = cross(a, b);
     if (!(std::abs(twice_area.value) > 1e-9 * value(a).norm() * value(b).norm())) {
-        faults_.push_back(fault(feature_, "an arc of " + quoted_feature(feature_) + " through " + place(value(start)) + ", " +
+        faults_.push_back(fault(feature_, "an arc of " + quoted_outline(feature_) + " through " + place(value(start)) + ", " +
                                               place(value(middle)) + " and " + place(value(end)) + ": the points lie on one line"));
         return *this;
     }
@@ -240,13 +234,13 @@ Path& Path::arc_through(const Point2& middle, const Point2& end) {
 
 Path& Path::tangent_arc_to(const Point2& end) {
     if (segments_.empty()) {
-        faults_.push_back(fault(feature_, "a tangent arc of " + quoted_feature(feature_) + " has no curve before it"));
+        faults_.push_back(fault(feature_, "a tangent arc of " + quoted_outline(feature_) + " has no curve before it"));
         return *this;
     }
     const Point2 tangent = tangent_at(segments_.back().curve, 1.0), start = this->end(), chord = end - start;
     const Number side = cross(tangent, chord);
     if (!(std::abs(side.value) > 1e-9 * value(tangent).norm() * value(chord).norm())) {
-        faults_.push_back(fault(feature_, "a tangent arc of " + quoted_feature(feature_) + " to " + place(value(end)) +
+        faults_.push_back(fault(feature_, "a tangent arc of " + quoted_outline(feature_) + " to " + place(value(end)) +
                                               ": it would go straight on or straight back; draw a line"));
         return *this;
     }
@@ -260,7 +254,7 @@ Path& Path::bulge_to(const Point2& end, const Number& bulge) {
     const Point2 start = this->end(), chord = end - start;
     if (!(std::abs(bulge.value) > 1e-12) || value(chord).norm() == 0) {
         faults_.push_back(
-            fault(feature_, "an arc of " + quoted_feature(feature_) + " to " + place(value(end)) + " has no bulge: draw a line"));
+            fault(feature_, "an arc of " + quoted_outline(feature_) + " to " + place(value(end)) + " has no bulge: draw a line"));
         return *this;
     }
     // tan(sweep / 2) = 2 b / (1 - b^2): the centre is at |chord| (1 - b^2) / (4 b) to the left of the chord's middle.
@@ -271,7 +265,7 @@ Path& Path::bulge_to(const Point2& end, const Number& bulge) {
 Path& Path::arc_by(const Point2& centre, const Number& angle) {
     const Point2 start = this->end();
     if (!(std::abs(angle.value) > 0) || std::abs(angle.value) >= full_turn || value(start) == value(centre)) {
-        faults_.push_back(fault(feature_, "an arc of " + quoted_feature(feature_) + " about " + place(value(centre)) +
+        faults_.push_back(fault(feature_, "an arc of " + quoted_outline(feature_) + " about " + place(value(centre)) +
                                               " turns by some angle between 0 and 360 deg, at a distance from its centre"));
         return *this;
     }
@@ -283,7 +277,7 @@ Path& Path::spline_through(const std::vector<Point2>& points) {
     all.insert(all.end(), points.begin(), points.end());
     for (std::size_t k = 0; k + 1 < all.size(); ++k) {
         if (value(all[k]) != value(all[k + 1])) continue;
-        faults_.push_back(fault(feature_, "a spline of " + quoted_feature(feature_) + " goes twice through " + place(value(all[k]))));
+        faults_.push_back(fault(feature_, "a spline of " + quoted_outline(feature_) + " goes twice through " + place(value(all[k]))));
         return *this;
     }
     if (all.size() > 1)
@@ -317,7 +311,7 @@ Path& Path::round(const Number& radius, std::string feature) {
     if (radius.value > 0) corners_.push_back({segments_.size(), {radius, 0, 0, std::move(feature)}});
     if (radius.value < 0)
         faults_.push_back(
-            fault(feature_, "the radius " + millimetres(radius.value) + " of a corner of " + quoted_feature(feature_) + " is negative"));
+            fault(feature_, "the radius " + millimetres(radius.value) + " of a corner of " + quoted_outline(feature_) + " is negative"));
     return *this;
 }
 
@@ -327,7 +321,7 @@ Path& Path::chamfer(const Number& before, const Number& after, std::string featu
     if (before.value > 0 && after.value > 0)
         corners_.push_back({segments_.size(), {0, before, after, std::move(feature)}});
     else if (before.value < 0 || after.value < 0 || before.value != after.value)
-        faults_.push_back(fault(feature_, "a chamfer of " + quoted_feature(feature_) + " is " + millimetres(before.value) + " by " +
+        faults_.push_back(fault(feature_, "a chamfer of " + quoted_outline(feature_) + " is " + millimetres(before.value) + " by " +
                                               millimetres(after.value) + ": both must be greater than 0, or both 0"));
     return *this;
 }
@@ -335,14 +329,14 @@ Path& Path::chamfer(const Number& before, const Number& after, std::string featu
 Result<Loop> Path::closed() const {
     if (!faults_.empty()) return faults_;
     Loop loop{segments_};
-    if (loop.segments.empty()) return fault(feature_, quoted_feature(feature_) + " has no curves");
+    if (loop.segments.empty()) return fault(feature_, quoted_outline(feature_) + " has no curves");
     const double gap = (value(end()) - value(start_)).norm();
     if (gap > same_place * size_of(segments_))
         loop.segments.push_back({Line{end(), start_}, feature_, facets_});
     else if (gap > 0)
         replace_end(loop.segments.back().curve, start_of(loop.segments.front().curve));
     if (loop.segments.size() == 1 && std::holds_alternative<Line>(loop.segments.front().curve))
-        return fault(feature_, quoted_feature(feature_) + " is a single line");
+        return fault(feature_, quoted_outline(feature_) + " is a single line");
     return with_corners(std::move(loop), corners_);
 }
 

@@ -3,12 +3,17 @@
 /// Lengths in metres, angles in radians, counter-clockwise.
 #pragma once
 
+#include <numbers>
+
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/expression/tape.hpp"
 
 namespace fettle::core::parts {
 
 using expression::Number;
+
+inline constexpr double full_turn = 2 * std::numbers::pi;  ///< [rad]
+inline constexpr double same_place = 1e-9;                 ///< points of a drawing are one where they are nearer, of its size
 
 /// In the plane of a profile.
 struct Point2 {

@@ -9,16 +9,11 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/parts/curve_geometry.hpp"
 #include "fettle/core/parts/curve_meetings.hpp"
+#include "fettle/core/parts/fault_words.hpp"
 #include "fettle/core/parts/sampled_loops.hpp"
 
 namespace fettle::core::parts {
 namespace {
-
-constexpr double same_place = 1e-9;  // of the profile's size
-
-std::string millimetres(double metres) { return format_length(metres, "mm", 3); }
-std::string place(const Vector2& p) { return "(" + millimetres(p.x()) + ", " + millimetres(p.y()) + ")"; }
-std::string quoted_feature(const std::string& feature) { return feature.empty() ? "a curve without a name" : "`" + feature + "`"; }
 
 std::string degrees(double radians) {
     const double turn = radians < 0 ? radians + 2 * std::numbers::pi : radians;
@@ -164,7 +159,7 @@ Result<Profile> with_holes(const Profile& profile, const std::vector<Loop>& hole
         const std::string& name = name_of(hole);
         for (const Error& error : faults_of(Profile{{reversed(inwards)}})) errors.push_back(error);
         if (profile.loops.empty()) {
-            errors.push_back({ErrorCode::inconsistent, name, "hole " + quoted_feature(name) + " is in nothing: the profile is empty"});
+            errors.push_back({ErrorCode::inconsistent, name, "hole " + quoted_curve(name) + " is in nothing: the profile is empty"});
             continue;
         }
         const SampledLoops around(out.loops);
@@ -172,7 +167,7 @@ Result<Profile> with_holes(const Profile& profile, const std::vector<Loop>& hole
             const Wall wall = thinnest_wall(out, inwards);
             const Vector2 from_middle = wall.place - middle_of(inwards);
             errors.push_back({ErrorCode::inconsistent, name,
-                              "hole " + quoted_feature(name) + " breaks through " + quoted_feature(wall.feature) + ": wall " +
+                              "hole " + quoted_curve(name) + " breaks through " + quoted_curve(wall.feature) + ": wall " +
                                   millimetres(wall.thickness) + " at " + degrees(std::atan2(from_middle.y(), from_middle.x()))});
             continue;
         }
@@ -181,7 +176,7 @@ Result<Profile> with_holes(const Profile& profile, const std::vector<Loop>& hole
         for (const Loop& other : out.loops)
             if (of_hole.contains(at(other.segments.front().curve, 0.3).position))
                 errors.push_back(
-                    {ErrorCode::inconsistent, name, "hole " + quoted_feature(name) + " lies around " + quoted_feature(name_of(other))});
+                    {ErrorCode::inconsistent, name, "hole " + quoted_curve(name) + " lies around " + quoted_curve(name_of(other))});
         out.loops.push_back(inwards);
     }
     if (!errors.empty()) return errors;
@@ -217,7 +212,7 @@ Errors faults_of(const Profile& profile) {
             const Box2 box = box_of(segment.curve);
             if (!box.low.allFinite() || !box.high.allFinite()) {
                 faults.push_back(
-                    {ErrorCode::not_finite, segment.feature, quoted_feature(segment.feature) + " has points that are not finite"});
+                    {ErrorCode::not_finite, segment.feature, quoted_curve(segment.feature) + " has points that are not finite"});
                 return faults;
             }
             pieces.push_back({frozen(segment.curve), &segment.feature, l, s, loop.segments.size(), box});
@@ -229,7 +224,7 @@ Errors faults_of(const Profile& profile) {
     for (std::size_t l = 0; l < profile.loops.size(); ++l)
         if (!profile.loops[l].segments.empty() && !(std::abs(sampled_area(profile.loops[l])) > tolerance * size))
             faults.push_back(
-                {ErrorCode::inconsistent, name_of(profile.loops[l]), quoted_feature(name_of(profile.loops[l])) + " encloses no area"});
+                {ErrorCode::inconsistent, name_of(profile.loops[l]), quoted_curve(name_of(profile.loops[l])) + " encloses no area"});
     if (!faults.empty()) return faults;
 
     std::vector<std::size_t> order(pieces.size());
@@ -250,9 +245,9 @@ Errors faults_of(const Profile& profile) {
                 if (b_follows && is_joint(a.curve, b.curve, p)) continue;
                 if (a_follows && is_joint(b.curve, a.curve, p)) continue;
                 const std::string names = *a.feature == *b.feature
-                                              ? (same_loop ? quoted_feature(*a.feature) + " crosses or touches itself"
-                                                           : "two curves of " + quoted_feature(*a.feature) + " cross or touch")
-                                              : quoted_feature(*a.feature) + " and " + quoted_feature(*b.feature) + " cross or touch";
+                                              ? (same_loop ? quoted_curve(*a.feature) + " crosses or touches itself"
+                                                           : "two curves of " + quoted_curve(*a.feature) + " cross or touch")
+                                              : quoted_curve(*a.feature) + " and " + quoted_curve(*b.feature) + " cross or touch";
                 faults.push_back({ErrorCode::inconsistent, *a.feature, names + " at " + place(p)});
                 break;
             }

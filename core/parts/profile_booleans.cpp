@@ -11,8 +11,6 @@
 namespace fettle::core::parts {
 namespace {
 
-constexpr double same_place = 1e-9;  // of the size of what is cut
-
 double joint_size(const Profile& a, const Profile& b) {
     const SampledLoops sa(a.loops), sb(b.loops);
     return (sa.high().cwiseMax(sb.high()) - sa.low().cwiseMin(sb.low())).norm();

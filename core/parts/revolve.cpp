@@ -8,15 +8,11 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/parts/faceted_profile.hpp"
+#include "fettle/core/parts/fault_words.hpp"
 #include "fettle/core/parts/solid_builder.hpp"
 
 namespace fettle::core::parts {
 namespace {
-
-constexpr double full_turn = 2 * std::numbers::pi;
-
-std::string millimetres(double metres) { return format_length(metres, "mm", 4); }
-std::string quoted_feature(const std::string& feature) { return feature.empty() ? "the profile" : "`" + feature + "`"; }
 
 // What a curve sweeps out about z.
 Surface revolved_surface(const FacetedCurve& faceted, double size) {
@@ -119,7 +115,7 @@ Result<Solid> turned_solid(Drawing& drawing, const Profile& profile, const Numbe
             double deepest = 0;
             for (const Point2& p : loop.points) deepest = std::max(deepest, -p.x.value);
             const std::string& feature = polygons->curves[loop.curve[k]].feature;
-            return Error{ErrorCode::out_of_range, feature, quoted_feature(feature) + " crosses the axis by " + millimetres(deepest)};
+            return Error{ErrorCode::out_of_range, feature, quoted_profile(feature) + " crosses the axis by " + millimetres(deepest)};
         }
     }
     const std::string name = profile.loops.front().segments.front().feature;
@@ -128,9 +124,9 @@ Result<Solid> turned_solid(Drawing& drawing, const Profile& profile, const Numbe
     if (!(sweep > 0) || (angle != nullptr && !(sweep < full_turn)))
         return Error{
             ErrorCode::out_of_range, name,
-            quoted_feature(name) + " is turned by " + format_quantity(sweep, "deg", 4) + ": it must be more than 0 and less than 360 deg"};
+            quoted_profile(name) + " is turned by " + format_quantity(sweep, "deg", 4) + ": it must be more than 0 and less than 360 deg"};
     const auto numbers = drawing.decision(
-        "segments of the turn of " + quoted_feature(name), [](const std::vector<int>& n) { return n.size() == 1 && n[0] >= 1; },
+        "segments of the turn of " + quoted_profile(name), [](const std::vector<int>& n) { return n.size() == 1 && n[0] >= 1; },
         [&] { return std::vector<int>{segments_of(drawing.facets, farthest, sweep)}; });
     const Turn turn = angle != nullptr ? part_turn(*from, *angle, numbers[0], lean) : whole_turn(numbers[0]);
     const std::size_t stations = turn.stations.size();

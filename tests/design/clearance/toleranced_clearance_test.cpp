@@ -14,6 +14,7 @@
 #include "fettle/design/clearance/report_json.hpp"
 #include "fettle/design/problem/toleranced_bodies.hpp"
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
+#include "fettle/tests/design/two_bars.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
 namespace fettle::design::clearance::toleranced_clearance_test {
@@ -25,6 +26,7 @@ using core::clearance::ClearanceOptions;
 using core::clearance::PairClearance;
 using core::clearance::PairStatus;
 using tests::clearance::Real;
+using tests::design_support::two_bars;
 
 // A pin in the middle of a bore.
 const char* const pin_in_bore = R"json({"fettle_scene": 1, "units": "mm", "timestep": 0.01,
@@ -41,20 +43,6 @@ const char* const pin_design = R"json({"fettle_design": 1, "scene": "x.scene.jso
     "objective": [{"type": "mass", "bodies": ["pin"]}],
     "tolerances": {"pin": "+-0.02 mm", "bore": {"lower": -0.01, "upper": 0.03}, "x": "+-0.03 mm", "y": "+-0.03 mm"}})json";
 
-// Two bars in a plane, the second one's corner towards a post: nearest where they are stretched and the corner is on the axis.
-const char* const two_bars = R"json({"fettle_scene": 1, "units": "mm", "timestep": 0.01,
-    "variables": {"upper_length": "60 mm", "fore_length": "40 mm", "width": "12 mm", "post_at": "115 mm"},
-    "bodies": [
-      {"name": "upper", "density": 1240, "shape": {"part": "box", "dimensions": {"size_x": "= upper_length", "size_y": "= width", "size_z": 4}},
-       "position": ["= upper_length / 2", 0, -6]},
-      {"name": "fore", "density": 1240, "shape": {"part": "box", "dimensions": {"size_x": "= fore_length", "size_y": "= width", "size_z": 4}},
-       "position": ["= upper_length + fore_length / 2", 0, 0]},
-      {"name": "post", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 20, "size_y": 40, "size_z": 20}},
-       "position": ["= post_at + 10 mm", 0, 0]}],
-    "joints": [
-      {"name": "shoulder", "type": "revolute", "b": "upper", "point": [0, 0, 0], "axis": [0, 0, 1], "limits": [-60, 40]},
-      {"name": "elbow", "type": "revolute", "a": "upper", "b": "fore", "point": ["= upper_length", 0, 0], "axis": [0, 0, 1],
-       "limits": [-50, 30]}]})json";
 const char* const bars_design = R"json({"fettle_design": 1, "scene": "x.scene.json", "units": "mm", "simulation": {"steps": 1},
     "parameters": [{"name": "upper_length", "lower": 50, "upper": 70}],
     "objective": [{"type": "mass", "bodies": ["fore"]}],

@@ -9,25 +9,12 @@
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/optimise_design.hpp"
+#include "fettle/tests/design/two_bars.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
 
 namespace fettle::design::problem::proven_clearance_test {
 
 namespace {
-
-const char* const scene = R"json({"fettle_scene": 1, "units": "mm", "timestep": 0.01,
-    "variables": {"upper_length": "60 mm", "fore_length": "40 mm", "width": "12 mm", "post_at": "115 mm"},
-    "bodies": [
-      {"name": "upper", "density": 1240, "shape": {"part": "box", "dimensions": {"size_x": "= upper_length", "size_y": "= width", "size_z": 4}},
-       "position": ["= upper_length / 2", 0, -6]},
-      {"name": "fore", "density": 1240, "shape": {"part": "box", "dimensions": {"size_x": "= fore_length", "size_y": "= width", "size_z": 4}},
-       "position": ["= upper_length + fore_length / 2", 0, 0]},
-      {"name": "post", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 20, "size_y": 40, "size_z": 20}},
-       "position": ["= post_at + 10 mm", 0, 0]}],
-    "joints": [
-      {"name": "shoulder", "type": "revolute", "b": "upper", "point": [0, 0, 0], "axis": [0, 0, 1], "limits": [-60, 40]},
-      {"name": "elbow", "type": "revolute", "a": "upper", "b": "fore", "point": ["= upper_length", 0, 0], "axis": [0, 0, 1],
-       "limits": [-50, 30]}]})json";
 
 std::string design(const std::string& constraint, const std::string& more = "") {
     return R"json({"fettle_design": 1, "scene": "x.scene.json", "units": "mm", "simulation": {"steps": 1},
@@ -40,7 +27,7 @@ std::string design(const std::string& constraint, const std::string& more = "") 
 const char* const proven = R"({"type": "clearance", "a": "fore", "b": "post", "minimum": 2, "ranges": true, "over_tolerances": "proven"})";
 
 struct Folder : tests::support::TemporaryFolder {
-    Folder() { write("x.scene.json", scene); }
+    Folder() { write("x.scene.json", tests::design_support::two_bars); }
     Result<reading::DesignFile> read(const std::string& text) const { return reading::parse_design(text, file("x.design.json"), {}); }
     std::string fault(const std::string& text) const {
         const auto read_one = read(text);

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+/// How the faults of a drawing name features, lengths and places.
+#pragma once
+
+#include <string>
+
+#include "fettle/core/base/types.hpp"
+#include "fettle/core/base/units.hpp"
+
+namespace fettle::core::parts {
+
+inline std::string quoted_or(const std::string& feature, const char* otherwise) {
+    return feature.empty() ? otherwise : "`" + feature + "`";
+}
+inline std::string quoted_curve(const std::string& feature) { return quoted_or(feature, "a curve without a name"); }
+inline std::string quoted_outline(const std::string& feature) { return quoted_or(feature, "the outline"); }
+inline std::string quoted_profile(const std::string& feature) { return quoted_or(feature, "the profile"); }
+
+inline std::string millimetres(double metres) { return base::format_length(metres, "mm", 4); }
+inline std::string place(const Vector2& p) { return "(" + millimetres(p.x()) + ", " + millimetres(p.y()) + ")"; }
+
+}  // namespace fettle::core::parts
