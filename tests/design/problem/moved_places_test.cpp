@@ -442,11 +442,13 @@ TEST_CASE("whatever a parameter moves, its derivative goes back through the star
     CHECK(rows.size() == static_cast<std::size_t>(core::scene::row_count()));
 }
 
-TEST_CASE("random formulas at random places: the derivative goes back through both", "[joints]") {
-    std::mt19937_64 random(34);
+namespace {
+
+void check_random_formulas(unsigned seed, int runs) {
+    std::mt19937_64 random(seed);
     int checked = 0;
     const std::vector<Design> bases = designs();
-    for (int run = 0; run < 300; ++run) {
+    for (int run = 0; run < runs; ++run) {
         Design design = bases[static_cast<std::size_t>(run) % bases.size()];
         follow_random_formulas(design, random);
         const VectorX start = values_of(design.parameters);
@@ -478,7 +480,15 @@ TEST_CASE("random formulas at random places: the derivative goes back through bo
             checked += gradient[k] != 0;
         }
     }
-    CHECK(checked > 600);
+    CHECK(checked > 2 * runs);
+}
+
+}  // namespace
+
+TEST_CASE("random formulas at random places: the derivative goes back through both", "[joints]") { check_random_formulas(34, 80); }
+
+TEST_CASE("many random formulas at random places: the derivative goes back through both", "[joints][slow]") {
+    check_random_formulas(35, 2000);
 }
 
 TEST_CASE("a trial whose spring, damper or coefficient of friction is 0 is refused by name: it would have no derivative", "[joints]") {
