@@ -2,6 +2,7 @@
 // Published stacks as designs, and a part whose mass and fall have closed forms.
 #include "fettle/design/studies/tolerance_study.hpp"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -29,6 +30,26 @@ const char* const clutch = R"json({"fettle_design": 1, "scene": "block.scene.jso
     "objective": [{"type": "expression", "expression": "acos((a + c) / (e - c)) / 1 deg"}],
     "constraints": [{"type": "relation", "name": "angle", "expression": "acos((a + c) / (e - c))", "lower": "6.5 deg", "upper": "7.5 deg"}],
     "tolerances": {"a": "+-0.05 mm", "c": "+-0.01", "e": {"lower": "-0.0125 mm", "upper": 0.0125}}})json";
+
+// The same as parts that touch: a roller on the hub's flat rolls by its weight into the wedge between hub and ring.
+std::string clutch_scene(double dhat) {
+    return R"json({"fettle_scene": 1, "units": "mm", "gravity": [9.81, 0, 0], "timestep": 0.05, "integrator": "quasi_static",
+    "variables": {"a": "27.645 mm", "c": "11.43 mm", "e": "50.8 mm"}, "contact": {"kappa": 1e7, "dhat": )json" +
+           std::to_string(dhat) + R"json(},
+    "bodies": [
+      {"name": "hub", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 60, "size_y": 20, "size_z": 30}},
+       "position": [5, "= a - 10 mm", 0]},
+      {"name": "ring", "type": "static", "shape": {"part": "washer", "counts": {"segments": 720}, "dimensions": {"shaft_radius": "= e - 1 mm",
+       "clearance": 1, "wall": 5, "thickness": 20}}, "position": [0, 0, -10]},
+      {"name": "roller", "density": 7850, "shape": {"part": "cylinder", "counts": {"segments": 512}, "dimensions": {"radius": "= c",
+       "length": 14}}, "position": ["= sqrt((e - c) ^ 2 - (a + c) ^ 2) - 1.3 mm", "= a + c + 0.03 mm", 0]}]})json";
+}
+const char* const touching_clutch = R"json({"fettle_design": 1, "scene": "clutch.scene.json", "units": "mm", "simulation": {"steps": 20},
+    "parameters": [{"name": "a", "lower": 27, "upper": 28}],
+    "quantities": {"x": {"type": "marker_position", "body": "roller", "point": [0, 0, 0], "axis": [1, 0, 0], "over": "end"},
+                   "y": {"type": "marker_position", "body": "roller", "point": [0, 0, 0], "axis": [0, 1, 0], "over": "end"}},
+    "objective": [{"type": "expression", "expression": "atan2(x, y) / 1 deg"}],
+    "tolerances": {"a": "+-0.05 mm", "c": "+-0.01 mm", "e": "+-0.0125 mm"}})json";
 
 // Nominal 10 mm long, 10 mm on a side, 1 g/cm^3.
 const char* const made_block = R"json({"fettle_design": 1, "scene": "block.scene.json", "units": "mm",
@@ -97,6 +118,34 @@ TEST_CASE("tolerances of the one-way clutch: the published sensitivities, shares
     CHECK(skewness(*angle.second_order) == Approx(-0.0943927).epsilon(0.02));
     CHECK(kurtosis(*angle.second_order) == Approx(3.0238976).epsilon(1e-3));
     REQUIRE(angle.second_order_yield);
+}
+
+// Contact keeps parts apart by some of dhat, and round surfaces of n facets by r (pi / n)^2 / 2 each: this gap g is as much added to a + c
+// - e, by which the angle is smaller and its derivatives, in 1 / sin, are larger. What is left of them with the angle as it is stays below
+// 0.2%.
+TEST_CASE("tolerances of the one-way clutch as parts that touch: sensitivities within 1%, and what dhat does to them") {
+    const double h = 27.645 + 11.43, r = 50.8 - 11.43, ring_cover = 50.8 * std::pow(std::numbers::pi / 720, 2) / 2,
+                 roller_cover = 11.43 * std::pow(std::numbers::pi / 512, 2) / 2;  // [mm]
+    for (const double dhat : {0.0005, 0.02}) {
+        Folder folder;
+        folder.write("clutch.scene.json", clutch_scene(dhat));
+        ToleranceOptions options;
+        options.second_order = false;
+        const ToleranceReport report = study(folder.read(touching_clutch), options);
+        REQUIRE(report.responses.size() == 1);
+        const Response& angle = report.responses[0];
+        CAPTURE(dhat, angle.nominal);
+        const double sine = std::sin(std::acos(h / r)), sine_there = std::sin(angle.nominal * degree);
+        const std::array<double, 3> exact{-1 / (r * sine), -(1 / r + h / (r * r)) / sine, h / (r * r * sine)};  // [rad/mm]
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double found = angle.gradient[static_cast<Eigen::Index>(k)] * 1e-3 * degree;
+            CAPTURE(k, found / exact[k]);
+            if (dhat < 0.001) CHECK(found == Approx(exact[k]).epsilon(0.01));
+            CHECK(found == Approx(exact[k] * sine / sine_there).epsilon(0.002));
+        }
+        CHECK(angle.nominal * degree <= std::acos((h + roller_cover) / (r - roller_cover - ring_cover)));
+        CHECK(angle.nominal * degree >= std::acos((h + roller_cover + dhat) / (r - roller_cover - ring_cover - dhat)));
+    }
 }
 
 // (a - c - 16.2)^2 is 0.000225 mm^2 as drawn, 0 within the limits, and 0.005625 mm^2 at a corner.
