@@ -74,16 +74,6 @@ private:
     std::vector<int> place_;
 };
 
-template <class Visit>
-void for_points(const TolerancedBody& body, const Visit& visit) {
-    for (const TolerancedScrew& screw : body.screws) {
-        visit(screw.point);
-        visit(screw.axis);
-    }
-    for (const NodePoint& row : body.rotation) visit(row);
-    visit(body.place);
-}
-
 }  // namespace
 
 double largest_rest(const ModelledPair& models) {
@@ -121,7 +111,7 @@ PairFormulas::PairFormulas(const Toleranced& toleranced, const TolerancedPair& p
     Extract extract(toleranced, pair);
     const auto want = [&](const NodePoint& point) { extract.want(point); };
     const auto want_line = [&](const std::vector<int>& line) {
-        for (const int body : line) for_points(toleranced.bodies[body], want);
+        for (const int body : line) for_frame_nodes(toleranced.bodies[body], want);
     };
     want_line(pair.a);
     want_line(pair.b);

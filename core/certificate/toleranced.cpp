@@ -29,16 +29,6 @@ bool is_usable_node(const Node& node, std::size_t place, std::size_t inputs) {
     return true;
 }
 
-template <class Visit>
-void for_frame_nodes(const TolerancedBody& body, const Visit& visit) {
-    for (const TolerancedScrew& screw : body.screws) {
-        visit(screw.point);
-        visit(screw.axis);
-    }
-    for (const NodePoint& row : body.rotation) visit(row);
-    visit(body.place);
-}
-
 bool ends_in_the_world(const Toleranced& toleranced, std::size_t body) {
     int at = static_cast<int>(body);
     for (std::size_t k = 0; k <= toleranced.bodies.size(); ++k) {

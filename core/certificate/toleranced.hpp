@@ -50,6 +50,17 @@ struct TolerancedBody {
     bool operator==(const TolerancedBody&) const = default;
 };
 
+/// What its frame depends on: all but the vertices.
+template <class Visit>
+void for_frame_nodes(const TolerancedBody& body, const Visit& visit) {
+    for (const TolerancedScrew& screw : body.screws) {
+        visit(screw.point);
+        visit(screw.axis);
+    }
+    for (const NodePoint& row : body.rotation) visit(row);
+    visit(body.place);
+}
+
 /// A joint that closes a loop of the tree: points and axes of its two ends, in the frames of their bodies (-1: the world's), which meet.
 struct TolerancedClosure {
     int a = -1, b = -1;

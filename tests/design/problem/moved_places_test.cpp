@@ -471,7 +471,7 @@ void check_random_formulas(unsigned seed, int runs) {
                 return sum;
             };
             double error = INFINITY;
-            for (const double s : {1e-2, 1e-3, 1e-4}) {
+            for (const double s : {3e-2, 1e-2, 1e-3, 1e-4}) {  // the assembly is good to about 1e-9: short steps may drown in it
                 const double wide = (functional(s) - functional(-s)) / (2 * s), fine = (functional(s / 2) - functional(-s / 2)) / s;
                 error = std::min(error, std::abs((4 * fine - wide) / 3 - gradient[k]));
             }
@@ -488,7 +488,7 @@ void check_random_formulas(unsigned seed, int runs) {
 TEST_CASE("random formulas at random places: the derivative goes back through both", "[joints]") { check_random_formulas(34, 80); }
 
 TEST_CASE("many random formulas at random places: the derivative goes back through both", "[joints][slow]") {
-    check_random_formulas(34, 300);
+    check_random_formulas(35, 2000);
 }
 
 TEST_CASE("a trial whose spring, damper or coefficient of friction is 0 is refused by name: it would have no derivative", "[joints]") {
