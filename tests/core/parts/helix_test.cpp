@@ -19,7 +19,7 @@ TEST_CASE("a spring has the volume of Pappus, either hand") {
         return along_helix(drawing, *filled(circle({d[0], 0}, d[1], "wire")), d[2], d[3]);
     };
     for (const double pitch : {3e-3, -3e-3}) {
-        const DrawnPart part = checked(spring, {8e-3, 1e-3, pitch, 3.3}, {0, 96, Lean::through});
+        const DrawnPart part = checked(spring, {8e-3, 1e-3, pitch, 3.3}, {0, 64, Lean::through});
         CHECK(volume(part) == Approx(pi * 1e-6 * 2 * pi * 8e-3 * 3.3).epsilon(5e-3));
         CHECK(part.deviation.out > 0);
     }
@@ -34,7 +34,7 @@ TEST_CASE("a twisted bar keeps its section and its volume") {
         return twisted(drawing, *profile, d[3], d[3] + d[2], d[4]);
     };
     for (const double twist : {1.3, -1.3}) {
-        const DrawnPart part = checked(bar, {8e-3, 4e-3, 20e-3, 1e-3, twist}, {0, 240, Lean::through});
+        const DrawnPart part = checked(bar, {8e-3, 4e-3, 20e-3, 1e-3, twist}, {0, 96, Lean::through});
         CHECK(volume(part) == Approx((32 - pi * 1.44) * 20e-9).epsilon(2e-3));
     }
 }

@@ -99,7 +99,7 @@ TEST_CASE("Starters: each is written, valid, and simulates; none is overwritten"
     CHECK(run("new hindge", true).says("hinge"));
 }
 
-TEST_CASE("Starters: hinge, ratchet, latch and lock box are tuned to what they ask for") {
+TEST_CASE("Starters: hinge, ratchet, latch and lock box are tuned to what they ask for", "[slow]") {
     const TemporaryFolder folder;
     for (const std::string name : {"hinge", "ratchet", "latch", "lock_box"}) {
         CAPTURE(name);

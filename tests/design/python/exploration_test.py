@@ -442,25 +442,25 @@ def test_samples_of_tolerances_on_a_dask_cluster(tmp_path, cluster):
     assert shared.answer == fettle.tolerance(path, samples=9).answer
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        "null",
-        "[]",
-        "7",
-        '{"status": "feasible"}',
-        '{"key": "k", "status": 5}',
-        '{"key": "k", "status": "feasible", "objective": "low"}',
-        '{"key": "k", "status": "feasible", "objective": NaN, "violation": 0}',
-        '{"key": "k", "status": "feasible", "objective": 1, "violation": 0, "parameters": []}',
-        '{"key": "k", "status": "feasible", "parameters": {"height": "x"}}',
-        '{"key": "k", "status": "feasible", "objective": 1e999, "violation": 0}',
-        '{"key": "k", "status": "feasible", "objective": 1%s, "violation": 0}' % ("0" * 400),
-        '{"key": "k", "status": "feasible", "note": %s1%s}' % ("[" * 200, "]" * 200),
-        "[" * 100000,
-        "{broken",
-    ],
-)
+DAMAGED_LINES = {
+    "null": "null",
+    "list": "[]",
+    "number": "7",
+    "no key": '{"status": "feasible"}',
+    "status of a number": '{"key": "k", "status": 5}',
+    "objective of a text": '{"key": "k", "status": "feasible", "objective": "low"}',
+    "NaN": '{"key": "k", "status": "feasible", "objective": NaN, "violation": 0}',
+    "parameters of a list": '{"key": "k", "status": "feasible", "objective": 1, "violation": 0, "parameters": []}',
+    "parameter of a text": '{"key": "k", "status": "feasible", "parameters": {"height": "x"}}',
+    "too large": '{"key": "k", "status": "feasible", "objective": 1e999, "violation": 0}',
+    "many digits": '{"key": "k", "status": "feasible", "objective": 1%s, "violation": 0}' % ("0" * 400),
+    "200 deep": '{"key": "k", "status": "feasible", "note": %s1%s}' % ("[" * 200, "]" * 200),
+    "100,000 deep": "[" * 100000,
+    "cut off": "{broken",
+}
+
+
+@pytest.mark.parametrize("line", DAMAGED_LINES.values(), ids=DAMAGED_LINES.keys())
 def test_a_damaged_line_is_bad_input_and_no_verdict(tmp_path, capsys, line):
     design, out = short_file(tmp_path), tmp_path / "damaged.jsonl"
     fettle.explore(short_design(), str(out), samples=1, workers=1)
