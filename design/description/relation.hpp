@@ -8,6 +8,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "fettle/core/base/types.hpp"
@@ -29,7 +30,7 @@ struct Relation {
     /// The value at all of the design's parameters, in their order, SI. A pure function, exact up to rounding; called from several threads
     /// at once. Where it is not defined: a value or a gradient that is not finite; such a design is not evaluated.
     std::function<RelationValue(const VectorX&)> at = {};
-    std::string formula = {};  ///< what `at` was read from (core/expression/parse_formula.hpp); empty: made by a program
+    std::optional<core::expression::Formula> formula = {};  ///< what `at` evaluates, of parameters; none: made by a program
 };
 
 /// A formula of parameters as what a relation asks for. Contract: its inputs are among these parameters.

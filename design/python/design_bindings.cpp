@@ -78,8 +78,13 @@ Relation relation_from_python(py::handle source) {
     relation.name = member_of<std::string>(source, "Relation", "name");
     relation.bounds = member_of<description::Bounds>(source, "Relation", "bounds");
     relation.tolerance = member_of<double>(source, "Relation", "tolerance");
-    relation.formula = member_of<std::string>(source, "Relation", "formula");
-    const py::object at = source.attr("at");
+    const py::object formula = source.attr("formula"), at = source.attr("at");
+    if (py::isinstance<py::str>(formula)) {
+        const auto text = formula.cast<std::string>();  // of parameters that only the design knows: with_formulas
+        if (!text.empty()) relation.formula = core::expression::Formula{{}, {}, {}, text};
+    } else {
+        relation.formula = formula_from(formula);
+    }
     if (!at.is_none()) relation.at = relation_function(at);
     return relation;
 }
@@ -89,8 +94,11 @@ py::object relation_to_python(const Relation& relation) {
     members["name"] = relation.name;
     members["bounds"] = relation.bounds;
     members["tolerance"] = relation.tolerance;
-    members["formula"] = relation.formula;
-    if (relation.formula.empty() && relation.at) {
+    if (relation.formula && relation.formula->nodes.empty()) {
+        members["formula"] = relation.formula->text;
+    } else if (relation.formula) {
+        members["formula"] = *relation.formula;
+    } else if (relation.at) {
         members["at"] = py::cpp_function([at = relation.at](const VectorX& p) {
             const RelationValue found = at(p);
             return py::make_tuple(found.value, found.gradient);
@@ -101,9 +109,18 @@ py::object relation_to_python(const Relation& relation) {
 
 description::Design with_formulas(description::Design design) {
     for (Relation& relation : design.relations) {
-        if (relation.at || relation.formula.empty()) continue;
-        const auto formula = value_or_raise(core::expression::parse_formula(relation.formula, description::scope_of(design.parameters),
-                                                                            "relation `" + relation.name + "`"));
+        if (relation.at || !relation.formula) continue;
+        core::expression::Formula& formula = *relation.formula;
+        const core::expression::Scope scope = description::scope_of(design.parameters);
+        const std::string where = "relation `" + relation.name + "`";
+        if (formula.nodes.empty()) formula = value_or_raise(core::expression::parse_formula(formula.text, scope, where));
+        for (const std::string& input : formula.inputs) {
+            if (scope.find(input) != nullptr) continue;
+            std::vector<std::string_view> known;
+            for (const description::Parameter& parameter : design.parameters) known.push_back(parameter.name);
+            raise_if_any(Errors{{ErrorCode::out_of_range, where,
+                                 "there is no parameter `" + input + "`; " + core::files::did_you_mean(input, known, '`')}});
+        }
         relation.at = description::function_of(formula, design.parameters);
     }
     return design;

@@ -98,7 +98,8 @@ public:
         read_objective(root["objective"], context);
         const double margin = read_optimiser(root["optimiser"]);
         design_.constraints = read_constraints(root["constraints"], context, margin);
-        design_.relations = read_relations(root["constraints"], context, design_.parameters, design_.constraints);
+        design_.relations =
+            read_relations(root["constraints"], context, design_.parameters, design_.constraints, !options_.as_made && !entries.empty());
         take_over_tolerances(root, entries.empty());
         check_use(root["parameters"]);
         file_.quantities = named;
@@ -375,6 +376,8 @@ private:
         };
         for (const description::ObjectiveTerm& term : design_.objective) look_at(*term.quantity);
         for (const description::Constraint& constraint : design_.constraints) look_at(*constraint.quantity);
+        for (const description::Relation& relation : design_.relations)
+            used.insert(relation.formula->inputs.begin(), relation.formula->inputs.end());
         const std::vector<JsonNode> nodes = parameters.elements();
         for (std::size_t k = 0; k < design_.parameters.size(); ++k) {
             const std::string& name = design_.parameters[k].name;

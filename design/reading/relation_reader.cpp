@@ -32,10 +32,13 @@ bool may_be_plain(const DimensionPowers& dimension) {
 
 class RelationReader {
 public:
-    RelationReader(const ReadContext& context, const std::vector<description::Parameter>& parameters, std::set<std::string> names)
-        : context_(context), parameters_(parameters), scope_(description::scope_of(parameters)), names_(std::move(names)) {
-        scope_.plain_unit = core::expression::plain_units(context.length_unit, grams);
-    }
+    RelationReader(const ReadContext& context, const std::vector<description::Parameter>& parameters, bool has_tolerances,
+                   std::set<std::string> names)
+        : context_(context),
+          parameters_(parameters),
+          scope_(context.formulas.scope()),
+          has_tolerances_(has_tolerances),
+          names_(std::move(names)) {}
 
     std::optional<Relation> read(const JsonNode& node) {
         node.allow_keys({"type", "name", "expression", "lower", "upper", "margin", "tolerance", "over_tolerances"});
@@ -49,7 +52,7 @@ public:
         Relation relation;
         relation.name = unique_name(name.value_or(*text), names_);
         relation.at = description::function_of(*formula, parameters_);
-        relation.formula = *text;
+        relation.formula = formula;
         const RelationValue start = value_at_start(node["expression"], relation);
         read_bounds(node, formula->dimension, change(start), relation);
         relation.bounds.over_tolerances = read_over_tolerances_of(node, relation.bounds, context_.over_tolerances);
@@ -63,8 +66,13 @@ private:
             for (const Error& error : formula.errors()) node.fail(error.code, error.message);
             return std::nullopt;
         }
-        if (formula->is_constant()) node.fail(ErrorCode::inconsistent, "this names no parameter, so no design could change it");
-        return std::move(formula).value();
+        if (!formula->is_constant()) return std::move(formula).value();
+        if (has_tolerances_ && !core::expression::names_in(text).empty())
+            node.warn("no parameter changes this: `fettle tolerance` alone looks at it");
+        else
+            node.fail(ErrorCode::inconsistent,
+                      "this names no parameter, and no variable that follows from one, so no design could change it");
+        return std::nullopt;
     }
 
     RelationValue value_at_start(const JsonNode& node, const Relation& relation) const {
@@ -138,6 +146,7 @@ private:
     const ReadContext& context_;
     const std::vector<description::Parameter>& parameters_;
     core::expression::Scope scope_;
+    bool has_tolerances_;
     std::set<std::string> names_;
 };
 
@@ -147,12 +156,12 @@ bool is_relation(const JsonNode& node) { return node.is_object() && node["type"]
 
 std::vector<Relation> read_relations(const JsonNode& node, const ReadContext& context,
                                      const std::vector<description::Parameter>& parameters,
-                                     const std::vector<description::Constraint>& others) {
+                                     const std::vector<description::Constraint>& others, bool has_tolerances) {
     std::vector<Relation> result;
     if (!node.is_array()) return result;  // told where the other constraints are read
     std::set<std::string> names;
     for (const description::Constraint& other : others) names.insert(other.name);
-    RelationReader reader(context, parameters, std::move(names));
+    RelationReader reader(context, parameters, has_tolerances, std::move(names));
     for (const JsonNode& entry : node.elements()) {
         if (!is_relation(entry)) continue;
         if (auto relation = reader.read(entry)) result.push_back(std::move(*relation));

@@ -3,7 +3,7 @@
 ///     { "type": "relation", "expression": "crank_radius / rod_length", "upper": 0.35 }
 ///     { "type": "relation", "name": "Grashof", "expression": "2 * (min(a, b, c, d) + max(a, b, c, d)) - (a + b + c + d)", "upper": 0 }
 ///     { "type": "relation", "expression": "left + right", "lower": "30mm", "upper": "30mm" }
-/// The formula: core/expression/parse_formula.hpp.
+/// The formula, of parameters and variables: core/expression/parse_formula.hpp.
 #pragma once
 
 #include <vector>
@@ -28,9 +28,10 @@ bool is_relation(const core::files::JsonNode& node);
 /// @param node        The list of all constraints; those of other types are passed over.
 /// @param parameters  As read.
 /// @param others      The other constraints: relations get names that none of them has.
+/// @param has_tolerances  What no parameter changes may be for `fettle tolerance`: it is left out with a warning, and is no fault.
 /// Faults go to the node's document.
 std::vector<description::Relation> read_relations(const core::files::JsonNode& node, const ReadContext& context,
                                                   const std::vector<description::Parameter>& parameters,
-                                                  const std::vector<description::Constraint>& others);
+                                                  const std::vector<description::Constraint>& others, bool has_tolerances);
 
 }  // namespace fettle::design::reading

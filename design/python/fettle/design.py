@@ -539,12 +539,14 @@ class Constraint(Record):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Relation(Record):
-    """Between parameters alone: a formula ("crank / rod"), or at(p) -> (value, gradient), p all parameters in SI."""
+    """Between parameters alone: a formula ("crank / rod", or of parameters: crank / rod), or at(p) -> (value, gradient), p all in SI.
+
+    Numbers without a unit in a text are SI here; of a file that was read, formula is a Formula, in which they count as the file says."""
 
     name: str = ""
     bounds: Bounds = dataclasses.field(default_factory=Bounds)
     tolerance: float = 0.0
-    formula: str = ""
+    formula: "Union[_fettle.Formula, Parameter, str]" = ""
     at: Optional[Callable[[Array], Tuple[float, ArrayLike]]] = None
 
 

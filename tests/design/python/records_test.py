@@ -98,6 +98,27 @@ def test_designs_pickle():
         assert pickle.loads(pickle.dumps(file)) == file
 
 
+def test_a_files_relation_is_the_same_here(tmp_path):
+    """Its plain numbers are millimetres, as in the file, and its variables are the scene's."""
+    scene = json.loads((EXAMPLES / "slider_crank" / "slider_crank.scene.json").read_text())
+    text = json.loads((EXAMPLES / "slider_crank" / "slider_crank.design.json").read_text())
+    text["scene"] = str(EXAMPLES / "slider_crank" / "slider_crank.scene.json")
+    assert text["units"] == "mm" and "variables" in scene
+    text["constraints"].append({"type": "relation", "name": "arm", "expression": "crank_radius - 10", "lower": "1 mm"})
+    path = tmp_path / "relation.design.json"
+    path.write_text(json.dumps(text))
+    design = fettle.read_design(str(path)).design
+    assert design.relations[-1].formula.text == "crank_radius - 10"
+    assert pickle.loads(pickle.dumps(design)) == design
+    assert fettle_for_tests.design_round_trip(design) == design
+    of_file = fettle.DesignProblem.of_file(str(path))
+    rows = fettle.DesignProblem(design).relations(of_file.values)
+    assert rows.values[-1] == of_file.relations(of_file.values).values[-1] == pytest.approx(3.5e-3)
+    design.relations[-1].formula = fettle.Formula("crank_rodius", {"crank_rodius": "m"})
+    with pytest.raises(fettle.Error, match="there is no parameter `crank_rodius`; did you mean `crank_radius`"):
+        fettle.DesignProblem(design)
+
+
 LOADS = [
     ({"type": "joint_force", "joint": "rocker pin", "over": "largest"}, fettle.JointLoad("force", "rocker pin", "largest")),
     ({"type": "joint_torque", "joint": "rocker pin", "axis": [1, 0, 0]}, fettle.JointLoad("torque", "rocker pin", axis=np.array([1, 0, 0]))),

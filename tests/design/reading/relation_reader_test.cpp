@@ -71,6 +71,48 @@ TEST_CASE("a ratio, a sum and a formula are read as relations between the parame
     CHECK(spin.tolerance == Approx(std::acos(-1.0) / 1800));
 }
 
+TEST_CASE("a relation names variables: of the scene, of the design, those that follow from a parameter and those that have a tolerance") {
+    const std::string scene = replaced(small_scene, "\"bodies\": [", R"("variables": {"gap": "2 mm", "twice": "2 * gap"}, "bodies": [)");
+    const auto read_it = [&](const std::string& relation, const std::string& also, bool as_made) {
+        std::string text =
+            replaced(with(relation), "\"objective\"", "\"variables\": {\"half\": \"height / 2\"}, " + also + " \"objective\"");
+        text = replaced(text, "\"parameters\": [", R"("parameters": [{"name": "shim", "value": 1, "lower": 0.5, "upper": 3},)");
+        const DesignFolder folder(text, scene);
+        DesignReadOptions options;
+        options.as_made = as_made;
+        return read_design(folder.design(), options);
+    };
+    const std::string both = R"({"type": "relation", "expression": "half + twice - shim", "upper": "9 mm"})";
+    const std::string alone = R"({"type": "relation", "name": "play", "expression": "twice - gap", "lower": "1 mm"},)" + both;
+    const std::string tolerances = R"("tolerances": {"gap": "+-0.1 mm"},)";
+
+    const Result<DesignFile> plain = read_it(both, "", false);
+    for (const Error& error : plain.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
+    REQUIRE(plain);
+    const VectorX p = values_of(plain->design.parameters);
+    CHECK(plain->design.relations[0].at(p).value == Approx(8e-3));
+    CHECK(plain->design.relations[0].at(p).gradient[0] == -1);
+    CHECK(plain->design.relations[0].at(p).gradient[1] == 0.5);
+
+    const Result<DesignFile> refused = read_it(alone, "", false);
+    REQUIRE(refused.errors().size() == 1);
+    CHECK(refused.errors()[0].message == "this names no parameter, and no variable that follows from one, so no design could change it");
+
+    const Result<DesignFile> drawn = read_it(alone, tolerances, false);
+    REQUIRE(drawn);
+    CHECK(drawn->design.relations.size() == 1);
+    REQUIRE_FALSE(drawn->warnings.empty());
+    CHECK(drawn->warnings[0].find("`fettle tolerance` alone looks at it") != std::string::npos);
+
+    const Result<DesignFile> made = read_it(alone, tolerances, true);
+    REQUIRE(made);
+    REQUIRE(made->design.relations.size() == 2);
+    const Relation& play = made->design.relations[0];
+    const VectorX d = values_of(made->design.parameters);
+    CHECK(play.at(d).value == Approx(2e-3));
+    CHECK(play.at(d).gradient[d.size() - 1] == 1);
+}
+
 TEST_CASE("relations and other constraints share their names") {
     const Result<DesignFile> file = read(
         R"({ "type": "relation", "expression": "height / width", "upper": 0.6 },

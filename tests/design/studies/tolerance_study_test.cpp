@@ -92,6 +92,28 @@ std::vector<MadeSample> failures(const ToleranceReport& report) {
 
 }  // namespace
 
+TEST_CASE("tolerances of a stack: the motor of the Dimensioning and Tolerancing Handbook, chapter 9, of variables and a parameter") {
+    Folder folder;
+    folder.write("block.scene.json", R"({"fettle_scene": 1, "units": "in",
+        "variables": {"A": "0.375 in", "B": "0.032 in", "C": "0.060 in", "D": "0.438 in", "E": "0.120 in", "F": "1.5 in", "G": "0.12 in", "H": "0.438 in", "I": "0.45 in", "J": "3.019 in"},
+        "bodies": [{"name": "any", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 1, "size_y": 1, "size_z": 1}}}]})");
+    const ToleranceReport report = study(folder.read(R"({"fettle_design": 1, "scene": "block.scene.json", "units": "in",
+        "simulation": {"steps": 1}, "parameters": [{"name": "K", "value": 0.3, "lower": 0.2, "upper": 0.4}],
+        "constraints": [{"type": "relation", "name": "gap", "expression": "-A + B + C + D + E + F + G + H + I - J + K", "lower": 0}],
+        "tolerances": {"A": {"lower": -0.031, "upper": 0}, "B": "+-0.002", "C": "+-0.003", "D": {"lower": -0.015, "upper": 0},
+            "E": "+-0.005", "F": {"lower": -0.004, "upper": 0.01}, "G": "+-0.005", "H": {"lower": -0.015, "upper": 0}, "I": "+-0.007",
+            "J": {"lower": 0, "upper": 0.012}, "K": "+-0.03"}})"));
+    REQUIRE(report.responses.size() == 2);  // the objective is one, of nothing
+    constexpr double inch = 0.0254;
+    const Response& gap = report.responses[1];
+    CHECK(gap.nominal == Approx(0.064 * inch).epsilon(1e-12));
+    CHECK(gap.linear.mean == Approx(0.0615 * inch).epsilon(1e-12));
+    CHECK(3 * gap.linear.standard_deviation == Approx(0.03808 * inch).margin(5e-6 * inch));
+    CHECK(gap.worst.least == Approx(-0.034 * inch).epsilon(1e-10));
+    CHECK(gap.worst.most == Approx(0.157 * inch).epsilon(1e-10));
+    REQUIRE(gap.contributions.size() == 11);
+}
+
 TEST_CASE("tolerances of the one-way clutch: the published sensitivities, shares, moments and worst case") {
     Folder folder;
     ToleranceOptions options;
