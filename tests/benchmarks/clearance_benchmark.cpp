@@ -15,6 +15,7 @@
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/pair_search.hpp"
 #include "fettle/core/model/body_geometry.hpp"
+#include "fettle/core/model/choose_kappa.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/tests/core/clearance/clearance_oracle.hpp"
 #include "fettle/tests/support/test_models.hpp"
