@@ -80,7 +80,7 @@ Relation relation_from_python(py::handle source) {
     relation.tolerance = member_of<double>(source, "Relation", "tolerance");
     const py::object formula = source.attr("formula"), at = source.attr("at");
     if (py::isinstance<py::str>(formula)) {
-        const auto text = formula.cast<std::string>();  // of parameters that only the design knows: with_formulas
+        const auto text = formula.cast<std::string>();  // no nodes yet: only the design knows its parameters (with_formulas)
         if (!text.empty()) relation.formula = core::expression::Formula{{}, {}, {}, text};
     } else {
         relation.formula = formula_from(formula);

@@ -5,6 +5,7 @@
 
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
+#include "fettle/design/reading/same_formula.hpp"
 
 namespace fettle::design::reading {
 
@@ -26,13 +27,57 @@ DesignFormulas::~DesignFormulas() { document_.read_formulas({}); }
 
 // The scene's variables as they are; those that follow from a variable which a parameter replaces follow from the parameter.
 void DesignFormulas::take_scene_variables() {
+    for (Scope::Name& name : meanings(scene_variables_))
+        if (scope_.find(name.name) == nullptr) scope_.names.push_back(std::move(name));
+}
+
+std::vector<Scope::Name> DesignFormulas::meanings(const std::vector<core::scene::Variable>& variables) const {
     std::map<std::string, Formula> plain;
-    for (const core::scene::Variable& variable : scene_variables_)
+    for (const core::scene::Variable& variable : variables)
         if (variable.formula.is_constant() && values_.count(variable.name) == 0)
             plain[variable.name] = core::expression::constant_formula(variable.value, variable.formula.dimension);
-    for (const core::scene::Variable& variable : scene_variables_)
-        if (scope_.find(variable.name) == nullptr)
-            scope_.names.push_back({variable.name, variable.formula.dimension, core::expression::substituted(variable.formula, plain)});
+    std::vector<Scope::Name> out;
+    for (const core::scene::Variable& variable : variables)
+        out.push_back({variable.name, variable.formula.dimension, core::expression::substituted(variable.formula, plain)});
+    return out;
+}
+
+// Variables of the scope that mean something else here.
+std::vector<std::string> DesignFormulas::changed(const std::vector<core::scene::Variable>& variables) const {
+    std::vector<std::string> out;
+    for (const Scope::Name& name : meanings(variables)) {
+        const Scope::Name* known = scope_.find(name.name);
+        const bool is_own = std::any_of(own_.begin(), own_.end(), [&](const auto& own) { return own.name == name.name; });
+        if (known == nullptr || !known->meaning || is_own) continue;
+        if (!is_same_formula(*known->meaning, *name.meaning)) out.push_back(name.name);
+    }
+    return out;
+}
+
+void DesignFormulas::take_scene(const std::vector<core::scene::Variable>& variables, const JsonNode& node) {
+    const std::vector<std::string> set = changed(variables);
+    for (const auto& [name, value] : node.members()) {
+        if (name.starts_with('#') || !value.is_string()) continue;
+        for (const std::string& used : core::expression::names_in(*value.string()))
+            if (std::find(set.begin(), set.end(), used) != set.end())
+                value.fail(ErrorCode::inconsistent,
+                           "`" + used + "` is a variable that this design's `set` changes: name here what it is set to");
+    }
+    scene_variables_ = variables;
+    std::erase_if(scope_.names, [&](const Scope::Name& name) { return std::find(set.begin(), set.end(), name.name) != set.end(); });
+    take_scene_variables();
+}
+
+void DesignFormulas::take_scenario(const std::string& scenario, const std::vector<core::scene::Variable>& variables) {
+    for (const std::string& name : changed(variables)) refused_.emplace(name, scenario);
+}
+
+std::string DesignFormulas::refusal(std::string_view text) const {
+    if (refused_.empty()) return "";
+    for (const std::string& name : core::expression::names_in(text))
+        if (const auto found = refused_.find(name); found != refused_.end())
+            return "`" + name + "` is another number in the scenario `" + found->second + "`: write the number that is meant";
+    return "";
 }
 
 void DesignFormulas::add_parameters(const JsonNode& node, const std::vector<description::Parameter>& parameters) {
@@ -109,7 +154,7 @@ std::optional<Formula> DesignFormulas::followed(const JsonNode& node, Dimension 
     if (!node.is_string()) return std::nullopt;
     const std::string text = *node.string();
     const std::size_t begin = text.find_first_not_of(" \t\n");
-    if (begin == std::string::npos || text[begin] != '=') return std::nullopt;
+    if (begin == std::string::npos || text[begin] != '=' || !refusal(text).empty()) return std::nullopt;
     Result<Formula> formula = core::expression::parse_formula_of(text, scope_, dimension, si_per_number);
     if (!formula || formula->is_constant()) return std::nullopt;
     return std::move(formula).value();
@@ -129,6 +174,10 @@ std::optional<double> DesignFormulas::read(const JsonNode& node, const std::stri
     const Result<Formula> formula = core::expression::parse_formula_of(text, scope_, dimension, si_per_number);
     for (const Error& error : formula.errors()) node.fail(error.code, error.message);
     if (!formula) return std::nullopt;
+    if (const std::string refused = refusal(text); !refused.empty()) {
+        node.fail(ErrorCode::inconsistent, refused);
+        return std::nullopt;
+    }
     if (std::all_of(formula->inputs.begin(), formula->inputs.end(), [&](const std::string& name) { return is_deviation(name); }))
         return value_of(*formula);
     node.fail(ErrorCode::unsupported, "this number cannot follow from parameters; use only variables that no parameter changes");

@@ -40,6 +40,14 @@ public:
     /// The design's own `variables`.
     void read_variables(const core::files::JsonNode& node);
 
+    /// From here on the scene's variables are those of the scene as the design's `set` leaves it. Faults, at this node (the design's
+    /// `variables`): one of them names a variable that `set` changes, whose value it cannot have had.
+    void take_scene(const std::vector<core::scene::Variable>& variables, const core::files::JsonNode& node);
+    /// From here on a variable that this scenario has otherwise is refused: a formula would not be one number.
+    void take_scenario(const std::string& scenario, const std::vector<core::scene::Variable>& variables);
+    /// Why a formula may not name what this one names; empty: it may.
+    std::string refusal(std::string_view text) const;
+
     /// What formulas may name by now, and in which units numbers without one count.
     const core::expression::Scope& scope() const { return scope_; }
     /// The formula of a number that parameters change: a text that begins with "=". Nothing where it is another number, or is wrong; then
@@ -53,6 +61,8 @@ public:
 
 private:
     std::optional<double> read(const core::files::JsonNode& node, const std::string& text, Dimension dimension, double si_per_number);
+    std::vector<core::expression::Scope::Name> meanings(const std::vector<core::scene::Variable>& variables) const;
+    std::vector<std::string> changed(const std::vector<core::scene::Variable>& variables) const;
     void take_scene_variables();
     void take_deviation(const std::string& name, const core::expression::DimensionPowers& dimension, const std::string& variable);
     bool is_deviation(const std::string& name) const;
@@ -64,6 +74,7 @@ private:
     std::vector<core::scene::FormulaInput> own_;
     std::map<std::string, std::string> own_deviations_;  // to come, by variable
     std::vector<core::scene::FormulaInput> deviations_;  // that are in the scope
+    std::map<std::string, std::string> refused_;         // variables, and the scenario that has them otherwise
 };
 
 }  // namespace fettle::design::reading

@@ -82,9 +82,11 @@ public:
         design_.scene = setting->scene;
         design_.shapes = setting->shapes;
         design_.numbers = setting->numbers;
+        formulas.take_scene(design_.scene.variables, root["variables"]);
         read_simulation(root["simulation"]);
         const ScenarioNames scenarios = read_scenarios(root["scenarios"], root["set"], formulas);
         if (!scene_errors_.empty()) return all_errors();  // of one of them
+        for (const description::Scenario& scenario : design_.scenarios) formulas.take_scenario(scenario.name, scenario.scene.variables);
         take_tolerances(entries, units, formulas, as_made);
         std::vector<quantities::NamedQuantity> named;
         const ReadContext context{design_.scene,

@@ -371,6 +371,10 @@ std::shared_ptr<const Quantity> read_expression(const JsonNode& node, const Read
     Result<core::expression::Formula> formula = core::expression::parse_formula(*text, scope);
     for (const Error& error : formula.errors()) node["expression"].fail(error.code, error.message);
     if (!formula) return nullptr;
+    if (const std::string refused = context.formulas.refusal(*text); !refused.empty()) {
+        node["expression"].fail(ErrorCode::inconsistent, refused);
+        return nullptr;
+    }
     if (formula->is_constant()) {
         node["expression"].fail(ErrorCode::inconsistent, "this names no quantity and no parameter, so no design could change it");
         return nullptr;

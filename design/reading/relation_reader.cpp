@@ -66,6 +66,10 @@ private:
             for (const Error& error : formula.errors()) node.fail(error.code, error.message);
             return std::nullopt;
         }
+        if (const std::string refused = context_.formulas.refusal(text); !refused.empty()) {
+            node.fail(ErrorCode::inconsistent, refused);
+            return std::nullopt;
+        }
         if (!formula->is_constant()) return std::move(formula).value();
         if (has_tolerances_ && !core::expression::names_in(text).empty())
             node.warn("no parameter changes this: `fettle tolerance` alone looks at it");

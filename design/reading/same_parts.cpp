@@ -5,25 +5,18 @@
 #include <initializer_list>
 #include <vector>
 
+#include "fettle/design/reading/same_formula.hpp"
+
 namespace fettle::design::reading {
 
 namespace {
 
-using core::expression::Formula;
-using core::expression::Node;
 using core::scene::Body;
 using core::scene::BoundNumber;
 using core::scene::Scene;
 
 bool begins_with_one_of(std::string_view text, std::initializer_list<std::string_view> beginnings) {
     return std::any_of(beginnings.begin(), beginnings.end(), [&](std::string_view each) { return text.starts_with(each); });
-}
-
-bool is_same_formula(const Formula& a, const Formula& b) {
-    const auto is_same_node = [](const Node& x, const Node& y) {
-        return x.operation == y.operation && x.operands == y.operands && x.number == y.number;
-    };
-    return a.inputs == b.inputs && std::equal(a.nodes.begin(), a.nodes.end(), b.nodes.begin(), b.nodes.end(), is_same_node);
 }
 
 std::vector<const BoundNumber*> numbers_of_parts(const Scene& scene) {

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tuple>
 
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/tests/design/small_design.hpp"
@@ -111,6 +112,40 @@ TEST_CASE("a relation names variables: of the scene, of the design, those that f
     const VectorX d = values_of(made->design.parameters);
     CHECK(play.at(d).value == Approx(2e-3));
     CHECK(play.at(d).gradient[d.size() - 1] == 1);
+}
+
+TEST_CASE("a variable is what `set` makes of it, in relations, expressions and bounds; what a scenario has otherwise is refused") {
+    const std::string scene = replaced(small_scene, "\"bodies\": [", R"("variables": {"gap": "2 mm", "twice": "2 * gap"}, "bodies": [)");
+    const std::string relation = R"({"type": "relation", "expression": "height + twice", "upper": "99 mm"})";
+    const std::string stroke = R"({"type": "stroke", "body": "cube", "axis": [0, 0, 1], "upper": "= twice + width"})";
+    const auto read_it = [&](const std::string& constraint, const std::string& set, const std::string& also) {
+        std::string text = replaced(with(constraint), "\"set\": {", "\"set\": {" + set);
+        const DesignFolder folder(replaced(text, "\"objective\"", also + "\"objective\""), scene);
+        return read_design(folder.design());
+    };
+    const auto fault = [&](const auto&... words) {
+        const Result<DesignFile> file = read_it(words...);
+        REQUIRE(file.errors().size() == 1);
+        return file.errors()[0].where.substr(file.errors()[0].where.find('#')) + ": " + file.errors()[0].message;
+    };
+    for (const auto& [set, value, slope] :
+         {std::tuple{"", 14e-3, 1.0}, {R"("/variables/gap": "5 mm",)", 20e-3, 1.0}, {R"("/variables/gap": "= 3 * height",)", 70e-3, 7.0}}) {
+        CAPTURE(set);
+        const Result<DesignFile> file = read_it(relation, set, "");
+        REQUIRE(file);
+        const VectorX p = values_of(file->design.parameters);
+        CHECK(file->design.relations[0].at(p).value == Approx(value));
+        CHECK(file->design.relations[0].at(p).gradient[0] == Approx(slope));
+        REQUIRE(read_it(stroke, set, ""));
+    }
+    CHECK(fault(relation, R"("/variables/gap": "5 mm",)", R"("variables": {"half": "gap / 2"},)") ==
+          "#/variables/half: `gap` is a variable that this design's `set` changes: name here what it is set to");
+    const std::string scenarios = R"("scenarios": [{"name": "tight"}, {"name": "loose", "set": {"/variables/gap": "3 mm"}}],)";
+    const std::string words = "`twice` is another number in the scenario `loose`: write the number that is meant";
+    CHECK(fault(relation, "", scenarios) == "#/constraints/0/expression: " + words);
+    CHECK(fault(stroke, "", scenarios) == "#/constraints/0/upper: " + words);
+    CHECK(fault(R"({"type": "expression", "expression": "twice / height", "upper": 1})", "", scenarios) ==
+          "#/constraints/0/expression: " + words);
 }
 
 TEST_CASE("relations and other constraints share their names") {

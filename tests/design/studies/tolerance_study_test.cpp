@@ -95,7 +95,8 @@ std::vector<MadeSample> failures(const ToleranceReport& report) {
 TEST_CASE("tolerances of a stack: the motor of the Dimensioning and Tolerancing Handbook, chapter 9, of variables and a parameter") {
     Folder folder;
     folder.write("block.scene.json", R"({"fettle_scene": 1, "units": "in",
-        "variables": {"A": "0.375 in", "B": "0.032 in", "C": "0.060 in", "D": "0.438 in", "E": "0.120 in", "F": "1.5 in", "G": "0.12 in", "H": "0.438 in", "I": "0.45 in", "J": "3.019 in"},
+        "variables": {"A": "0.375 in", "B": "0.032 in", "C": "0.060 in", "D": "0.438 in", "E": "0.120 in",
+                      "F": "1.5 in", "G": "0.12 in", "H": "0.438 in", "I": "0.45 in", "J": "3.019 in"},
         "bodies": [{"name": "any", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 1, "size_y": 1, "size_z": 1}}}]})");
     const ToleranceReport report = study(folder.read(R"({"fettle_design": 1, "scene": "block.scene.json", "units": "in",
         "simulation": {"steps": 1}, "parameters": [{"name": "K", "value": 0.3, "lower": 0.2, "upper": 0.4}],
