@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: MIT
-/// `fettle explore`: hands over to the Python package (design/python/fettle/exploration.py), which has the worker processes and Dask.
-#include <unistd.h>
-
-#include <csignal>
-#include <cstdlib>
+/// fettle explore DESIGN: evaluates many designs, or optimises from many starts, several at once, on this machine or on a Dask cluster.
 #include <filesystem>
-#include <sstream>
-#include <string_view>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "fettle/design/cli/session.hpp"
+#include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/text.hpp"
+#include "fettle/design/cli/dask_cluster.hpp"
+#include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/reading/design_reader.hpp"
+#include "fettle/design/reading/design_text.hpp"
+#include "fettle/design/studies/exploration.hpp"
 
 namespace fettle::design::cli {
 
 namespace {
 
 namespace fs = std::filesystem;
+using core::base::formatted;
+using core::base::joined;
+using Json = nlohmann::ordered_json;
 
 struct ExploreOptions {
     std::string design, out, dask;
@@ -24,84 +29,91 @@ struct ExploreOptions {
     std::optional<int> workers;
 };
 
-// -P: the current folder, which may be anyone's, is no place of modules; nor is it for the processes that Python starts.
-std::vector<std::string> python_words(const ExploreOptions& options, const CommonOptions& common) {
-    std::vector<std::string> words{
-        "-P", "-m", "fettle", "explore", options.design, "--out", options.out, "--seed", std::to_string(options.seed)};
-    for (const std::string& sweep : options.sweeps) words.insert(words.end(), {"--sweep", sweep});
-    const auto add = [&](const char* name, const std::string& value) { words.insert(words.end(), {name, value}); };
-    if (options.samples > 0) add("--samples", std::to_string(options.samples));
-    if (options.starts > 0) add("--starts", std::to_string(options.starts));
-    if (options.workers) add("--workers", std::to_string(*options.workers));
-    if (!options.dask.empty()) add("--dask", options.dask);
-    if (common.allow_programs) words.emplace_back("--allow-programs");
-    if (common.json) words.emplace_back("--json");
-    if (common.quiet) words.emplace_back("--quiet");
-    return words;
-}
-
-// Python's side does nothing with them: none is dropped in silence.
-Errors refused_options(const CommonOptions& common) {
-    const FindingFiles& files = common.finding_files;
-    const std::pair<const char*, bool> given[] = {
-        {"--threads", common.threads > 0},         {"--log", !common.log.empty()},       {"--strict", common.strict},
-        {"--mesh-dir", !common.mesh_dirs.empty()}, {"--junit", !files.junit.empty()},    {"--sarif", !files.sarif.empty()},
-        {"--markdown", !files.markdown.empty()},   {"--annotations", files.annotations},
-    };
+Result<studies::ExplorationRequest> request_of(const ExploreOptions& options, const std::vector<description::Parameter>& parameters) {
+    studies::ExplorationRequest request{{}, options.samples, options.starts, static_cast<std::uint64_t>(options.seed)};
     Errors errors;
-    for (const auto& [option, is_given] : given) {
-        if (!is_given) continue;
-        const std::string instead = std::string_view(option) == "--threads" ? "; --workers says how many processes work at once" : "";
-        errors.push_back({ErrorCode::unsupported, "command line", std::string("explore does not take ") + option + instead});
+    for (const std::string& text : options.sweeps) {
+        Result<studies::SweptParameter> swept = studies::parse_sweep(text, parameters);
+        if (swept)
+            request.sweep.push_back(std::move(swept).value());
+        else
+            errors.insert(errors.end(), swept.errors().begin(), swept.errors().end());
     }
-    return errors;
+    if (!errors.empty()) return errors;
+    return request;
 }
 
-// Where the package lies beside this program: in the build tree, or installed with it.
-std::string package_path(const fs::path& program) {
-    for (const char* place : {"../python", "../lib/python3/dist-packages"}) {
-        const fs::path folder = program.parent_path() / place;
-        if (fs::exists(folder / "fettle" / "__init__.py")) return fs::weakly_canonical(folder).string();
+// From the file of results, so that both can be moved together.
+std::string relative_path(const std::string& design, const std::string& out) {
+    std::error_code fault;
+    const fs::path folder = fs::path(out).has_parent_path() ? fs::path(out).parent_path() : fs::path(".");
+    const fs::path path = fs::relative(design, folder, fault);
+    return fault || path.empty() ? fs::absolute(design, fault).string() : path.string();
+}
+
+std::string found_text(const studies::Exploration& found, const std::string& out, const studies::Explored& end) {
+    const auto designs = core::base::counted(found.results.size(), "design");
+    const std::vector<std::size_t> best = found.best();
+    std::string text = designs + (end.unwritten.empty() ? " in " + out : "") + "; ";
+    if (best.empty()) {
+        text += "none meets every requirement";
+    } else {
+        const Json& first = found.results[best.front()];
+        text += std::to_string(best.size()) + (best.size() == 1 ? " meets" : " meet") +
+                formatted(" every requirement, the best with the objective %.6g", first["objective"].get<double>());
+        if (!end.unwritten.empty()) {
+            std::vector<std::string> values;
+            for (const auto& [name, value] : first["parameters"].items()) values.push_back(name + formatted(" %.9g", value.get<double>()));
+            text += ", at " + joined(values) + " (SI)";
+        }
     }
-    return {};
+    if (end.interrupted) return "interrupted: " + text + "\nthe same command goes on with the others\n";
+    return text + (end.unwritten.empty() ? "\nto look at them: fettle report " + out + "\n" : "\n");
 }
 
-// The package, and what PYTHONPATH says. An entry of it that is empty or relative is the current folder, or lies in it: it is left out.
-std::string module_path(const fs::path& program) {
-    std::string path = package_path(program);
-    const char* given = std::getenv("PYTHONPATH");
-    std::istringstream entries(given == nullptr ? "" : given);
-    for (std::string entry; std::getline(entries, entry, ':');)
-        if (fs::path(entry).is_absolute()) path += (path.empty() ? "" : ":") + entry;
-    return path;
+Json found_json(const studies::Exploration& found, const std::string& out, const studies::Explored& end) {
+    const std::vector<std::size_t> best = found.best();
+    const char* status = end.interrupted ? "interrupted" : best.empty() ? "infeasible" : "ok";
+    return {
+        {"status", status}, {"results", found.results.size()}, {"best", best.empty() ? Json() : found.results[best.front()]}, {"out", out}};
 }
 
-// Ctrl-C and SIGTERM wait until Python's side has what answers them (fettle/__main__.py): while it starts they would be a traceback.
-void hold_back_interrupts() {
-    sigset_t interrupts;
-    sigemptyset(&interrupts);
-    sigaddset(&interrupts, SIGINT);
-    sigaddset(&interrupts, SIGTERM);
-    sigprocmask(SIG_BLOCK, &interrupts, nullptr);
-    if (interrupted()) raise(SIGINT);
-}
-
-// Only returns where there is no Python.
-Error become_python(const ExploreOptions& options, const CommonOptions& common) {
-    std::error_code ignored;
-    const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-    setenv("PYTHONPATH", module_path(program).c_str(), 1);
-    hold_back_interrupts();
-    std::vector<std::string> words = python_words(options, common);
-    std::vector<std::string> interpreters{(program.parent_path() / "python3").string(), "/usr/bin/python3", "python3"};
-    for (std::string& interpreter : interpreters) {
-        std::vector<char*> pointers{interpreter.data()};
-        for (std::string& word : words) pointers.push_back(word.data());
-        pointers.push_back(nullptr);
-        execvp(pointers.front(), pointers.data());
+int run_explore(const ExploreOptions& options, const CommonOptions& common, Console& console) {
+    const Result<reading::DesignFile> file = open_design(options.design, common);
+    if (!file) return console.input_errors(file.errors());
+    tell_warnings(console, file->warnings);
+    const Result<problem::DesignProblem> problem = problem::DesignProblem::create(file->design);
+    if (!problem) return console.input_errors(problem.errors());
+    const Result<studies::ExplorationRequest> request = request_of(options, problem->design().parameters);
+    if (!request) return console.input_errors(request.errors());
+    const Result<std::vector<studies::ExplorationJob>> jobs = studies::jobs_of(*problem, *request);
+    if (!jobs) return console.input_errors(jobs.errors());
+    const Json header = studies::header_of(problem->design(), reading::design_hash(*file), relative_path(options.design, options.out));
+    studies::ExploreOptions explore;
+    explore.should_stop = interrupted;
+    explore.on_result = [&](int done, int of, const Json& result) { console.narrate(studies::progress_text(done, of, result)); };
+    std::optional<DaskCluster> cluster;
+    if (!options.dask.empty()) {
+        Result<DaskCluster> started = DaskCluster::connect(options.dask, {options.design, common.mesh_dirs, common.allow_programs});
+        if (!started) return console.input_errors(started.errors());
+        cluster.emplace(std::move(started).value());
     }
-    return {ErrorCode::file_not_found, "python3",
-            "exploring takes the Python package: Debian's python3 and python3-numpy, and `pip install .`"};
+    Result<studies::ExplorationFile> results = studies::ExplorationFile::open(options.out, header);
+    if (!results) return console.input_errors(results.errors());
+    Result<studies::Explored> end = [&]() -> Result<studies::Explored> {
+        if (cluster) return cluster->explore(*jobs, *results, explore);
+        const core::base::ThreadLimit limit(options.workers.value_or(core::base::thread_count()));
+        return studies::explore(*problem, *jobs, *results, explore);
+    }();
+    if (!end) return console.input_errors(end.errors());
+    console.unwritten(end->unwritten);
+    const studies::Exploration& found = results->found();
+    const CheckOutcome outcome = !found.best().empty() ? CheckOutcome::passed
+                                 : end->interrupted    ? CheckOutcome::undecided
+                                                       : CheckOutcome::failed;
+    console.found({"a design meets every requirement", outcome, "requirement", found_text(found, options.out, *end), options.design});
+    console.result(found_json(found, options.out, *end), found_text(found, options.out, *end));
+    return end->interrupted ? exit_undecided : found.best().empty() ? exit_violated : exit_done;
 }
 
 }  // namespace
@@ -116,12 +128,12 @@ Command add_explore(CommandLine& program, const CommonOptions& common) {
     line.option("--samples", options->samples, "How many designs to draw from the bounds").at_least(0);
     line.option("--starts", options->starts, "How many runs of the optimiser").at_least(0);
     line.option("--seed", options->seed, "Seed of samples and starts").at_least(0);
-    line.option("--workers", options->workers, "Worker processes (default: the machine's processors)").at_least(1);
+    line.option("--workers", options->workers, "How many designs at once (default: one for each processor)").at_least(1);
     line.option("--dask", options->dask,
-                "Address of a running Dask scheduler, whose workers are used instead; it can run code here: one that you trust");
+                "Address of a running Dask scheduler, whose workers are used instead; it can run code here: one that you trust. Takes the "
+                "Python package");
     line.closing_words("Example:  fettle explore hinge.design.json --out sweep.jsonl --sweep pin_radius=10 --sweep wall=1.6:3:8");
-    return {line, [options, &common](Console& console) { return console.input_errors({become_python(*options, common)}); },
-            [&common] { return refused_options(common); }};
+    return {line, [options, &common](Console& console) { return run_explore(*options, common, console); }};
 }
 
 }  // namespace fettle::design::cli

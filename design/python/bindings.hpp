@@ -15,15 +15,16 @@ core::expression::Formula formula_from(pybind11::handle given);
 /// Does it follow from parameters: is it a formula or a parameter?
 bool is_followed(pybind11::handle given);
 
-void bind_formula(pybind11::module_& module);     ///< arithmetic with parameters
-void bind_scene(pybind11::module_& module);       ///< meshes and scenes, read
-void bind_model(pybind11::module_& module);       ///< Model
-void bind_trajectory(pybind11::module_& module);  ///< Trajectory, simulations
-void bind_clearance(pybind11::module_& module);   ///< clearances, certificates
-void bind_design(pybind11::module_& module);      ///< shapes, quantities, designs, read
-void bind_problem(pybind11::module_& module);     ///< DesignProblem
-void bind_studies(pybind11::module_& module);     ///< audits, optimisation
-void bind_tolerances(pybind11::module_& module);  ///< designs as made
-void bind_exports(pybind11::module_& module);     ///< models out, pictures, reports
+void bind_formula(pybind11::module_& module);      ///< arithmetic with parameters
+void bind_scene(pybind11::module_& module);        ///< meshes and scenes, read
+void bind_model(pybind11::module_& module);        ///< Model
+void bind_trajectory(pybind11::module_& module);   ///< Trajectory, simulations
+void bind_clearance(pybind11::module_& module);    ///< clearances, certificates
+void bind_design(pybind11::module_& module);       ///< shapes, quantities, designs, read
+void bind_problem(pybind11::module_& module);      ///< DesignProblem
+void bind_studies(pybind11::module_& module);      ///< audits, optimisation
+void bind_exploration(pybind11::module_& module);  ///< many designs, several at once
+void bind_tolerances(pybind11::module_& module);   ///< designs as made
+void bind_exports(pybind11::module_& module);      ///< models out, pictures, reports
 
 }  // namespace fettle::design::python

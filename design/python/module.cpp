@@ -23,6 +23,7 @@ PYBIND11_MODULE(_fettle, module) {
     python::bind_design(module);
     python::bind_problem(module);
     python::bind_studies(module);
+    python::bind_exploration(module);
     python::bind_tolerances(module);
     python::bind_exports(module);
 }

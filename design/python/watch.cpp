@@ -60,6 +60,11 @@ std::function<void(const std::string&)> Watch::on_line() {
     return [this](const std::string& line) { call(line); };
 }
 
+std::function<void(int, int, const std::string&)> Watch::on_result() {
+    if (callback_.is_none()) return [](int, int, const std::string&) {};
+    return [this](int done, int of, const std::string& line) { call(done, of, line); };
+}
+
 std::function<void(int, int)> Watch::on_count() {
     if (callback_.is_none()) return {};
     return [this](int done, int of) { call(done, of); };

@@ -27,6 +27,8 @@ public:
     std::function<void(const core::stepper::Progress&)> on_step();
     /// callback(line of text).
     std::function<void(const std::string&)> on_line();
+    /// callback(done, of how many, line of text).
+    std::function<void(int, int, const std::string&)> on_result();
     /// callback(done, of how many).
     std::function<void(int, int)> on_count();
     /// To be called once the work has ended.

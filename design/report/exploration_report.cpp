@@ -2,7 +2,6 @@
 #include "fettle/design/report/exploration_report.hpp"
 
 #include <filesystem>
-#include <sstream>
 
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/design/answers/run_folder.hpp"
@@ -10,6 +9,7 @@
 #include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/exploration_data.hpp"
 #include "fettle/design/report/report_page.hpp"
+#include "fettle/design/studies/exploration_file.hpp"
 
 namespace fettle::design::report {
 
@@ -19,28 +19,13 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 Errors read_lines(const std::string& file, ExplorationSource& source) {
-    const Result<std::string> text = core::files::read_file(file);
-    if (!text) return text.errors();
-    const std::size_t end = text->rfind('\n') + 1;
-    std::istringstream lines(text->substr(0, end));
-    std::string line;
-    std::getline(lines, line);
-    source.header = parsed_json(line);
-    if (member(source.header, "fettle_explore") != 1)
-        return {{ErrorCode::missing_key, file,
-                 "not an exploration: its first line has no `fettle_explore` 1; `fettle explore` writes such files"}};
-    int damaged = 0;
-    while (std::getline(lines, line)) {
-        if (line.empty()) continue;
-        Json result = parsed_json(line);
-        if (result.is_object() && member(result, "status").is_string()) {
-            source.results.push_back(std::move(result));
-        } else {
-            ++damaged;
-        }
-    }
-    if (damaged > 0) source.notices.push_back("Lines of the file that are no results were left out: " + std::to_string(damaged) + ".");
-    if (end < text->size()) source.notices.emplace_back(cut_off);
+    Result<studies::Exploration> found = studies::read_exploration(file);
+    if (!found) return found.errors();
+    source.header = std::move(found->header);
+    source.results = std::move(found->results);
+    if (!found->damaged.empty())
+        source.notices.push_back("Lines of the file that are no results were left out: " + std::to_string(found->damaged.size()) + ".");
+    if (found->cut_off) source.notices.emplace_back(cut_off);
     if (source.results.empty())
         return {{ErrorCode::missing_key, file,
                  "an exploration without a result: there is nothing to report yet; `fettle explore` with the same --out goes on with it"}};

@@ -88,12 +88,14 @@ Errors LineFile::keep(std::size_t lines) {
     return {{ErrorCode::file_unwritable, path_, "cannot be cut back to its last whole line: " + system_message()}};
 }
 
-// A part of a line may have got there; the rest of it comes first the next time.
+// Where not all of it gets there none of it stays: the file has whole lines alone.
 void LineFile::append(const std::string& line) {
     waiting_ += line;
     waiting_ += '\n';
+    const off_t end = ::lseek(file_, 0, SEEK_END);
     std::string_view left = waiting_;
     write_error_ = core::files::write_all(file_, left);
+    if (write_error_ != 0 && end >= 0 && ::ftruncate(file_, end) == 0) left = waiting_;
     waiting_.erase(0, waiting_.size() - left.size());
     if (write_error_ == 0 && ::fsync(file_) != 0 && errno != EINVAL) write_error_ = errno;
 }

@@ -21,6 +21,16 @@ but your own.
 """
 import types as _types
 
+try:
+    from . import _fettle as _fettle
+except ImportError as _fault:
+    if "_fettle" not in str(_fault):
+        raise
+    raise ImportError(
+        "fettle's compiled module is not here: in the project's folder build it by `cmake --build build/release --target fettle_python`, "
+        "or install the package by `pip install .`"
+    ) from _fault
+
 # `X as X`: for type checkers the name is public.
 from ._calls import in_plain_words as _in_plain_words
 from ._fettle import (

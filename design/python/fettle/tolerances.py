@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How a design's numbers spread when its parts are made, with samples in parallel processes of this machine or on a Dask cluster.
+"""How a design's numbers spread when its parts are made, with samples on threads of this machine or on a Dask cluster.
 
     report = fettle.tolerance("hinge.design.json", samples=2000, samples_file="made.jsonl", workers=8)
     report = fettle.tolerance("hinge.design.json", samples=2000, dask="tcp://10.0.0.5:8786")
@@ -10,26 +10,17 @@ import contextlib
 import os
 import pickle
 import tempfile
-from typing import Any, Callable, Dict, Iterator, Optional, Sequence
+from typing import Any, Callable, Dict, Optional, Sequence
 
 from . import _fettle
 from ._calls import in_plain_words
 from .errors import Error, Fault
-from .exploration import Job, Result, _dask_client, _LocalPool, _run_on_dask
+from .exploration import _dask_client, make_sample, run_on_dask
 from .results import ToleranceReport
 from .scene import PathLike
 
 Progress = Callable[[int, int], object]
 _tolerance = in_plain_words(_fettle.tolerance)
-
-
-def _lines(results: Iterator[Result]) -> Iterator[str]:
-    for result in results:
-        if "line" not in result:
-            where = f"sample {result['seed']}"
-            reason = result.get("reason", "it was lost").replace("on this design", "on it")
-            raise Error([Fault("internal" if result["status"] == "lost" else "unsupported", where, reason)])
-        yield result["line"]
 
 
 def _after(done_before: int, progress: Progress) -> Progress:
@@ -54,9 +45,9 @@ def tolerance(
     """What becomes of a *.design.json with `tolerances` when its parts are made, as `fettle tolerance` answers: a ToleranceReport.
 
     samples_file: samples that it has are not simulated again. process: what makes the parts, in place of the design's. progress(done, of).
-    workers: processes that make the samples (default: threads of this one). dask: address of a scheduler, whose workers are used instead,
-    and which find the design's files at the same path; whoever reaches it can run code on its workers, and here. Predictions are made in
-    this process. The report is the same, bit for bit, whoever makes the samples."""
+    workers: how many samples at once (default: one for each processor). dask: address of a scheduler, whose workers are used instead, and
+    which find the design's files at the same path; whoever reaches it can run code on its workers, and here. Predictions are made in this
+    process. The report is the same, bit for bit, whoever makes the samples."""
     given: Dict[str, Any] = {
         "path": path,
         "samples": samples,
@@ -69,10 +60,13 @@ def tolerance(
     }
     if workers is not None and workers < 1:
         raise Error([Fault("out_of_range", "workers", f"{workers} is not allowed: 1 or more is")])
-    if (workers is None and dask is None) or not samples > 0:
-        return _tolerance(samples_file=samples_file, progress=progress, **given)
+    if dask is None or not samples > 0:
+        limit = None if workers is None else _fettle.ThreadLimit(workers)
+        report = _tolerance(samples_file=samples_file, progress=progress, **given)
+        del limit
+        return report
     with contextlib.ExitStack() as stack:
-        client = stack.enter_context(_dask_client(dask)) if dask is not None else None
+        client = stack.enter_context(_dask_client(dask))
         if not samples_file:
             samples_file = os.path.join(stack.enter_context(tempfile.TemporaryDirectory(prefix="fettle_")), "samples.jsonl")
         arguments = (os.path.abspath(path), seed, process, [os.path.abspath(each) for each in mesh_dirs], allow_programs)
@@ -80,20 +74,12 @@ def tolerance(
         stack.callback(shared.close)
         missing = shared.open(samples_file, samples)
         to_do = 1 + (2 * shared.tolerance_count if second_order else 0)
-        jobs = [Job("sample", seed=k) for k in missing]
-        packed = pickle.dumps(arguments)
-        results: Iterator[Result] = iter(())
-        if client and jobs:
-            results = _run_on_dask(client, shared.name, packed, jobs)
-        elif jobs:
-            pool = _LocalPool(min(workers or os.cpu_count() or 1, len(jobs)), shared.name, packed)
-            stack.callback(pool.close)
-            results = pool.run(jobs)
-        for done, line in enumerate(_lines(results), 1):
+        for done, (sample, line) in enumerate(run_on_dask(client, make_sample, (shared.name, pickle.dumps(arguments)), missing), 1):
+            if line is None:
+                raise Error([Fault("internal", f"sample {sample}", "two workers were lost on it")])
             shared.keep(line)
             if progress:
-                progress(done, len(jobs) + to_do)
+                progress(done, len(missing) + to_do)
         shared.close()
-        count = None if progress is None else _after(len(jobs), progress)
-        report = _tolerance(samples_file=samples_file, progress=count, **given)
-    return report
+        count = None if progress is None else _after(len(missing), progress)
+        return _tolerance(samples_file=samples_file, progress=count, **given)

@@ -99,18 +99,6 @@ TEST_CASE("messages: a format's key that is misspelt, and folders that are not t
     refused("validate " + crank + " --log /proc/none/x.txt", {"error: /proc/none/x.txt"});
 }
 
-TEST_CASE("messages: explore refuses the common options that it does not take, before any file is touched") {
-    const DesignFolder folder;
-    const std::string theirs = folder.write("j.xml", "<mine/>"), out = folder.file("x.jsonl");
-    const std::string explore = "explore " + folder.design() + " --samples 1 --quiet --out " + out;
-    for (const std::string& option : {"--junit " + theirs, "--sarif " + theirs, "--markdown " + theirs, "--log " + theirs,
-                                      std::string("--annotations"), std::string("--strict"), "--mesh-dir " + folder.path.string()})
-        refused(explore + " " + option, {"explore does not take " + option.substr(0, option.find(' '))});
-    refused(explore + " --threads 2", {"explore does not take --threads; --workers says"});
-    CHECK(std::filesystem::file_size(theirs) == 7);
-    CHECK_FALSE(std::filesystem::exists(out));
-}
-
 TEST_CASE("messages: a file that cannot be written is told by the name it was given") {
     const DesignFolder folder;
     const std::string scene = folder.file("small.scene.json"), in_file = folder.write("file", "") + "/deep/x.csv";
