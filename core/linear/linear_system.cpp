@@ -14,7 +14,7 @@
 namespace fettle::core::linear {
 namespace {
 
-constexpr int most_refinements = 6;
+constexpr int most_refinements = 64;      // each halves what is left: more than take a number to its rounding
 constexpr double refined_enough = 1e-15;  // of what rounding is measured by
 
 using Column = Eigen::Ref<const VectorX>;

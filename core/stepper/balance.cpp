@@ -16,14 +16,16 @@ double energy_of(const energy::TermReport& r) { return r.kinetic_energy + r.pote
 
 }  // namespace
 
-BalanceSum::BalanceSum(const energy::TermReport& start, double h, double largest_work)
+BalanceSum::BalanceSum(const energy::TermReport& start, double h, double largest_work, double contact_work)
     : h_(h),
       largest_work_(largest_work),
+      at_start_(stored_energy(start) + start.kinetic_energy + contact_work),
       most_stored_(stored_energy(start) + start.kinetic_energy),
+      start_potential_(start.potential_energy),
       least_potential_(start.potential_energy),
       most_potential_(start.potential_energy) {
     sum_.energy_start = sum_.energy_end = energy_of(start);
-    sum_.energy_scale = most_stored_;
+    sum_.energy_available = at_start_;
 }
 
 void BalanceSum::add(const StepOutputs& step) {
@@ -31,7 +33,9 @@ void BalanceSum::add(const StepOutputs& step) {
         supplied_ = step.supplied_power;
         dissipated_ = step.dissipated_power;
     }
-    sum_.work += 0.5 * h_ * (supplied_ + step.supplied_power);
+    const double work = 0.5 * h_ * (supplied_ + step.supplied_power), error_before = sum_.energy_error;
+    sum_.work += work;
+    work_supplied_ += std::max(0.0, work);
     sum_.dissipated += 0.5 * h_ * (dissipated_ + step.dissipated_power);
     supplied_ = step.supplied_power;
     dissipated_ = step.dissipated_power;
@@ -41,7 +45,8 @@ void BalanceSum::add(const StepOutputs& step) {
     most_work_ = std::max(most_work_, std::abs(sum_.work));
     least_potential_ = std::min(least_potential_, step.potential_energy);
     most_potential_ = std::max(most_potential_, step.potential_energy);
-    sum_.energy_scale = std::max({most_stored_, most_work_, sum_.dissipated, most_potential_ - least_potential_});
+    sum_.energy_available = at_start_ + (start_potential_ - least_potential_) + work_supplied_;
+    add_loss(error_before - sum_.energy_error, step);
     constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
     const double potential = std::max(std::abs(least_potential_), std::abs(most_potential_));
     sum_.energy_rounding = rounding * (most_stored_ + most_work_ + sum_.dissipated + potential + largest_work_);
@@ -57,6 +62,19 @@ void BalanceSum::add(const StepOutputs& step) {
     sum_.angular_momentum_uncertainty = 0.5 * most_impulse_ + angular_rounding_;
 }
 
+void BalanceSum::add_loss(double lost, const StepOutputs& step) {
+    constexpr int steps_of_a_jump = 3;  // a step's power is in the work of the next one too, and BDF2 answers a jump in two steps
+    if (step.drive_jumps) not_judged_ = steps_of_a_jump;
+    if (not_judged_ > 0) {
+        --not_judged_;
+        return;
+    }
+    sum_.energy_lost += lost;
+    if (!(lost > sum_.largest_loss)) return;
+    sum_.largest_loss = lost;
+    sum_.largest_loss_time = step.time;
+}
+
 double largest_work(const model::Model& model) {
     double sum = 0;
     for (const model::Body& body : model.bodies)
@@ -65,15 +83,45 @@ double largest_work(const model::Model& model) {
     return sum;
 }
 
+bool is_of_nowhere(const Balance& balance) {
+    constexpr double most = 1;
+    return !(balance.energy_error <= most * balance.energy_available + balance.energy_rounding);
+}
+
+namespace {
+
+std::string gain_text(const model::Model& model, const Balance& balance) {
+    return base::formatted(
+               "the motion has gained energy from nowhere, %.3g J where %.3g J were there or were supplied: a shorter `timestep` makes it "
+               "less",
+               balance.energy_error, balance.energy_available) +
+           (model.integrator == scene::Integrator::newmark
+                ? ", and `\"integrator\": \"bdf2\"` or `\"implicit_euler\"` loses energy where parts meet, where `newmark` may gain it"
+                : "");
+}
+
+std::string loss_text(const model::Model& model, const Balance& balance) {
+    std::string text =
+        base::formatted("the time integration has lost %.3g J, ", balance.energy_lost) +
+        base::percent(balance.energy_lost / balance.energy_available) +
+        base::formatted(" of the %.3g J that were there or were supplied, beside what friction and dampers take: ",
+                        balance.energy_available) +
+        "a shorter `timestep`" +
+        (model.integrator == scene::Integrator::implicit_euler ? ", or `\"integrator\": \"bdf2\"`, keeps more" : " keeps more");
+    const double share = balance.largest_loss / balance.energy_lost;
+    if (share < 0.5) return text;
+    return text + "; " + base::percent(std::min(1.0, share)) +
+           base::formatted(" of it went in the step that ends at %.6g s", balance.largest_loss_time) +
+           ", in a blow, whose rebound follows from the time step unless `contact.damping_time` states its loss";
+}
+
+}  // namespace
+
 std::string balance_warning(const model::Model& model, const Balance& balance) {
-    constexpr double gain = 0.01, angular = 0.05;
+    constexpr double gain = 0.01, loss = 0.05, angular = 0.05;
     if (!std::isfinite(balance.energy_error)) return "energies are not finite numbers";
-    if (balance.energy_error > gain * balance.energy_scale + balance.energy_rounding)
-        return "the motion has gained energy from nowhere, " + base::percent(balance.energy_error / balance.energy_scale) +
-               " of what it has at most: a shorter `timestep` makes it less" +
-               (model.integrator == scene::Integrator::newmark
-                    ? ", and `\"integrator\": \"bdf2\"` or `\"implicit_euler\"` loses energy where parts meet, where `newmark` may gain it"
-                    : "");
+    if (balance.energy_error > gain * balance.energy_available + balance.energy_rounding) return gain_text(model, balance);
+    if (balance.energy_lost > loss * balance.energy_available + balance.energy_rounding) return loss_text(model, balance);
     if (balance.angular_momentum_error > angular * balance.angular_momentum_scale + balance.angular_momentum_uncertainty)
         return "the time integration has changed the angular momentum by " +
                base::percent(balance.angular_momentum_error / balance.angular_momentum_scale) +

@@ -7,6 +7,7 @@
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/stop.hpp"
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/stepper/step.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 
@@ -26,6 +27,8 @@ const char* to_string(SimulationStatus status) {
             return "not_held";
         case SimulationStatus::not_converged:
             return "not_converged";
+        case SimulationStatus::energy_gained:
+            return "energy_gained";
         case SimulationStatus::interrupted:
             return "interrupted";
     }
@@ -92,15 +95,19 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
     std::size_t kept_contacts = 0;
     for (const TrajectoryStep& earlier : out.trajectory.steps) kept_contacts += contacts_of(earlier);
     std::optional<BalanceSum> balance;
-    if (options.outputs && model.integrator != scene::Integrator::quasi_static)
-        balance.emplace(start_report(model, state), model.timestep, largest_work(model));
+    SimulationOptions watched = options;
+    watched.outputs = options.outputs || model.integrator == scene::Integrator::newmark;
+    if (watched.outputs && model.integrator != scene::Integrator::quasi_static) {
+        const double work = largest_work(model);
+        balance.emplace(start_report(model, state), model.timestep, work, work * (model.dhat / model.diagonal));
+    }
     for (int t = out.checkpoint.step; t < steps; ++t) {
         state.time = t * model.timestep;  // not accumulated: no drift over many steps
         if (t % checkpoint_interval == 0) {
             workspace.forget();
             out.checkpoint = {t, state};
         }
-        StepResult result = stoppable_step(model, state, workspace, options);
+        StepResult result = stoppable_step(model, state, workspace, watched);
         out.report.newton_iterations += result.report.newton_iterations;
         if (result.status != SimulationStatus::ok) {
             std::ostringstream message;
@@ -124,6 +131,11 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
         state = std::move(result.state);
         out.trajectory.poses.push_back(state.history.poses);
         if (options.on_step) options.on_step({t + 1, steps, &out});
+        if (!out.balance || !is_of_nowhere(*out.balance)) continue;
+        out.report.status = SimulationStatus::energy_gained;
+        out.report.message =
+            base::formatted("by step %d (t = %.6g s) ", t + 1, (t + 1) * model.timestep) + balance_warning(model, *out.balance);
+        break;
     }
     out.report.phase_seconds = workspace.clock.seconds();
     out.report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -20,6 +20,8 @@ enum class SimulationStatus {
     blocked,        ///< a prescribed body cannot follow its script: something is in the way
     not_held,       ///< quasi-static: loads push a body off, and nothing but the proximal term stands against them
     not_converged,  ///< a step's equations could not be solved
+    energy_gained,  ///< more energy came from nowhere than was there and was supplied (is_of_nowhere): watched for with `outputs`, and of
+                    ///< Newmark's steps always
     interrupted     ///< `should_stop` said so; the trajectory up to there is usable
 };
 const char* to_string(SimulationStatus status);
@@ -75,7 +77,7 @@ struct Simulation {
     Trajectory trajectory;
     SimulationReport report;
     std::vector<StepOutputs> outputs;  ///< per step, or of the last one alone, if asked for
-    std::optional<Balance> balance;    ///< of these steps' energy and momentum, if outputs are asked for; none in quasi-statics
+    std::optional<Balance> balance;    ///< of these steps' energy and momentum, where they are watched; none in quasi-statics
     Checkpoint checkpoint;             ///< the last one passed
 };
 

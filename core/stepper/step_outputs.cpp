@@ -97,6 +97,34 @@ double motor_power(const model::Mechanism& mechanism, const std::vector<JointFor
     return power;
 }
 
+bool jumps(double before, double after, double least) {
+    const double larger = std::max(std::abs(before), std::abs(after));
+    return larger > least && std::abs(after - before) > 0.5 * larger;
+}
+
+// StepOutputs::drive_jumps. Rates that move nothing to speak of in a step are rounding.
+bool drives_jump(const model::Model& model, const std::vector<JointForce>& joints, const energy::History& start,
+                 const energy::History& end) {
+    const double least_turn = 1e-9 / model.timestep, least_way = least_turn * model.diagonal;  // [rad/s], [m/s]
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        Vector6 before, after;
+        before << start.velocities[i].col(3), kinematics::angular_velocity(start.poses[i].rotation, start.velocities[i]);
+        after << end.velocities[i].col(3), kinematics::angular_velocity(end.poses[i].rotation, end.velocities[i]);
+        for (int k = 0; k < 6; ++k)
+            if (!is_free(model.bodies[i], k) && jumps(before[k], after[k], k < 3 ? least_way : least_turn)) return true;
+    }
+    const model::Mechanism& mechanism = model.mechanism;
+    const auto is_motor = [&](const JointForce& f) { return mechanism.joints[f.joint].is_motor; };
+    if (std::none_of(joints.begin(), joints.end(), is_motor)) return false;
+    const std::vector<double> before = energy::measure_rates(mechanism.set, start.poses, start.velocities),
+                              after = energy::measure_rates(mechanism.set, end.poses, end.velocities);
+    return std::any_of(joints.begin(), joints.end(), [&](const JointForce& f) {
+        const int k = mechanism.joints[f.joint].coordinate;
+        const bool is_angle = is_motor(f) && mechanism.set.measures[k].kind == measure::MeasureKind::angle;
+        return is_motor(f) && jumps(before[k], after[k], is_angle ? least_turn : least_way);
+    });
+}
+
 // Force and torque about the body's reference point, about the world's origin.
 Vector6 about_origin(Vector6 force, const Vector3& position) {
     force.tail<3>() += position.cross(force.head<3>());
@@ -175,6 +203,7 @@ StepOutputs step_outputs(const model::Model& model, const energy::StepProblem& p
     if (!model.mechanism.empty()) out.joints = joint_forces(last, solved.poses, solved.multipliers, out.measure_forces);
     if (model.integrator == scene::Integrator::quasi_static) return out;
     out.supplied_power += drive_power(out.drives, end.history) + motor_power(model.mechanism, out.joints, end.history);
+    out.drive_jumps = drives_jump(model, out.joints, start.history, end.history);
     add_momentum_defects(last, solved, left, start, end, out);
     return out;
 }

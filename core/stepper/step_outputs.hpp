@@ -28,6 +28,9 @@ struct StepOutputs : energy::TermReport {
     double kappa = 0;                  ///< of the barrier [N/m], or [N/m^3] if area-weighted
     std::vector<DriveForce> drives;    ///< of the bodies with prescribed coordinates that need any
     std::vector<JointForce> joints{};  ///< of every joint, gear and motor
+    /// Does a motor or a prescribed coordinate start, stop or change its rate by more than half of it in this step? What it then supplies
+    /// is a blow, whose work no sum of powers at steps' ends tells.
+    bool drive_jumps = false;
     /// What the momenta of bodies that are solved for changed by in the step, beyond the impulses of all forces on them: the error of the
     /// solver and, of turning bodies, of the time integration. Forces are those at the step's end, so that a sum over steps is right to
     /// half a step's impulse.

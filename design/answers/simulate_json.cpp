@@ -72,7 +72,8 @@ Json balance_json(const core::stepper::Balance& b) {
                 {"work", b.work},
                 {"dissipated", b.dissipated},
                 {"energy_error", b.energy_error},
-                {"energy_scale", b.energy_scale},
+                {"energy_available", b.energy_available},
+                {"energy_lost", b.energy_lost},
                 {"momentum_error", b.momentum_error},
                 {"angular_momentum_error", b.angular_momentum_error},
                 {"angular_momentum_scale", b.angular_momentum_scale}};

@@ -64,11 +64,12 @@ Result<LoadedModel> load_subject(const SimulateArguments& options, const CommonO
     return std::move(made->loaded);
 }
 
-void add_balance(const core::model::Model& model, const core::stepper::Balance& balance, const std::string& file, Json& json,
+// @param warns  not where the answer's own message says it.
+void add_balance(const core::model::Model& model, const core::stepper::Balance& balance, const std::string& file, bool warns, Json& json,
                  Console& console) {
     json["balance"] = answers::balance_json(balance);
     const std::string warning = balance_warning(model, balance);
-    if (warning.empty()) return;
+    if (warning.empty() || !warns) return;
     tell_warnings(console, {warning}, file);
     json["warnings"].push_back(warning);
 }
@@ -80,8 +81,9 @@ std::string balance_text(const core::stepper::Balance& b) {
     if (std::abs(b.energy_error) <= b.energy_rounding)
         text += "; the time integration kept it to rounding";
     else
-        text += formatted("; %.4g J %s by the time integration (%s of what passed through the motion)", std::abs(b.energy_error),
-                          b.energy_error > 0 ? "gained" : "lost", core::base::percent(std::abs(b.energy_error) / b.energy_scale).c_str());
+        text +=
+            formatted("; %.4g J %s by the time integration (%s of what was there or was supplied)", std::abs(b.energy_error),
+                      b.energy_error > 0 ? "gained" : "lost", core::base::percent(std::abs(b.energy_error) / b.energy_available).c_str());
     return text + "\n";
 }
 
@@ -223,7 +225,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     if (!options.poses.empty())
         console.unwritten(core::records::write_poses(options.poses, simulation.trajectory, model, answers::unit_name(model.length_unit)));
     const std::optional<core::stepper::Balance>& balance = simulation.balance;
-    if (balance) add_balance(model, *balance, options.path, json, console);
+    if (balance) add_balance(model, *balance, options.path, outcome.status != to_string(SimulationStatus::energy_gained), json, console);
     for (const std::string& warning : core::stepper::branch_warnings(model, simulation.trajectory)) {
         tell_warnings(console, {warning}, options.path);
         json["warnings"].push_back(warning);
@@ -277,8 +279,7 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
         console.progress("simulating", p.step, p.steps);
     };
     simulate_options.should_stop = interrupted;
-    simulate_options.outputs = !options.out.empty() || !model.mechanism.joints.empty();
-    simulate_options.last_outputs_only = true;  // the tables have those before
+    simulate_options.outputs = simulate_options.last_outputs_only = true;  // the tables have those before
     Simulation earlier;
     if (!options.earlier.empty()) {
         Result<Simulation> read = read_earlier(options, model, core::stepper::step_count(model, simulate_options), console);

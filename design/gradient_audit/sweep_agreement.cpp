@@ -6,6 +6,7 @@
 #include <random>
 
 #include "fettle/adjoint/stepper/reverse_sweep.hpp"
+#include "fettle/adjoint/stepper/row_multipliers.hpp"
 #include "fettle/adjoint/stepper/tangent_sweep.hpp"
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/limits.hpp"
@@ -104,13 +105,24 @@ double forwards(const adjoint::TrajectoryGradient& seed, const Trajectory& traje
     return sum + within_steps(seed.velocity_bar, motion.within.velocities) + within_steps(seed.lag_bar, motion.within.lags);
 }
 
-// What the quantity would change by if every body moved as far as the direction moves the start.
-double reach_of(const adjoint::TrajectoryGradient& seed, const Trajectory& trajectory, const ModelTangent& direction) {
+// What the quantity would change by if every body moved as far as the direction moves the start, and as fast, and if what rows carry came
+// and went.
+// @param multipliers  [step], of the rows; none: the seed asks for none.
+double reach_of(const adjoint::TrajectoryGradient& seed, const Trajectory& trajectory, const ModelTangent& direction,
+                const std::vector<VectorX>& multipliers) {
     double sum = 0;
-    for (size_t t = 0; t < seed.pose_bar.size(); ++t)
-        for (size_t i = 0; i < seed.pose_bar[t].size(); ++i)
-            sum += std::abs(
-                seed.pose_bar[t][i].cwiseProduct(motion_matrix(direction.bodies[i].pose_start_dot, trajectory.poses[t][i].rotation)).sum());
+    const auto add = [&](const std::vector<std::vector<Matrix34>>& bars, const auto& dot_of) {
+        for (size_t t = 0; t < bars.size(); ++t)
+            for (size_t i = 0; i < bars[t].size(); ++i) sum += std::abs(bars[t][i].cwiseProduct(dot_of(t, i)).sum());
+    };
+    const auto moved = [&](size_t t, size_t i) {
+        return motion_matrix(direction.bodies[i].pose_start_dot, trajectory.poses[t][i].rotation);
+    };
+    add(seed.pose_bar, moved);
+    add(seed.lag_bar, moved);
+    add(seed.velocity_bar, [&](size_t, size_t i) -> const Matrix34& { return direction.bodies[i].velocity_start_dot; });
+    for (size_t t = 0; t < seed.multiplier_bar.size(); ++t)
+        if (seed.multiplier_bar[t].size() > 0) sum += seed.multiplier_bar[t].cwiseProduct(multipliers[t]).lpNorm<1>();
     return sum;
 }
 
@@ -148,6 +160,9 @@ void compare(const description::Simulated& simulated, const std::vector<adjoint:
         out.failure = gradients.errors().front().message;
         return;
     }
+    std::vector<VectorX> multipliers;
+    if (std::any_of(seeds.begin(), seeds.end(), [](const auto& seed) { return !seed.multiplier_bar.empty(); }))
+        multipliers = adjoint::stepper::row_multipliers(model, trajectory);
     std::mt19937_64 random(20261123);
     for (int d = 0; d < directions; ++d) {
         const ModelTangent direction = random_direction(model, count_of(trajectory.steps), random);
@@ -161,8 +176,8 @@ void compare(const description::Simulated& simulated, const std::vector<adjoint:
         for (size_t q = 0; q < seeds.size(); ++q) {
             const Pairing back = backwards(model, (*gradients)[q], direction);
             const double forth = forwards(seeds[q], trajectory, motion);
-            // Of a linkage that motors drive nothing in the direction moves the quantity, and both are rounding.
-            const double nothing = 1e-6 * reach_of(seeds[q], trajectory, direction);
+            // Of what motors drive, or springs, nothing in the direction moves the quantity, and both are rounding.
+            const double nothing = 1e-6 * reach_of(seeds[q], trajectory, direction, multipliers);
             const double scale = std::max({std::abs(back.sum), std::abs(forth), 1e-2 * back.parts, nothing});
             double apart = back.sum == forth ? 0 : std::abs(back.sum - forth) / scale;
             if (!std::isfinite(apart)) apart = core::base::infinity;

@@ -76,7 +76,7 @@ private:
             for (Asked& a : own)
                 a.both_extremes = std::any_of(own.begin(), own.end(), [&](const Asked& b) {
                     return a.series->over() != b.series->over() &&
-                           a.series->window(*a.simulated).steps == b.series->window(*b.simulated).steps;
+                           a.series->window(*a.simulated).numbers == b.series->window(*b.simulated).numbers;
                 });
             out.insert(out.end(), own.begin(), own.end());
         }
@@ -84,8 +84,8 @@ private:
 
     // The largest has another sign than what is larger.
     static std::string on_the_sign(const Asked& asked, double unit) {
-        const auto [steps, first_step] = asked.series->window(*asked.simulated);
-        const auto [least, largest] = std::minmax_element(steps.begin(), steps.end());
+        const auto [numbers, first] = asked.series->window(*asked.simulated);
+        const auto [least, largest] = std::minmax_element(numbers.begin(), numbers.end());
         const bool is_largest = asked.series->over() == Over::largest;
         const double extreme = is_largest ? *largest : *least, other = is_largest ? *least : *largest;
         const bool is_told = is_largest ? extreme < 0 || -other > clearly * extreme : extreme < 0 && other > -clearly * extreme;
@@ -94,18 +94,18 @@ private:
         const std::string what = "\"over\": \"peak\" takes the largest absolute value";
         if (is_largest && extreme < 0)
             return "all steps are negative, and the largest, " + amount(extreme) + ", is the one with the least absolute value: " + what;
-        const auto step = static_cast<long>((is_largest ? least : largest) - steps.begin()) + first_step + 1;
-        return std::string(is_largest ? "the largest" : "the least") + " of the steps is " + amount(extreme) + ", but step " +
-               std::to_string(step) + " has " + amount(other) + ", a larger absolute value: " + what;
+        const int instant = static_cast<int>((is_largest ? least : largest) - numbers.begin()) + first;
+        return std::string(is_largest ? "the largest" : "the least") + " of the steps is " + amount(extreme) + ", but " +
+               quantities::instant_words(instant) + " has " + amount(other) + ", a larger absolute value: " + what;
     }
 
     // One step stands above the others, and the true extreme may lie between.
     static std::string on_the_steps(const Asked& asked, double unit) {
         const StepSeries::Window window = asked.series->window(*asked.simulated);
-        const quantities::Extreme extreme = quantities::extreme_of(asked.series->over(), window.steps).extreme;
+        const quantities::Extreme extreme = quantities::extreme_of(asked.series->over(), window.numbers).extreme;
         if (!(extreme.doubt > clearly_more * std::abs(extreme.value))) return {};
-        const int at = extreme.first + 2, step = window.first + at + 1;
-        const auto amount = [&](int k) { return amount_text(asked, window.steps[k], unit); };
+        const int at = extreme.first + 2, step = window.first + at;
+        const auto amount = [&](int k) { return amount_text(asked, window.numbers[k], unit); };
         const char* word = asked.series->over() == Over::least ? "the least, " : "the largest, ";
         return word + amount(at) + ", falls on step " + std::to_string(step) + " alone, at " +
                core::base::formatted("%.6g s", step * asked.simulated->trajectory.timestep) + " (the steps before and after it have " +

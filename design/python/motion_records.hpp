@@ -8,7 +8,7 @@
 #include "fettle/core/stepper/simulation.hpp"
 #include "fettle/design/python/records.hpp"
 
-FETTLE_WORDS(fettle::core::stepper::SimulationStatus, "ok", "blocked", "not_held", "not_converged", "interrupted")
+FETTLE_WORDS(fettle::core::stepper::SimulationStatus, "ok", "blocked", "not_held", "not_converged", "energy_gained", "interrupted")
 FETTLE_WORDS(fettle::core::clearance::PairStatus, "clear", "violated", "undecided", "contact")
 FETTLE_WORDS(fettle::core::certificate::Solids, "unproven", "disjoint", "overlap", "not closed", "not verified")
 FETTLE_WORDS(fettle::core::certificate::Primitive, "vertex", "edge", "triangle")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How far a body has turned about a fixed axis n of the world since the start, at each step's end: with x normal to n, y = n x x and
-/// u = R_t R_0^T x,
+/// How far a body has turned about a fixed axis n of the world since the start, where it is 0, at each step's end: with x normal to n, y =
+/// n x x and u = R_t R_0^T x,
 ///   angle = atan2(y . u, x . u)   [rad], turns counted from step to step
 /// For bodies that real pins hold, which have no joint. A body that tilts is measured as seen along n; contract of the derivative: u is not
 /// along n.
@@ -17,7 +17,8 @@ public:
 
     int body() const { return body_; }
     const Vector3& axis() const { return axis_; }
-    Dimension step_dimension() const override { return Dimension::angle; }
+    Dimension instant_dimension() const override { return Dimension::angle; }
+    bool has_start() const override { return true; }
     bool has_direction() const override { return reduction().derivative > 0; }
     Errors check(const core::model::Model& model, int steps) const override;
 

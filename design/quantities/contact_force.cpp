@@ -44,15 +44,15 @@ using Gaps = std::vector<std::optional<ContactGap>>;
 int pressing_side(const description::Bounds& bounds) { return bounds.lower > 0 ? 1 : bounds.upper < 0 ? -1 : 0; }
 
 // The steps whose numbers the reduction may come to, of those reductions that are continued.
-std::vector<std::size_t> steps_taken(const Reduction& reduction, int side, const std::vector<double>& y, double timestep) {
+std::vector<std::size_t> steps_taken(const Reduction& reduction, int side, const std::vector<double>& y, const Instants& instants) {
     std::vector<std::size_t> out;
     if (reduction.derivative != 0) return out;
     if (reduction.at || reduction.over == Over::end) {
-        const std::vector<double> weights = weights_of(reduction, y, timestep);
+        const std::vector<double> weights = weights_of(reduction, y, instants);
         for (std::size_t t = 0; t < weights.size(); ++t)
             if (weights[t] != 0) out.push_back(t);
     } else if (reduction.over == (side > 0 ? Over::least : Over::largest)) {
-        const auto [first, last] = window_of(reduction, timestep, count_of(y));
+        const auto [first, last] = window_of(reduction, instants, count_of(y));
         for (int t = first; t < last; ++t) out.push_back(static_cast<std::size_t>(t));
     }
     return out;
@@ -91,12 +91,13 @@ std::optional<description::Continuation> ContactForce::continuation(const Simula
     constexpr double dhats = 10;
     const int side = pressing_side(bounds);
     if (side == 0 || description::violation(bounds, measured) <= 0) return std::nullopt;
-    std::vector<double> z = steps(s);
+    std::vector<double> z = numbers(s);
+    const Instants steps = instants(s.trajectory.timestep);
     const std::vector<Vector3> forces = vectors(s);
     const double stiffness = side * (side > 0 ? bounds.lower : -bounds.upper) / (dhats * s.model.dhat);
     Gaps gaps(z.size());
     bool is_continued = false;
-    for (const std::size_t t : steps_taken(reduction(), side, z, s.trajectory.timestep)) {
+    for (const std::size_t t : steps_taken(reduction(), side, z, steps)) {
         if (!forces[t].isZero(0)) continue;
         gaps[t] = core::clearance::nearest_contact_gap(s.model, s.trajectory.poses[t + 1], of_.body, of_.other);
         if (gaps[t] && !(gaps[t]->gap > activation(s.model))) gaps[t].reset();
@@ -105,15 +106,15 @@ std::optional<description::Continuation> ContactForce::continuation(const Simula
         z[t] = -stiffness * (gaps[t]->gap - activation(s.model));
     }
     if (!is_continued) return std::nullopt;
-    const std::vector<double> weights = weights_of(reduction(), z, s.trajectory.timestep);
+    const std::vector<double> weights = weights_of(reduction(), z, steps);
     description::Continuation out;
-    out.value = number_of(reduction(), z, s.trajectory.timestep);
+    out.value = number_of(reduction(), z, steps);
     out.reason = apart_text(s.model, gaps, weights);
     out.add_seeds = [this, &s, stiffness, weights, gaps = std::move(gaps)](double scale, Seeds& seeds) {
         std::vector<double> of_forces(weights.size(), 0.0), of_gaps(weights.size(), 0.0);
         for (std::size_t t = 0; t < weights.size(); ++t)
             (gaps[t] ? of_gaps : of_forces)[t] = scale * weights[t] * (gaps[t] ? -stiffness : 1);
-        add_step_seeds(s, of_forces, seeds);
+        add_number_seeds(s, of_forces, seeds);
         add_gap_seeds(s, gaps, of_gaps, seeds);
     };
     return out;

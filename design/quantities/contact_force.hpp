@@ -33,7 +33,7 @@ public:
     ContactForce(const Of& of, const Reduction& reduction) : VectorSeries(of.axis, reduction), of_(of) {}
 
     const Of& of() const { return of_; }
-    Dimension step_dimension() const override { return of_.about ? Dimension::torque : Dimension::force; }
+    Dimension instant_dimension() const override { return of_.about ? Dimension::torque : Dimension::force; }
     /// Over "least", "end" or `at` a time, of a lower bound; "largest", "end" or `at`, of an upper one. Not of derivatives in time.
     std::optional<description::Continuation> continuation(const description::Simulated& simulated, const description::Measurement& measured,
                                                           const description::Bounds& bounds) const override;

@@ -47,7 +47,7 @@ double potential(const Simulated& s, size_t t) {
     for (size_t i = 0; i < s.model.bodies.size(); ++i) {
         const Body& body = s.model.bodies[i];
         if (!has_mass(body)) continue;
-        const Matrix34 pose = pose_matrix(s.trajectory.poses[t + 1][i]);
+        const Matrix34 pose = pose_matrix(s.trajectory.poses[t][i]);
         sum -= s.model.gravity.dot(pose * body.moments.col(3)) + body.force.dot(pose.col(3));
     }
     return sum;
@@ -55,7 +55,7 @@ double potential(const Simulated& s, size_t t) {
 
 double spring(const Simulated& s, size_t t, const std::vector<double>& angles) {
     const Mechanism& mechanism = s.model.mechanism;
-    const std::vector<core::measure::PlacedFrame> frames = placed(mechanism.set.frames, s.trajectory.poses[t + 1]);
+    const std::vector<core::measure::PlacedFrame> frames = placed(mechanism.set.frames, s.trajectory.poses[t]);
     const core::energy::StepProblem problem = unweighted(s.model);
     double sum = 0;
     for (const MeasureTerm& term : mechanism.terms)
@@ -63,7 +63,7 @@ double spring(const Simulated& s, size_t t, const std::vector<double>& angles) {
     return sum;
 }
 
-// Adds the seeds of scale times each, of one step.
+// Adds the seeds of scale times each, of the start (t = 0) or the end of step t.
 class EnergySeeds {
 public:
     EnergySeeds(const Simulated& s, size_t t, double scale, Seeds& seeds)
@@ -73,7 +73,7 @@ public:
         for (size_t i = 0; i < s_.model.bodies.size(); ++i) {
             if (!has_mass(s_.model.bodies[i])) continue;
             const Matrix34 &v = velocities[i], bar = scale_ * v * s_.model.bodies[i].moments;
-            adjoint::stepper::add_velocity_seed(s_.model, static_cast<int>(t_), static_cast<int>(i), bar, seeds_.trajectory_bar);
+            adjoint::stepper::add_velocity_seed(s_.model, static_cast<int>(t_) - 1, static_cast<int>(i), bar, seeds_.trajectory_bar);
             moments_bar_[i] += 0.5 * scale_ * v.transpose() * v;
         }
     }
@@ -82,8 +82,8 @@ public:
         for (size_t i = 0; i < s_.model.bodies.size(); ++i) {
             const Body& body = s_.model.bodies[i];
             if (!has_mass(body)) continue;
-            const Matrix34 pose = pose_matrix(s_.trajectory.poses[t_ + 1][i]);
-            Matrix34& bar = seeds_.trajectory_bar.pose_bar[t_ + 1][i];
+            const Matrix34 pose = pose_matrix(s_.trajectory.poses[t_][i]);
+            Matrix34& bar = seeds_.trajectory_bar.pose_bar[t_][i];
             bar -= scale_ * s_.model.gravity * body.moments.col(3).transpose();
             bar.col(3) -= scale_ * body.force;
             seeds_.model_bar.gravity_bar -= scale_ * pose * body.moments.col(3);
@@ -96,7 +96,7 @@ public:
 
     void add_spring(const std::vector<double>& angles) {
         const Mechanism& mechanism = s_.model.mechanism;
-        const std::vector<core::kinematics::Pose>& poses = s_.trajectory.poses[t_ + 1];
+        const std::vector<core::kinematics::Pose>& poses = s_.trajectory.poses[t_];
         const std::vector<core::measure::PlacedFrame> frames = placed(mechanism.set.frames, poses);
         std::vector<Matrix3> rotations;
         for (const core::measure::Frame& f : mechanism.set.frames)
@@ -128,7 +128,7 @@ private:
         const int body = mechanism.set.frames[frame].body;
         if (body == core::measure::world) return;
         const auto i = static_cast<size_t>(body);
-        seeds_.trajectory_bar.pose_bar[t_ + 1][i] += pose_entries(gradient, s_.trajectory.poses[t_ + 1][i].rotation);
+        seeds_.trajectory_bar.pose_bar[t_][i] += pose_entries(gradient, s_.trajectory.poses[t_][i].rotation);
     }
 
     const Simulated& s_;
@@ -149,11 +149,11 @@ std::vector<double> Energy::series(const Simulated& s) const {
     std::vector<std::vector<Matrix34>> velocities;
     if (has_kinetic(s.model)) velocities = adjoint::stepper::end_velocities(s.model, s.trajectory);
     std::vector<double> out;
-    for (size_t t = 0; t < s.trajectory.steps.size(); ++t) {
+    for (auto t = static_cast<size_t>(first_instant()); t < s.trajectory.poses.size(); ++t) {
         double sum = 0;
-        if (has_kinetic(s.model)) sum += kinetic(s, velocities[t]);
+        if (has_kinetic(s.model)) sum += kinetic(s, velocities[t - 1]);
         if (has(EnergyKind::potential)) sum += potential(s, t);
-        if (has(EnergyKind::spring)) sum += spring(s, t, angles[t + 1]);
+        if (has(EnergyKind::spring)) sum += spring(s, t, angles[t]);
         out.push_back(sum);
     }
     return out;
@@ -163,13 +163,14 @@ void Energy::add_series_seeds(const Simulated& s, const std::vector<double>& wei
     const std::vector<std::vector<double>> angles = adjoint::stepper::angles_along(s.model, s.trajectory);
     std::vector<std::vector<Matrix34>> velocities;
     if (has_kinetic(s.model)) velocities = adjoint::stepper::end_velocities(s.model, s.trajectory);
-    for (size_t t = 0; t < weights.size(); ++t) {
-        if (weights[t] == 0) continue;
-        EnergySeeds step(s, t, weights[t], seeds);
-        if (has_kinetic(s.model)) step.add_kinetic(velocities[t]);
-        if (has(EnergyKind::potential)) step.add_potential();
-        if (has(EnergyKind::spring)) step.add_spring(angles[t + 1]);
-        step.finish();
+    for (size_t k = 0; k < weights.size(); ++k) {
+        if (weights[k] == 0) continue;
+        const size_t t = k + static_cast<size_t>(first_instant());
+        EnergySeeds at(s, t, weights[k], seeds);
+        if (has_kinetic(s.model)) at.add_kinetic(velocities[t - 1]);
+        if (has(EnergyKind::potential)) at.add_potential();
+        if (has(EnergyKind::spring)) at.add_spring(angles[t]);
+        at.finish();
     }
 }
 

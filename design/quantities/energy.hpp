@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Energies at each step's end, of all bodies with mass, joints and springs [J]:
+/// Energies at each step's end, those that follow from where bodies are at the start too, of all bodies with mass, joints and springs [J]:
 ///   kinetic     sum 1/2 tr(V M V^T),   V the integrator's end velocity (adjoint/stepper/velocities.hpp)   (none in quasi-statics)
 ///   potential   - sum a . (P' M e4) + f . q'              gravity a and constant forces f, zero at the world's origin
 ///   spring      sum g(m')                                 of springs and stops (core/energy/measure_terms.hpp)
@@ -17,7 +17,8 @@ public:
     Energy(EnergyKind kind, const Reduction& reduction) : StepSeries(reduction), kind_(kind) {}
 
     EnergyKind kind() const { return kind_; }
-    Dimension step_dimension() const override { return Dimension::energy; }
+    Dimension instant_dimension() const override { return Dimension::energy; }
+    bool has_start() const override { return !has(EnergyKind::kinetic); }
     /// Kinetic energy in quasi-statics; masses that are not those of solids of their density.
     Errors check(const core::model::Model& model, int steps) const override;
 

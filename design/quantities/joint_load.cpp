@@ -132,7 +132,7 @@ private:
 
 }  // namespace
 
-Dimension JointLoad::step_dimension() const {
+Dimension JointLoad::instant_dimension() const {
     if (of_.kind == JointLoadKind::effort) return of_.effort_dimension;
     return of_.kind == JointLoadKind::force ? Dimension::force : Dimension::torque;
 }

@@ -29,7 +29,7 @@ public:
 
     const Of& of() const { return of_; }
     bool has_direction() const override { return of_.kind == JointLoadKind::effort || !of_.axis.isZero(0); }
-    Dimension step_dimension() const override;
+    Dimension instant_dimension() const override;
     Errors check(const core::model::Model& model, int steps) const override;
 
 protected:

@@ -34,7 +34,6 @@ std::vector<double> JointPosition::series(const Simulated& s) const {
         if (measure.kind == MeasureKind::angle) value = core::measure::nearest_turn(value, before);
         out.push_back(before = value);
     }
-    out.erase(out.begin());  // of the start
     return out;
 }
 
@@ -43,14 +42,14 @@ void JointPosition::add_series_seeds(const Simulated& s, const std::vector<doubl
     const Measure& measure = set.measures[coordinate_of(s.model.mechanism, of_.joint)];
     for (size_t t = 0; t < weights.size(); ++t) {
         if (weights[t] == 0) continue;
-        const std::vector<core::kinematics::Pose>& poses = s.trajectory.poses[t + 1];
+        const std::vector<core::kinematics::Pose>& poses = s.trajectory.poses[t];
         const std::vector<core::measure::PlacedFrame> frames = placed(set.frames, poses);
         const core::measure::VectorFunction f = vector_function(measure, frames);
         const core::measure::PoseGradients gradients = pose_gradients(measure, f, frames);
         const auto add = [&](int frame, const core::kinematics::PoseGradient& gradient) {
             const int body = set.frames[frame].body;
             if (body == core::measure::world) return;
-            seeds.trajectory_bar.pose_bar[t + 1][body] += pose_entries(weights[t] * tangent_gradient(gradient), poses[body].rotation);
+            seeds.trajectory_bar.pose_bar[t][body] += pose_entries(weights[t] * tangent_gradient(gradient), poses[body].rotation);
         };
         add(measure.a, gradients.a);
         add(measure.b, gradients.b);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The coordinate of a joint at each step's end: the angle of a revolute, the travel of a prismatic one, as motors and limits count it
-/// (core/measure/measure.hpp). Angles count turns, as the start does (Mechanism::angles_start).
+/// The coordinate of a joint at the start and at each step's end: the angle of a revolute, the travel of a prismatic one, as motors and
+/// limits count it (core/measure/measure.hpp). Angles count turns, as the start does (Mechanism::angles_start).
 #pragma once
 
 #include <string>
@@ -18,7 +18,8 @@ public:
     JointPosition(Of of, const Reduction& reduction) : StepSeries(reduction), of_(std::move(of)) {}
 
     const Of& of() const { return of_; }
-    Dimension step_dimension() const override { return of_.dimension; }
+    Dimension instant_dimension() const override { return of_.dimension; }
+    bool has_start() const override { return true; }
     bool has_direction() const override { return reduction().derivative > 0; }
     /// A joint that is not there, or has no coordinate of that dimension.
     Errors check(const core::model::Model& model, int steps) const override;

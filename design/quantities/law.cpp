@@ -19,11 +19,11 @@ Curve Law::curve_of(const Simulated& simulated) const {
     return curve;
 }
 
-// What the table is over at the steps' ends.
+// What the table is over at each instant.
 std::vector<double> Law::places(const Simulated& simulated) const {
-    if (of_.along) return of_.along->steps(simulated);
+    if (of_.along) return of_.along->numbers(simulated);
     std::vector<double> times;
-    for (int t = 1; t <= count_of(simulated.trajectory.steps); ++t) times.push_back(time_at(simulated.trajectory, t));
+    for (int t = 0; t <= count_of(simulated.trajectory.steps); ++t) times.push_back(time_at(simulated.trajectory, t));
     return times;
 }
 
@@ -51,7 +51,7 @@ void Law::add_series_seeds(const Simulated& simulated, const std::vector<double>
     std::vector<double> along(weights.size(), 0.0);
     for (std::size_t t = 0; t < weights.size(); ++t)
         if (weights[t] != 0) along[t] = weights[t] * curve_slope(curve, at[t]);
-    of_.along->add_step_seeds(simulated, along, seeds);
+    of_.along->add_number_seeds(simulated, along, seeds);
 }
 
 std::vector<std::string> Law::parameters() const {
@@ -68,7 +68,7 @@ Errors Law::check(const core::model::Model& model, int steps) const {
     if (of_.along) {
         for (const Error& error : of_.along->check(model, steps)) errors.push_back(error);
         if (!of_.along->reduction().is_plain())
-            add(ErrorCode::unsupported, "what a law is along has a number at each step; leave out what is taken over them");
+            add(ErrorCode::unsupported, "what a law is along has a number at each instant; leave out what is taken over them");
         if (of_.curve.rate != 0 || of_.curve.stop_time) add(ErrorCode::unsupported, "a law along a quantity has a table alone");
     }
     const std::vector<double>&times = of_.curve.times, &values = of_.curve.values;

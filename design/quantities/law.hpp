@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A law that a motion is to follow: a table (core/scene/curve.hpp, as a motor's) at each step's end, over the time or along what another
-/// quantity is at that step, such as the angle of a cam; its values may follow from parameters,
+/// A law that a motion is to follow: a table (core/scene/curve.hpp, as a motor's) at each instant, over the time or along what another
+/// quantity is then, such as the angle of a cam; its values may follow from parameters,
 ///   y_t = sum_k w_k(x_t) v_k(p),   x_t = time_t, or the other's number;   dy_t = sum_k w_k dv_k + y'(x_t) dx_t
 /// In an expression over the steps (step_expression.hpp) it is what a lift or a turn deviates from.
 #pragma once
@@ -31,7 +31,8 @@ public:
     Law(Of of, const Reduction& reduction) : StepSeries(reduction), of_(std::move(of)) {}
 
     const Of& of() const { return of_; }
-    Dimension step_dimension() const override { return of_.dimension; }
+    Dimension instant_dimension() const override { return of_.dimension; }
+    bool has_start() const override { return !of_.along || of_.along->has_start(); }
     std::vector<std::string> parameters() const override;
     /// A table that is none: no value for each time, times that do not increase. What it is along is not plain (Reduction::is_plain).
     Errors check(const core::model::Model& model, int steps) const override;

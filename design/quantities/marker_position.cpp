@@ -10,13 +10,13 @@ using description::Simulated;
 
 std::vector<Vector3> MarkerPosition::vectors(const Simulated& s) const {
     std::vector<Vector3> out;
-    for (int t = 1; t < count_of(s.trajectory.poses); ++t) out.emplace_back(marker_position(s, t, of_.body, of_.point) - of_.origin);
+    for (int t = 0; t < count_of(s.trajectory.poses); ++t) out.emplace_back(marker_position(s, t, of_.body, of_.point) - of_.origin);
     return out;
 }
 
 void MarkerPosition::add_vector_seeds(const Simulated& s, const std::vector<Vector3>& weights, Seeds& seeds) const {
     for (int t = 0; t < count_of(weights); ++t)
-        if (!weights[t].isZero(0)) add_marker_seed(s, t + 1, of_.body, of_.point, weights[t], seeds);
+        if (!weights[t].isZero(0)) add_marker_seed(s, t, of_.body, of_.point, weights[t], seeds);
 }
 
 Errors MarkerPosition::check(const core::model::Model& model, int steps) const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Where a marker is, a point of a body's file frame, at each step's end [m], world: p = q + R X - origin (marker.hpp). Its derivatives in
-/// time are velocity and acceleration by differences of the steps, with every integrator, quasi-statics too; marker_speed.hpp has the
-/// integrator's own velocity.
+/// Where a marker is, a point of a body's file frame, at the start and at each step's end [m], world: p = q + R X - origin (marker.hpp).
+/// Its derivatives in time are velocity and acceleration by differences of the steps, with every integrator, quasi-statics too;
+/// marker_speed.hpp has the integrator's own velocity.
 #pragma once
 
 #include "fettle/design/quantities/vector_series.hpp"
@@ -19,7 +19,8 @@ public:
     MarkerPosition(const Of& of, const Reduction& reduction) : VectorSeries(of.axis, reduction), of_(of) {}
 
     const Of& of() const { return of_; }
-    Dimension step_dimension() const override { return Dimension::length; }
+    Dimension instant_dimension() const override { return Dimension::length; }
+    bool has_start() const override { return true; }
     bool has_direction() const override { return reduction().derivative > 0 && VectorSeries::has_direction(); }
     /// A body that is not there.
     Errors check(const core::model::Model& model, int steps) const override;

@@ -17,7 +17,7 @@ public:
     MarkerSpeed(const Of& of, const Reduction& reduction) : VectorSeries(of.axis, reduction), of_(of) {}
 
     const Of& of() const { return of_; }
-    Dimension step_dimension() const override { return Dimension::speed; }
+    Dimension instant_dimension() const override { return Dimension::speed; }
     /// A body that is not there; a quasi-static simulation.
     Errors check(const core::model::Model& model, int steps) const override;
 

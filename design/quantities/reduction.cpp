@@ -14,7 +14,7 @@ namespace fettle::design::quantities {
 
 namespace {
 
-constexpr double of_a_step = 1e-6;  // by which times may miss a step's end, rounded as they are
+constexpr double of_a_step = 1e-6;  // by which times may miss an instant, rounded as they are
 
 std::vector<double> negated(std::vector<double> y) {
     for (double& v : y) v = -v;
@@ -25,8 +25,8 @@ double mean_square(const std::vector<double>& y) {
     return std::inner_product(y.begin(), y.end(), y.begin(), 0.0) / static_cast<double>(y.size());
 }
 
-// Of the window's steps; none for `integral` and `at`, which are about times.
-double number_of_steps(Over over, const std::vector<double>& y) {
+// Of the window's instants; none for `integral` and `at`, which are about times.
+double number_of_window(Over over, const std::vector<double>& y) {
     switch (over) {
         case Over::sum:
             return std::accumulate(y.begin(), y.end(), 0.0);
@@ -46,7 +46,7 @@ double number_of_steps(Over over, const std::vector<double>& y) {
     return y.back();
 }
 
-std::vector<double> weights_of_steps(Over over, const std::vector<double>& y) {
+std::vector<double> weights_of_window(Over over, const std::vector<double>& y) {
     const auto count = static_cast<double>(y.size());
     if (over == Over::sum) return std::vector<double>(y.size(), 1.0);
     if (over == Over::mean) return std::vector<double>(y.size(), 1 / count);
@@ -66,23 +66,23 @@ std::vector<double> weights_of_steps(Over over, const std::vector<double>& y) {
     return out;
 }
 
-// y at a time, counted in steps from the start: step k ends at k + 1.
-std::vector<double> weights_at(double time, std::size_t steps) {
-    std::vector<double> out(steps, 0.0);
-    const double place = std::clamp(time - 1, 0.0, static_cast<double>(steps) - 1);
-    const auto before = std::min(static_cast<std::size_t>(place), steps - 1);
+// y at a time, counted in steps from the first instant.
+std::vector<double> weights_at(double time, std::size_t count) {
+    std::vector<double> out(count, 0.0);
+    const double place = std::clamp(time, 0.0, static_cast<double>(count) - 1);
+    const auto before = std::min(static_cast<std::size_t>(place), count - 1);
     const double fraction = place - static_cast<double>(before);
     out[before] = 1 - fraction;
     if (fraction > 0) out[before + 1] = fraction;
     return out;
 }
 
-// Of the integral in that time.
-std::vector<double> weights_between(double from, double to, std::size_t steps) {
-    std::vector<double> out(steps, 0.0);
-    out[0] += std::max(0.0, std::min(to, 1.0) - std::min(from, 1.0));  // before the first step's end
-    for (std::size_t k = 0; k + 1 < steps; ++k) {
-        const auto start = static_cast<double>(k + 1);
+// Of the integral in that time, likewise; before the first instant y is constant.
+std::vector<double> weights_between(double from, double to, std::size_t count) {
+    std::vector<double> out(count, 0.0);
+    out[0] += std::max(0.0, std::min(to, 0.0) - std::min(from, 0.0));
+    for (std::size_t k = 0; k + 1 < count; ++k) {
+        const auto start = static_cast<double>(k);
         const double a = std::clamp(from - start, 0.0, 1.0), b = std::clamp(to - start, 0.0, 1.0);
         const double later = (b * b - a * a) / 2;
         out[k] += b - a - later;
@@ -91,20 +91,21 @@ std::vector<double> weights_between(double from, double to, std::size_t steps) {
     return out;
 }
 
-// Of a number that is linear in y: at a time, an integral. Times in steps.
-std::vector<double> linear_weights(const Reduction& reduction, double timestep, std::size_t steps) {
-    if (reduction.at) return weights_at(*reduction.at / timestep, steps);
-    const double end = static_cast<double>(steps), from = reduction.from.value_or(0) / timestep;
-    const double to = reduction.to ? std::min(*reduction.to / timestep, end) : end;
-    std::vector<double> out = weights_between(from, to, steps);
-    for (double& weight : out) weight *= timestep;
+// Of a number that is linear in y: at a time, an integral.
+std::vector<double> linear_weights(const Reduction& reduction, const Instants& instants, std::size_t count) {
+    const auto place = [&](double time) { return time / instants.timestep - instants.first; };
+    if (reduction.at) return weights_at(place(*reduction.at), count);
+    const double last = static_cast<double>(count) - 1;
+    std::vector<double> out =
+        weights_between(place(reduction.from.value_or(0)), reduction.to ? std::min(place(*reduction.to), last) : last, count);
+    for (double& weight : out) weight *= instants.timestep;
     return out;
 }
 
 bool is_of_times(const Reduction& reduction) { return reduction.at || reduction.over == Over::integral; }
 
 std::vector<double> in_window(const std::pair<int, int>& window, const std::vector<double>& y) {
-    FETTLE_ASSERT(0 <= window.first && window.first < window.second && window.second <= count_of(y), "a window has a step");
+    FETTLE_ASSERT(0 <= window.first && window.first < window.second && window.second <= count_of(y), "a window has an instant");
     return {y.begin() + window.first, y.begin() + window.second};
 }
 
@@ -112,37 +113,44 @@ std::string seconds(double time) { return core::base::formatted("%.6g s", time);
 
 }  // namespace
 
-std::optional<Dimension> dimension_of(const Reduction& reduction, Dimension of_steps) {
+std::optional<Dimension> dimension_of(const Reduction& reduction, Dimension of_instants) {
     const int power = (reduction.over == Over::integral && !reduction.at ? 1 : 0) - reduction.derivative;
-    if (power == 0) return of_steps;
-    if (of_steps == Dimension::power && power == 1) return Dimension::energy;  // and not a torque, which has the same powers
+    if (power == 0) return of_instants;
+    if (of_instants == Dimension::power && power == 1) return Dimension::energy;  // and not a torque, which has the same powers
     return core::expression::named_dimension(
-        product(core::expression::powers_of(of_steps), core::expression::powers_of(Dimension::time), power));
+        product(core::expression::powers_of(of_instants), core::expression::powers_of(Dimension::time), power));
 }
 
-Errors check(const Reduction& reduction, Dimension of_steps, double timestep, int steps) {
+Errors check(const Reduction& reduction, Dimension of_instants, const Instants& instants, int steps) {
     Errors errors;
     const auto add = [&](ErrorCode code, const std::string& message) { errors.push_back({code, "", message}); };
     if (steps < 1) add(ErrorCode::out_of_range, "what a step reports needs a step");
     if (reduction.derivative < 0 || reduction.derivative > 2)
         add(ErrorCode::out_of_range, "a derivative in time is the first or the second");
-    if (reduction.derivative > 0 && steps < 3) add(ErrorCode::out_of_range, "a derivative in time needs three steps");
+    const int count = steps + 1 - instants.first;
+    if (reduction.derivative > 0 && count < 3)
+        add(ErrorCode::out_of_range, "a derivative in time needs three instants, so " + std::to_string(2 + instants.first) + " steps");
     if (reduction.at && (reduction.from || reduction.to || reduction.over != Over::end))
         add(ErrorCode::inconsistent, "what is taken at a time has no window and nothing that it is taken over");
-    if (!dimension_of(reduction, of_steps))
+    if (!dimension_of(reduction, of_instants))
         add(ErrorCode::wrong_type,
             "there is no unit for this derivative or integral; divide by an amount in an expression over the steps, such as `force / 1 N`");
     if (!errors.empty()) return errors;
-    const double end = steps * timestep, room = of_a_step * timestep;
+    const double end = steps * instants.timestep, room = of_a_step * instants.timestep, first = instants.first * instants.timestep;
     for (const std::optional<double>& time : {reduction.from, reduction.to, reduction.at})
         if (time && !(*time >= 0 && *time <= end + room))
             add(ErrorCode::out_of_range, seconds(*time) + " is not within the motion, which ends at " + seconds(end));
+    if (errors.empty() && reduction.at && !(*reduction.at >= first - room))
+        add(ErrorCode::out_of_range, "at " + seconds(*reduction.at) + " this is not known: it is a step's, and the first step ends at " +
+                                         seconds(first) + ", the earliest time to ask for");
     if (reduction.from && reduction.to && !(*reduction.from < *reduction.to))
         add(ErrorCode::inconsistent,
             "a window begins before it ends; this one is from " + seconds(*reduction.from) + " to " + seconds(*reduction.to));
     if (!errors.empty() || is_of_times(reduction)) return errors;
-    const auto [first, last] = window_of(reduction, timestep, steps);
-    if (first >= last) add(ErrorCode::out_of_range, "no step ends within the window; steps are " + seconds(timestep) + " long");
+    const auto [begin, past] = window_of(reduction, instants, count);
+    if (begin >= past)
+        add(ErrorCode::out_of_range,
+            "no instant lies within the window: numbers are known every " + seconds(instants.timestep) + " from " + seconds(first) + " on");
     return errors;
 }
 
@@ -152,30 +160,32 @@ SignedExtreme extreme_of(Over over, const std::vector<double>& y) {
     return over == Over::largest || (over == Over::peak && up.value >= down.value) ? SignedExtreme{up, 1} : SignedExtreme{down, -1};
 }
 
-std::pair<int, int> window_of(const Reduction& reduction, double timestep, int steps) {
-    const double from = reduction.from ? *reduction.from / timestep : 0, to = reduction.to ? *reduction.to / timestep : steps;
-    return {std::max(0, static_cast<int>(std::ceil(from - of_a_step)) - 1), std::min(steps, static_cast<int>(std::floor(to + of_a_step)))};
+std::pair<int, int> window_of(const Reduction& reduction, const Instants& instants, int count) {
+    const auto place = [&](double time) { return time / instants.timestep - instants.first; };
+    const int first = reduction.from ? static_cast<int>(std::ceil(place(*reduction.from) - of_a_step)) : 0;
+    const int past = reduction.to ? static_cast<int>(std::floor(place(*reduction.to) + of_a_step)) + 1 : count;
+    return {std::max(0, first), std::min(count, past)};
 }
 
-double number_of(const Reduction& reduction, const std::vector<double>& y, double timestep) {
-    FETTLE_ASSERT(!y.empty(), "a number of each step needs a step");
+double number_of(const Reduction& reduction, const std::vector<double>& y, const Instants& instants) {
+    FETTLE_ASSERT(!y.empty(), "what has a number at each instant needs an instant");
     if (is_of_times(reduction)) {
-        const std::vector<double> weights = linear_weights(reduction, timestep, y.size());
+        const std::vector<double> weights = linear_weights(reduction, instants, y.size());
         double sum = 0;
         for (std::size_t t = 0; t < y.size(); ++t)
             if (weights[t] != 0) sum += weights[t] * y[t];
         return sum;
     }
-    const std::vector<double> steps = in_window(window_of(reduction, timestep, count_of(y)), y);
+    const std::vector<double> inside = in_window(window_of(reduction, instants, count_of(y)), y);
     const auto finite = [](double v) { return std::isfinite(v); };
-    if (reduction.over != Over::end && !std::all_of(steps.begin(), steps.end(), finite)) return std::numeric_limits<double>::quiet_NaN();
-    return number_of_steps(reduction.over, steps);
+    if (reduction.over != Over::end && !std::all_of(inside.begin(), inside.end(), finite)) return std::numeric_limits<double>::quiet_NaN();
+    return number_of_window(reduction.over, inside);
 }
 
-std::vector<double> weights_of(const Reduction& reduction, const std::vector<double>& y, double timestep) {
-    if (is_of_times(reduction)) return linear_weights(reduction, timestep, y.size());
-    const std::pair<int, int> window = window_of(reduction, timestep, count_of(y));
-    const std::vector<double> of_window = weights_of_steps(reduction.over, in_window(window, y));
+std::vector<double> weights_of(const Reduction& reduction, const std::vector<double>& y, const Instants& instants) {
+    if (is_of_times(reduction)) return linear_weights(reduction, instants, y.size());
+    const std::pair<int, int> window = window_of(reduction, instants, count_of(y));
+    const std::vector<double> of_window = weights_of_window(reduction.over, in_window(window, y));
     std::vector<double> out(y.size(), 0.0);
     std::copy(of_window.begin(), of_window.end(), out.begin() + window.first);
     return out;

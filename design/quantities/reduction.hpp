@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// How the numbers y_1 .. y_T at the steps' ends, at the times h, 2h, .. Th, become one: in this order the derivative in time, the window,
-/// and what is taken `over` it. Every weight d(number)/dy_t is exact.
+/// How the numbers of a motion's instants, the start and the steps' ends, become one: in this order the derivative in time, the window, and
+/// what is taken `over` it. Every weight d(number)/dy_k is exact.
+///
+/// Where something is has a number at the start too: a position, an angle, a law, what a spring stores. How it moves and what acts on it
+/// are a step's, the first of which ends at h: speeds, forces, efforts. Every reduction is of all the instants that have a number.
 ///
 ///     Reduction taken{Over::peak, 2};   the largest absolute second derivative ..
-///     taken.from = 0.2;                 .. of the steps that end at 0.2 s or later
+///     taken.from = 0.2;                 .. of the instants from 0.2 s on
 #pragma once
 
 #include <algorithm>
@@ -18,7 +21,7 @@
 
 namespace fettle::design::quantities {
 
-/// Of the window's steps. The extremes are those of extreme.hpp: of what runs through the steps' numbers, smooth in the parameters.
+/// Of the window's instants. The extremes are those of extreme.hpp: of what runs through the numbers, smooth in the parameters.
 enum class Over {
     end,  ///< the last
     sum,
@@ -27,7 +30,7 @@ enum class Over {
     least,
     peak,     ///< the largest absolute value: the greater of `largest` and -`least`, never negative
     rms,      ///< the root of the mean square
-    integral  ///< in time, from `from` to `to`: of what is linear between the steps' ends, and before the first one constant
+    integral  ///< in time, from `from` to `to`: of what is linear between the instants, and constant over the first step where none is at 0
 };
 
 struct Reduction {
@@ -35,42 +38,49 @@ struct Reduction {
     Reduction(Over over = Over::end, int derivative = 0) : over(over), derivative(derivative) {}  // NOLINT(google-explicit-constructor)
 
     Over over;
-    int derivative;                  ///< in time, 0 to 2: of the parabola through a step and its neighbours (time_derivative)
-    std::optional<double> from, to;  ///< the window: the steps that end within these times [s]; default: the whole motion
-    std::optional<double> at;        ///< y at this time [s], linear between the steps' ends; before the first one y_1
+    int derivative;                  ///< in time, 0 to 2: of the parabola through an instant and its neighbours (time_derivative)
+    std::optional<double> from, to;  ///< the window: the instants within these times [s]; default: the whole motion
+    std::optional<double> at;        ///< y at this time [s], linear between the instants
 
-    /// Is nothing said but the derivative, so that it may stand for its steps in a step_expression.hpp?
+    /// Is nothing said but the derivative, so that it may stand for its numbers in a step_expression.hpp?
     bool is_plain() const { return over == Over::end && !from && !to && !at; }
     bool operator==(const Reduction&) const = default;
 };
 
+/// When the numbers y_0, y_1, .. are known: y_k at (first + k) timestep.
+struct Instants {
+    double timestep = 0;  ///< [s]
+    int first = 0;        ///< 0: the start has a number; 1: the first step's end has the first
+};
+
 /// The dimension of the number, y's given; none: it has no unit.
-std::optional<Dimension> dimension_of(const Reduction& reduction, Dimension of_steps);
+std::optional<Dimension> dimension_of(const Reduction& reduction, Dimension of_instants);
 
-/// `at` beside others; a derivative, time or window that the motion of so many steps of `timestep` [s] does not have; no unit.
-Errors check(const Reduction& reduction, Dimension of_steps, double timestep, int steps);
+/// `at` beside others; a derivative, time or window that the motion of so many steps does not have; no unit.
+Errors check(const Reduction& reduction, Dimension of_instants, const Instants& instants, int steps);
 
-/// Steps [first, second) of the window, counted from 0. Contract: check() finds nothing.
-std::pair<int, int> window_of(const Reduction& reduction, double timestep, int steps);
+/// y_k of the window: k in [first, second), of so many numbers. Contract: check() finds nothing.
+std::pair<int, int> window_of(const Reduction& reduction, const Instants& instants, int count);
 
-/// The extreme of a window's steps that `largest`, `least` or `peak` is: sign * extreme.value, of the numbers sign * y; `peak` has no sign.
+/// The extreme of a window's numbers that `largest`, `least` or `peak` is: sign * extreme.value, of the numbers sign * y; `peak` has no
+/// sign.
 struct SignedExtreme {
     Extreme extreme;
     double sign = 1;
 };
-/// Contract: one of these three; there is a step, and all are finite.
+/// Contract: one of these three; there is a number, and all are finite.
 SignedExtreme extreme_of(Over over, const std::vector<double>& y);
 /// Is it one of these three?
 inline bool is_extreme(Over over) { return over == Over::largest || over == Over::least || over == Over::peak; }
 
-/// Of y after the derivative. NaN where a step that it depends on has no finite number. Contract: check() finds nothing.
-double number_of(const Reduction& reduction, const std::vector<double>& y, double timestep);
-/// d(number_of)/dy_t.
-std::vector<double> weights_of(const Reduction& reduction, const std::vector<double>& y, double timestep);
+/// Of y after the derivative. NaN where an instant that it depends on has no finite number. Contract: check() finds nothing.
+double number_of(const Reduction& reduction, const std::vector<double>& y, const Instants& instants);
+/// d(number_of)/dy_k.
+std::vector<double> weights_of(const Reduction& reduction, const std::vector<double>& y, const Instants& instants);
 
-/// The derivative in time, at each step's end, of the parabola through it and its two neighbours; at the first and last step, of the
-/// parabola through the first and last three. Of numbers or vectors; of order 0 y itself. Errors O(h^2), of the second derivative at the
-/// two ends O(h). Contract: three steps, where the order is not 0.
+/// The derivative in time, at each instant, of the parabola through it and its two neighbours; at the first and last one, of the parabola
+/// through the first and last three. Of numbers or vectors; of order 0 y itself. Errors O(h^2), of the second derivative at the two ends
+/// O(h). Contract: three instants, where the order is not 0.
 template <class T>
 std::vector<T> time_derivative(const std::vector<T>& y, double timestep, int order) {
     if (order == 0) return y;

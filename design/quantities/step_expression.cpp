@@ -37,7 +37,7 @@ std::vector<core::expression::Scope::Name> step_names_of(const std::vector<Named
     bool has_time = false;
     for (const NamedQuantity& part : parts) {
         const StepSeries* series = stepwise(*part.quantity);
-        names.push_back({part.name, powers_of(series != nullptr ? series->steps_dimension() : part.quantity->dimension())});
+        names.push_back({part.name, powers_of(series != nullptr ? series->numbers_dimension() : part.quantity->dimension())});
         has_time = has_time || part.name == StepExpression::time;
     }
     if (!has_time) names.push_back({std::string(StepExpression::time), powers_of(Dimension::time)});
@@ -57,7 +57,7 @@ Result<std::shared_ptr<const StepExpression>> StepExpression::create(Formula for
         if (!is_exact_number(*part.quantity))
             return Error{ErrorCode::unsupported, "",
                          "`" + part.name +
-                             "` cannot stand in an expression over the steps: these name what each step has a number of, strokes and "
+                             "` cannot stand in an expression over the steps: these name what each instant has a number of, strokes and "
                              "masses, without a `scenario` of their own"};
         used.push_back(part);
     }
@@ -73,32 +73,40 @@ Result<std::shared_ptr<const StepExpression>> StepExpression::parse(std::string_
 }
 
 StepExpression::StepExpression(Formula formula, std::vector<NamedQuantity> parts, Dimension dimension, const Reduction& reduction)
-    : StepSeries(reduction), formula_(std::move(formula)), parts_(std::move(parts)), step_dimension_(dimension) {}
+    : StepSeries(reduction), formula_(std::move(formula)), parts_(std::move(parts)), instant_dimension_(dimension) {}
 
 int StepExpression::part_of(const std::string& input) const {
     const auto found = std::find_if(parts_.begin(), parts_.end(), [&](const NamedQuantity& part) { return part.name == input; });
     return found == parts_.end() ? -1 : static_cast<int>(found - parts_.begin());
 }
 
-// [step][input]
+bool StepExpression::has_start() const {
+    return std::all_of(parts_.begin(), parts_.end(), [](const NamedQuantity& part) {
+        const StepSeries* series = stepwise(*part.quantity);
+        return series == nullptr || series->has_start();
+    });
+}
+
+// [instant][input]
 std::vector<std::vector<double>> StepExpression::inputs(const Simulated& simulated) const {
-    const std::size_t steps = simulated.trajectory.steps.size();
-    std::vector<std::vector<double>> out(steps, std::vector<double>(formula_.inputs.size()));
+    const auto first = static_cast<std::size_t>(first_instant()), count = simulated.trajectory.poses.size() - first;
+    std::vector<std::vector<double>> out(count, std::vector<double>(formula_.inputs.size()));
     for (std::size_t k = 0; k < formula_.inputs.size(); ++k) {
         const std::string& input = formula_.inputs[k];
-        std::vector<double> of_steps;
+        std::vector<double> numbers;
         if (const int part = part_of(input); part >= 0) {
             const Quantity& quantity = *parts_[part].quantity;
             const StepSeries* series = stepwise(quantity);
-            of_steps = series != nullptr ? series->steps(simulated) : std::vector<double>(steps, quantity.value(simulated).value);
+            numbers = series != nullptr ? series->numbers(simulated) : std::vector<double>(count, quantity.value(simulated).value);
         } else if (input == time) {
-            for (std::size_t t = 0; t < steps; ++t) of_steps.push_back(time_at(simulated.trajectory, static_cast<int>(t) + 1));
+            for (std::size_t t = first; t < first + count; ++t) numbers.push_back(time_at(simulated.trajectory, static_cast<int>(t)));
         } else {
             const auto found = std::find(simulated.names.begin(), simulated.names.end(), input);
             FETTLE_ASSERT(found != simulated.names.end(), "what an expression names is a quantity or a parameter of the design");
-            of_steps.assign(steps, simulated.parameters[found - simulated.names.begin()]);
+            numbers.assign(count, simulated.parameters[found - simulated.names.begin()]);
         }
-        for (std::size_t t = 0; t < steps; ++t) out[t][k] = of_steps[t];
+        const std::size_t earlier = numbers.size() - count;  // a start that others do not have
+        for (std::size_t t = 0; t < count; ++t) out[t][k] = numbers[t + earlier];
     }
     return out;
 }
@@ -111,7 +119,7 @@ std::vector<double> StepExpression::series(const Simulated& simulated) const {
 
 void StepExpression::add_series_seeds(const Simulated& simulated, const std::vector<double>& weights, Seeds& seeds) const {
     const std::vector<std::vector<double>> at = inputs(simulated);
-    std::vector<std::vector<double>> slopes(formula_.inputs.size(), std::vector<double>(at.size(), 0.0));  // [input][step]
+    std::vector<std::vector<double>> slopes(formula_.inputs.size(), std::vector<double>(at.size(), 0.0));  // [input][instant]
     for (std::size_t t = 0; t < at.size(); ++t) {
         if (weights[t] == 0) continue;
         const VectorX gradient = core::expression::differentiated(formula_, at[t]).gradient;
@@ -120,7 +128,7 @@ void StepExpression::add_series_seeds(const Simulated& simulated, const std::vec
             slopes[k][t] = weights[t] * gradient[k];
             if (std::isfinite(slopes[k][t])) continue;
             seeds.refusal = "the derivative of the expression" + (formula_.text.empty() ? "" : " `" + formula_.text + "`") + " by `" +
-                            formula_.inputs[k] + "` is not a finite number at step " + std::to_string(t + 1);
+                            formula_.inputs[k] + "` is not a finite number at " + instant_words(static_cast<int>(t) + first_instant());
             return;
         }
     }
@@ -130,7 +138,8 @@ void StepExpression::add_series_seeds(const Simulated& simulated, const std::vec
         if (part < 0 && input == time) continue;
         const StepSeries* series = part < 0 ? nullptr : stepwise(*parts_[part].quantity);
         if (series != nullptr) {
-            series->add_step_seeds(simulated, slopes[k], seeds);
+            if (first_instant() > series->first_instant()) slopes[k].insert(slopes[k].begin(), 0.0);
+            series->add_number_seeds(simulated, slopes[k], seeds);
             continue;
         }
         double sum = 0;

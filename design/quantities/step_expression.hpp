@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// A formula of what other quantities are at the same step, of the time, and of the design's parameters:
+/// A formula of what other quantities are at the same instant, of the time, and of the design's parameters:
 ///   y_t = f(u_t, .., time_t, p),   dy_t = sum df/du du_t + df/dp dp
 /// A deviation from a law (lift - 3 mm * sin(turn)), a transmission error (turn_b - 2 * turn_a), power (torque * speed / 1 rad), an angle
-/// between links are each one formula. Parts that say nothing but a derivative (Reduction::is_plain) stand for their steps, others, such as
-/// a peak or a mass, for their number, the same at each step. `time` is the time of the step's end.
+/// between links are each one formula. Parts that say nothing but a derivative (Reduction::is_plain) stand for their numbers, others, such
+/// as a peak or a mass, for the one that they come to, the same at each instant. It has a number at the start if all that it names have
+/// one.
 ///
 ///     const auto error = StepExpression::parse("output - 2 * input", {{"output", output}, {"input", input}}, Over::peak);
 #pragma once
@@ -35,7 +36,8 @@ public:
 
     const core::expression::Formula& formula() const { return formula_; }
     const std::vector<NamedQuantity>& parts() const { return parts_; }
-    Dimension step_dimension() const override { return step_dimension_; }
+    Dimension instant_dimension() const override { return instant_dimension_; }
+    bool has_start() const override;
     std::vector<std::string> parameters() const override;
     Errors check(const core::model::Model& model, int steps) const override;
 
@@ -51,7 +53,7 @@ private:
 
     core::expression::Formula formula_;
     std::vector<NamedQuantity> parts_;
-    Dimension step_dimension_;
+    Dimension instant_dimension_;
 };
 
 /// The names that an expression over the steps may use besides parameters, as parse_formula wants them.

@@ -7,16 +7,18 @@ using description::Measurement;
 using description::Seeds;
 using description::Simulated;
 
-std::vector<double> StepSeries::steps(const Simulated& simulated) const { return series_derivative(simulated, reduction_.derivative); }
+std::vector<double> StepSeries::numbers(const Simulated& simulated) const { return series_derivative(simulated, reduction_.derivative); }
 
-void StepSeries::add_step_seeds(const Simulated& simulated, const std::vector<double>& weights, Seeds& seeds) const {
+void StepSeries::add_number_seeds(const Simulated& simulated, const std::vector<double>& weights, Seeds& seeds) const {
     add_series_derivative_seeds(simulated, reduction_.derivative, weights, seeds);
 }
 
+std::string instant_words(int instant) { return instant == 0 ? "the start" : "step " + std::to_string(instant); }
+
 StepSeries::Window StepSeries::window(const Simulated& simulated) const {
-    const std::vector<double> all = steps(simulated);
-    const auto [first, last] = window_of(reduction_, simulated.trajectory.timestep, count_of(all));
-    return {{all.begin() + first, all.begin() + last}, first};
+    const std::vector<double> all = numbers(simulated);
+    const auto [first, past] = window_of(reduction_, instants(simulated.trajectory.timestep), count_of(all));
+    return {{all.begin() + first, all.begin() + past}, first + first_instant()};
 }
 
 std::vector<double> StepSeries::series_derivative(const Simulated& simulated, int order) const {
@@ -28,24 +30,24 @@ void StepSeries::add_series_derivative_seeds(const Simulated& simulated, int ord
     add_series_seeds(simulated, time_derivative_adjoint(weights, simulated.trajectory.timestep, order), seeds);
 }
 
-Dimension StepSeries::steps_dimension() const {
-    return dimension_of({Over::end, reduction_.derivative}, step_dimension()).value_or(Dimension::number);
+Dimension StepSeries::numbers_dimension() const {
+    return dimension_of({Over::end, reduction_.derivative}, instant_dimension()).value_or(Dimension::number);
 }
 
-Dimension StepSeries::dimension() const { return dimension_of(reduction_, step_dimension()).value_or(Dimension::number); }
+Dimension StepSeries::dimension() const { return dimension_of(reduction_, instant_dimension()).value_or(Dimension::number); }
 
 Measurement StepSeries::value(const Simulated& simulated) const {
-    return description::computed(number_of(reduction_, steps(simulated), simulated.trajectory.timestep));
+    return description::computed(number_of(reduction_, numbers(simulated), instants(simulated.trajectory.timestep)));
 }
 
 void StepSeries::add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const {
-    std::vector<double> weights = weights_of(reduction_, steps(simulated), simulated.trajectory.timestep);
+    std::vector<double> weights = weights_of(reduction_, numbers(simulated), instants(simulated.trajectory.timestep));
     for (double& weight : weights) weight *= scale;
-    add_step_seeds(simulated, weights, seeds);
+    add_number_seeds(simulated, weights, seeds);
 }
 
 Errors StepSeries::check(const core::model::Model& model, int steps) const {
-    Errors errors = quantities::check(reduction_, step_dimension(), model.timestep, steps);
+    Errors errors = quantities::check(reduction_, instant_dimension(), instants(model.timestep), steps);
     if (reduction_.derivative > 0 && is_magnitude())
         errors.push_back({ErrorCode::inconsistent, "", "the derivative in time of a magnitude says little; name an `axis`"});
     return errors;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// Quantities that every step of a motion has one number of, y_1 .. y_T: what is made of them (reduction.hpp), and its derivative in each.
+/// Quantities that every instant of a motion has one number of, the steps' ends and, of where something is, the start: what is made of them
+/// (reduction.hpp), and its derivative in each.
 /// Kinds: joint_load.hpp, joint_position.hpp, body_turn.hpp, energy.hpp, law.hpp, those of vector_series.hpp, and formulas of these,
 /// step_expression.hpp.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "fettle/design/description/quantity.hpp"
@@ -17,21 +19,24 @@ public:
 
     const Reduction& reduction() const { return reduction_; }
     Over over() const { return reduction_.over; }
-    /// The numbers of all steps, after the derivative in time: what the reduction is taken of. Contract: check() finds nothing.
-    std::vector<double> steps(const description::Simulated& simulated) const;
-    /// Adds the seeds of sum_t weights[t] steps()[t].
-    void add_step_seeds(const description::Simulated& simulated, const std::vector<double>& weights, description::Seeds& seeds) const;
-    /// The window's part of steps(), and where it begins.
+    /// Has the start a number? Where something is has one; how it moves and what acts on it is a step's.
+    virtual bool has_start() const { return false; }
+    int first_instant() const { return has_start() ? 0 : 1; }
+    /// The numbers of all instants, after the derivative in time: what the reduction is taken of. Contract: check() finds nothing.
+    std::vector<double> numbers(const description::Simulated& simulated) const;
+    /// Adds the seeds of sum_k weights[k] numbers()[k].
+    void add_number_seeds(const description::Simulated& simulated, const std::vector<double>& weights, description::Seeds& seeds) const;
+    /// The window's part of numbers(), and the instant that it begins with: 0 the start, t the end of step t.
     struct Window {
-        std::vector<double> steps;
+        std::vector<double> numbers;
         int first = 0;
     };
     Window window(const description::Simulated& simulated) const;
 
-    /// Of y_t.
-    virtual Dimension step_dimension() const = 0;
-    /// Of steps(). Contract of both: there is a unit of it, which check() sees to (until then: number).
-    Dimension steps_dimension() const;
+    /// Of y_k.
+    virtual Dimension instant_dimension() const = 0;
+    /// Of numbers(). Contract of both: there is a unit of it, which check() sees to (until then: number).
+    Dimension numbers_dimension() const;
     Dimension dimension() const final;
     /// Does the sign tell a direction, as of a torque about an axis? Not of magnitudes, nor of energies, whose zero is a convention.
     virtual bool has_direction() const { return false; }
@@ -42,8 +47,9 @@ public:
     Errors check(const core::model::Model& model, int steps) const override;
 
 protected:
+    /// y_k, of the instant first_instant() and those after it.
     virtual std::vector<double> series(const description::Simulated& simulated) const = 0;
-    /// Adds the seeds of sum_t weights[t] y_t+1.
+    /// Adds the seeds of sum_k weights[k] y_k.
     virtual void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
                                   description::Seeds& seeds) const = 0;
     /// The derivative in time of the series, and its seeds; those of a magnitude are that of the vector's derivative.
@@ -53,9 +59,14 @@ protected:
     /// Are its numbers magnitudes whose vectors series_derivative() does not know?
     virtual bool is_magnitude() const { return false; }
 
+    Instants instants(double timestep) const { return {timestep, first_instant()}; }
+
 private:
     Reduction reduction_;
 };
+
+/// "the start", "step 3".
+std::string instant_words(int instant);
 
 /// The matrix whose product, entry by entry, with the change [[phi] R, dq] of a pose is that of a gradient in (q, phi).
 inline Matrix34 pose_entries(const Vector6& gradient, const Matrix3& rotation) {

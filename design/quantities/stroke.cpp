@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/quantities/stroke.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/design/quantities/extreme.hpp"
 #include "fettle/design/quantities/own_formula.hpp"
+#include "fettle/design/quantities/reduction.hpp"
 
 namespace fettle::design::quantities {
 
@@ -15,10 +15,10 @@ using description::Seeds;
 using description::Simulated;
 
 std::pair<int, int> Stroke::configurations(double timestep, int steps) const {
-    constexpr double of_a_step = 1e-6;  // by which times may miss a step's end, rounded as they are
-    const int first = window_.from ? static_cast<int>(std::ceil(*window_.from / timestep - of_a_step)) : 0;
-    const int last = window_.to ? static_cast<int>(std::floor(*window_.to / timestep + of_a_step)) : steps;
-    return {first, std::min(last, steps) + 1};
+    Reduction window;
+    window.from = window_.from;
+    window.to = window_.to;
+    return window_of(window, {timestep, 0}, steps + 1);
 }
 
 std::vector<double> Stroke::coordinates(const Simulated& simulated, double sign) const {

@@ -143,7 +143,7 @@ std::shared_ptr<const Quantity> read_mass(const JsonNode& node, const ReadContex
 
 constexpr std::string_view reduction_keys[] = {"over", "from", "to", "at", "derivative"};
 
-// What every quantity that each step has a number of may say of it, beside keys of its own.
+// What every quantity that each instant has a number of may say of it, beside keys of its own.
 std::vector<std::string_view> with_reduction(std::vector<std::string_view> keys) {
     keys.insert(keys.end(), std::begin(reduction_keys), std::end(reduction_keys));
     return keys;
@@ -153,8 +153,8 @@ bool has_reduction(const JsonNode& node) {
     return std::any_of(std::begin(reduction_keys), std::end(reduction_keys), [&](std::string_view key) { return node[key].exists(); });
 }
 
-// @param of_steps  What a step's number is. Of what depends on the motion, Quantity::check tells.
-quantities::Reduction read_reduction(const JsonNode& node, Dimension of_steps) {
+// @param of_instants  What an instant's number is. Of what depends on the motion, Quantity::check tells.
+quantities::Reduction read_reduction(const JsonNode& node, Dimension of_instants) {
     static const std::vector<std::string_view> names{"end", "sum", "mean", "largest", "least", "peak", "rms", "integral"};
     const std::string name = node["over"].choice(names).value_or("end");
     quantities::Reduction out(static_cast<quantities::Over>(std::find(names.begin(), names.end(), name) - names.begin()));
@@ -166,7 +166,7 @@ quantities::Reduction read_reduction(const JsonNode& node, Dimension of_steps) {
     for (const std::string_view key : {"over", "from", "to"})
         if (node["at"].exists() && node[key].exists())
             node[key].fail(ErrorCode::inconsistent, "either `at` a time, or `" + std::string(key) + "`, which is about several steps");
-    if (!dimension_of(out, of_steps))
+    if (!dimension_of(out, of_instants))
         node.fail(
             ErrorCode::wrong_type,
             "there is no unit for this derivative or integral; divide by an amount in an expression over the steps, such as `force / 1 N`");
@@ -307,13 +307,13 @@ bool read_law_places(const JsonNode& node, const ReadContext& context, quantitie
     }
     if (!of.along) {
         const bool is_there = std::find(known.begin(), known.end(), *name) != known.end();
-        node["along"].fail(ErrorCode::out_of_range, is_there ? node["along"].shown() + " is no quantity that each step has a number of"
+        node["along"].fail(ErrorCode::out_of_range, is_there ? node["along"].shown() + " is no quantity that each instant has a number of"
                                                              : "there is no quantity " + node["along"].shown() +
                                                                    " above this one in `quantities`" +
                                                                    (known.empty() ? "" : "; " + core::files::did_you_mean(*name, known)));
         return false;
     }
-    const Dimension dimension = of.along->steps_dimension();
+    const Dimension dimension = of.along->numbers_dimension();
     const double unit = context.unit(dimension);
     for (const JsonNode& position : node.require("positions").elements())
         of.curve.times.push_back(position.quantity(dimension, unit).value_or(0));
@@ -475,7 +475,7 @@ const std::vector<QuantityType>& quantity_table() {
          "m^2",
          "how far a point of a body stays from points that it should go through, at given `times` or in free timing"},
         {"marker_position", with_reduction({"body", "point", "axis", "origin"}), read_marker_position, marker_position_name, "m",
-         "where a point of a body is at the steps' ends: along an `axis`, else its distance, from an `origin`"},
+         "where a point of a body is at the start and the steps' ends: along an `axis`, else its distance, from an `origin`"},
         {"marker_speed", with_reduction({"body", "point", "axis"}), read_marker_speed, marker_speed_name, "m/s",
          "velocity of a point of a body at the steps' ends: along an `axis`, else its magnitude"},
         {"play",
@@ -496,7 +496,7 @@ const std::vector<QuantityType>& quantity_table() {
         {"joint_torque", with_reduction({"joint", "axis"}), read_joint_torque, joint_torque_name, "N m",
          "torque that a joint carries about its point: along an `axis`, else its magnitude"},
         {"joint_position", with_reduction({"joint"}), read_joint_position, joint_position_name, "rad or m",
-         "angle of a joint that turns, travel of one that slides, at the steps' ends; angles count turns"},
+         "angle of a joint that turns, travel of one that slides, at the start and the steps' ends; angles count turns"},
         {"turn", with_reduction({"body", "axis"}), read_turn, turn_name, "rad",
          "how far a body has turned about an axis since the start, at the steps' ends: of a part that a real pin holds"},
         {"motor_effort", with_reduction({"motor"}), read_motor_effort, motor_effort_name, "N m or N",

@@ -52,19 +52,24 @@ std::string without_scenario(std::string name, const description::Design& design
     return name;
 }
 
+// At the steps' ends.
 std::vector<double> numbers_of(const Quantity& quantity, const description::Simulated& simulated) {
-    if (const auto* series = dynamic_cast<const quantities::StepSeries*>(&quantity)) return series->steps(simulated);
-    const auto& stroke = dynamic_cast<const quantities::Stroke&>(quantity);
-    std::vector<double> travel;
-    for (const auto& poses : simulated.trajectory.poses)
-        travel.push_back(stroke.axis().dot(poses[stroke.body()].position - simulated.trajectory.poses.front()[stroke.body()].position));
-    travel.erase(travel.begin());  // the start, which is no step
-    return travel;
+    std::vector<double> numbers;
+    if (const auto* series = dynamic_cast<const quantities::StepSeries*>(&quantity)) {
+        numbers = series->numbers(simulated);
+    } else {
+        const auto& stroke = dynamic_cast<const quantities::Stroke&>(quantity);
+        for (const auto& poses : simulated.trajectory.poses)
+            numbers.push_back(
+                stroke.axis().dot(poses[stroke.body()].position - simulated.trajectory.poses.front()[stroke.body()].position));
+    }
+    numbers.erase(numbers.begin(), numbers.end() - static_cast<std::ptrdiff_t>(simulated.trajectory.steps.size()));  // the start
+    return numbers;
 }
 
 Dimension dimension_of(const Quantity& quantity) {
     const auto* series = dynamic_cast<const quantities::StepSeries*>(&quantity);
-    return series != nullptr ? series->steps_dimension() : Dimension::length;
+    return series != nullptr ? series->numbers_dimension() : Dimension::length;
 }
 
 std::vector<double> thinned(const std::vector<double>& all) {

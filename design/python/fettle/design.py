@@ -240,10 +240,10 @@ class MarkerPath(Record, Measured):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True, kw_only=True)
 class Series(Record, Measured):
-    """What each step of a motion has a number of. A quantity is what comes of them, in this order: the derivative in time, the window
-    (the steps that end within `from_time` and `to_time`; None: the start, the end), and what is taken `over` it: "end", "sum", "mean",
-    "largest", "least", "peak" (the largest absolute value), "rms", or "integral" in time. Or the number `at` a time, linear between the
-    steps' ends. Of a library's kind: derive from Quantity instead."""
+    """What each instant of a motion has a number of: the steps' ends and, of where something is, the start. A quantity is what comes of
+    them, in this order: the derivative in time, the window (the instants within `from_time` and `to_time`; None: the start, the end), and
+    what is taken `over` it: "end", "sum", "mean", "largest", "least", "peak" (the largest absolute value), "rms", or "integral" in time. Or
+    the number `at` a time, linear between the instants. Of a library's kind: derive from Quantity instead."""
 
     derivative: int = 0  #: 0, 1, 2: the first is a velocity, the second an acceleration
     from_time: Optional[Number] = number("time", None)  #: [s]
@@ -253,7 +253,7 @@ class Series(Record, Measured):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class MarkerPosition(Series):
-    """Where a body's point (in its file frame) is at the steps' ends, from an origin [m]: along an axis, else the distance. With
+    """Where a body's point (in its file frame) is at the start and the steps' ends, from an origin [m]: along an axis, else the distance. With
     derivative=2 its acceleration, by differences of the steps."""
 
     body: Which
@@ -286,7 +286,7 @@ class JointLoad(Series):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class JointPosition(Series):
-    """Angle of a joint that turns [rad], travel of one that slides [m], at the steps' ends; angles count turns."""
+    """Angle of a joint that turns [rad], travel of one that slides [m], at the start and the steps' ends; angles count turns."""
 
     joint: str
     over: str = "end"

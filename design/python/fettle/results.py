@@ -43,7 +43,7 @@ class StepReport(Record):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class SimulationReport(Record):
-    status: Literal["ok", "blocked", "not_held", "not_converged", "interrupted"] = "ok"
+    status: Literal["ok", "blocked", "not_held", "not_converged", "energy_gained", "interrupted"] = "ok"
     message: str = ""
     steps: List[StepReport] = dataclasses.field(default_factory=list)
     newton_iterations: int = 0

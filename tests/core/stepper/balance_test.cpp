@@ -64,7 +64,7 @@ TEST_CASE("a spring's energy, a damper's loss and a motor's work are told, and b
     CHECK(driven.dissipated == Approx(4 * 0.1).epsilon(1e-6));
     CHECK(driven.work - driven.dissipated == Approx(driven.energy_end - driven.energy_start - driven.energy_error).epsilon(1e-9));
     CHECK(driven.energy_end - driven.energy_start == Approx(0.5 * 40 * 0.01).epsilon(1e-6));
-    CHECK(std::abs(driven.energy_error) < 2e-3 * driven.energy_scale);
+    CHECK(std::abs(driven.energy_error) < 2e-3 * driven.energy_available);
 }
 
 TEST_CASE("energy that comes from nowhere, and momentum that goes, are warned of") {
@@ -87,7 +87,7 @@ TEST_CASE("energy that comes from nowhere, and momentum that goes, are warned of
         CHECK(warning(integrator, std::nullopt).empty());
         CHECK(warning(integrator, 1e-3).find("gained energy from nowhere") != std::string::npos);  // a hundredth of the size per second
     }
-    CHECK(warning(Integrator::implicit_euler, std::nullopt).find("angular momentum") != std::string::npos);
+    CHECK(warning(Integrator::implicit_euler, std::nullopt).find("lost") != std::string::npos);
 }
 
 TEST_CASE("a scripted body supplies what it pulls along by a joint") {
@@ -115,7 +115,7 @@ TEST_CASE("a scripted body supplies what it pulls along by a joint") {
     CHECK(balance_warning(model, *out.balance).empty());
 }
 
-TEST_CASE("what comes to rest, anywhere, is warned of where it is thrown, and nowhere else") {
+TEST_CASE("what comes to rest, anywhere, is told to gain energy where it is thrown, and nowhere else") {
     const auto block = [](const std::string& name, const Vector3& low, const Vector3& size) {
         scene::Body body;
         body.name = name;
@@ -140,16 +140,21 @@ TEST_CASE("what comes to rest, anywhere, is warned of where it is thrown, and no
                 scene.integrator = integrator;
                 const model::Model model = built(scene);
                 for (const int steps : {1, 60}) {
-                    const auto found = run(model, steps).balance;
+                    SimulationOptions options;
+                    options.steps = steps;
+                    options.outputs = true;
+                    const Simulation out = simulate(model, options);
+                    const auto found = out.balance;
                     REQUIRE(found);
-                    INFO(steps << " steps: error " << found->energy_error << " J of " << found->energy_scale << ", start "
+                    INFO(steps << " steps: error " << found->energy_error << " J of " << found->energy_available << ", start "
                                << found->energy_start << ", end " << found->energy_end << ", lost " << found->dissipated);
                     // Newmark's rule throws what has fallen 0.2 mm up by millimetres, and says so.
-                    const bool is_thrown = found->energy_error > 0.5 * found->energy_scale;
+                    const bool is_thrown = found->energy_error > 0.5 * found->energy_available;
                     CHECK((!is_thrown || integrator == Integrator::newmark));
+                    CHECK(out.report.status == (is_of_nowhere(*found) ? SimulationStatus::energy_gained : SimulationStatus::ok));
                     const std::string told = balance_warning(model, *found);
-                    CHECK((is_thrown ? told.find("bdf2") != std::string::npos : told.empty()));
-                    CHECK(found->energy_scale > 0);
+                    CHECK((is_thrown ? told.find("bdf2") != std::string::npos : told.find("gained") == std::string::npos));
+                    CHECK(found->energy_available > 0);
                 }
             }
 }
@@ -185,7 +190,78 @@ TEST_CASE("a hoist that comes back is measured by the work that went through it"
         }
     }
     CHECK(sum.balance().energy_end == Approx(0).margin(1e-12));
-    CHECK(sum.balance().energy_scale == Approx(1.962));
+    CHECK(sum.balance().energy_available == Approx(1.962));
+}
+
+TEST_CASE("energy that the time integration loses is warned of, with the remedy, where no damping explains it") {
+    // A bar on a hinge, let go from the side for 2 s.
+    const auto told = [](Integrator integrator, double h, double damping) {
+        scene::Scene scene = scene_of({bar("bar", 0.2)}, h);
+        scene.velocity_tolerance.reset();
+        scene.integrator = integrator;
+        scene.gravity = Vector3(0, 0, -gravity);
+        scene.mechanism.joints = {
+            joint("hinge", JointKind::revolute, {"", Vector3::Zero(), Vector3::UnitY()}, {"bar", Vector3::Zero(), Vector3::UnitY()})};
+        scene.mechanism.joints[0].forces.damping = damping;
+        const Balance found = balance(scene, static_cast<int>(std::lround(2 / h)));
+        const double dropped = 0.08 * gravity * 0.1;
+        CHECK(found.energy_available == Approx(dropped).epsilon(0.02));
+        return balance_warning(built(scene), found);
+    };
+    const std::string coarse = told(Integrator::implicit_euler, 0.01, 0);
+    CHECK(coarse.find("has lost") != std::string::npos);
+    CHECK(coarse.find("bdf2") != std::string::npos);
+    CHECK(coarse.find("blow") == std::string::npos);
+    CHECK(told(Integrator::bdf2, 0.002, 0).empty());
+    CHECK(told(Integrator::bdf2, 0.002, 2e-3).empty());
+    CHECK(told(Integrator::implicit_euler, 1e-4, 2e-3).empty());
+}
+
+TEST_CASE("what a drive loses by starting at once is no loss of the time integration") {
+    // A wheel that turns at 3 rad/s from the first step on; stops for a while; turns back.
+    for (const Integrator integrator : {Integrator::implicit_euler, Integrator::bdf2}) {
+        scene::Scene scene = scene_of({bar("wheel", 0.2)}, 0.01);
+        scene.integrator = integrator;
+        scene.mechanism.joints = {
+            joint("axle", JointKind::revolute, {"", Vector3::Zero(), Vector3::UnitY()}, {"wheel", Vector3::Zero(), Vector3::UnitY()})};
+        scene::Curve curve;
+        curve.times = {0, 0.3, 0.6, 0.9};
+        curve.values = {0, 0.9, 0.9, 0};
+        scene.mechanism.motors = {motor("drive", "axle", curve)};
+        const Balance found = balance(scene, 90);
+        INFO(static_cast<int>(integrator) << ": " << found.energy_lost << " J of " << found.energy_available << ", in all "
+                                          << -found.energy_error);
+        CHECK(std::abs(found.energy_lost) < 1e-2 * found.energy_available);
+        CHECK(found.energy_error < -0.2 * found.energy_available);
+        CHECK(balance_warning(built(scene), found).empty());
+    }
+}
+
+TEST_CASE("a motion that has made more energy than there was ends by name, asked for or not") {
+    // A cube falls into a corner of Newmark's: the rule throws it up again and again.
+    scene::Body floor = bar("floor", 0.2, Vector3(-0.1, 0, -0.01)), cube = bar("cube", 0.02, Vector3(-0.01, 0, 0.0102));
+    floor.type = scene::BodyType::static_body;
+    scene::Scene scene = scene_of({floor, cube}, 2e-3);
+    for (scene::Body& body : scene.bodies) body.group = -1;
+    scene.velocity_tolerance.reset();
+    scene.gravity = Vector3(0, 0, -gravity);
+    for (const Integrator integrator : {Integrator::newmark, Integrator::bdf2, Integrator::implicit_euler})
+        for (const bool outputs : {false, true}) {
+            scene.integrator = integrator;
+            const model::Model model = built(scene);
+            SimulationOptions options;
+            options.steps = 300;
+            options.outputs = outputs;
+            const Simulation out = simulate(model, options);
+            INFO(static_cast<int>(integrator) << " " << out.report.message);
+            const bool gains = integrator == Integrator::newmark;
+            CHECK(out.report.status == (gains ? SimulationStatus::energy_gained : SimulationStatus::ok));
+            CHECK(out.outputs.size() == (outputs ? out.trajectory.steps.size() : 0));
+            if (!gains) continue;
+            CHECK(out.trajectory.steps.size() < 300);
+            CHECK(out.report.message.find("gained energy from nowhere") != std::string::npos);
+            CHECK(out.report.message.find("bdf2") != std::string::npos);
+        }
 }
 
 TEST_CASE("what a joint carries and what its stop, its spring, its damper and its friction push with are told apart") {

@@ -55,4 +55,34 @@ TEST_CASE("backwards and forwards agree on what friction carries, by every integ
         }
 }
 
+// A slide that a damper has brought to its steady speed: no start and no mass changes what the motor pushes with against the spring any
+// more. What the two sweeps then have is the rounding of 4 N, and not to be compared with itself.
+TEST_CASE("backwards and forwards agree on an effort that nothing in the directions moves", "[gradient]") {
+    for (const char* end_time : {"0.012", "0.02", "0.04"}) {
+        const std::string scene =
+            replaced(R"json({"fettle_scene": 1, "units": "mm", "timestep": 0.001, "end_time": END, "gravity": [0, 0, 0],
+          "bodies": [{"name": "slide", "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 30, "size_y": 10, "size_z": 10}}},
+                     {"name": "push", "density": 1000, "position": [40, 0, 0],
+                      "shape": {"part": "box", "dimensions": {"size_x": 20, "size_y": 10, "size_z": 10}}}],
+          "joints": [{"name": "rail", "type": "prismatic", "b": "slide", "point": [0, 0, 0], "axis": [1, 0, 0], "damping": 20},
+                     {"name": "core", "type": "prismatic", "a": "slide", "b": "push", "point": [40, 0, 0], "axis": [1, 0, 0], "stiffness": 300,
+                      "preload": 3}],
+          "motors": [{"name": "pull", "joint": "rail", "force": {"times": [0], "values": [10]}},
+                     {"name": "drive", "joint": "core", "travel": {"rate": 13}}]})json",
+                     "END", end_time);
+        const DesignFolder folder(R"json({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",
+          "parameters": [{"name": "k", "unit": "N/m", "value": 300, "lower": 100, "upper": 500}], "set": {"/joints/core/stiffness": "= k"},
+          "objective": [{"type": "motor_effort", "motor": "drive", "over": "end"}]})json",
+                                  scene);
+        const problem::DesignProblem problem = problem_of(folder);
+        const problem::DesignEvaluation at = problem.evaluate(description::values_of(problem.design().parameters));
+        INFO(end_time << ": " << at.reason);
+        REQUIRE(at.usable);
+        const SweepAgreement agreement = compare_sweeps(problem, at);
+        CAPTURE(agreement.quantity, agreement.disagreement, agreement.failure);
+        CHECK(agreement.failure.empty());
+        CHECK(agreement.disagreement < 1e-8);
+    }
+}
+
 }  // namespace fettle::design::gradient_audit::sweep_agreement_test

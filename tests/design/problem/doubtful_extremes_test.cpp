@@ -24,7 +24,7 @@ class Torque : public quantities::StepSeries {
 public:
     Torque(std::vector<double> numbers, Over over, bool has_direction = true)
         : StepSeries(over), numbers_(std::move(numbers)), has_direction_(has_direction) {}
-    Dimension step_dimension() const override { return Dimension::torque; }
+    Dimension instant_dimension() const override { return Dimension::torque; }
     bool has_direction() const override { return has_direction_; }
 
 protected:

@@ -58,7 +58,7 @@ TEST_CASE("marker_position: a point on a turning wheel") {
     CHECK(value(2) == Approx(r * std::sin(w * h) / h).epsilon(1e-6));
     CHECK(value(3) == Approx(r * std::sin(w / 2)).epsilon(1e-6));
     CHECK(value(4) == Approx(0.08).epsilon(1e-4));
-    CHECK(value(5) == Approx(r * std::sin(w * h)).epsilon(1e-6));
+    CHECK(value(5) == Approx(0).margin(1e-9));  // at the start
     CHECK(value(6) == Approx(w).epsilon(1e-6));
     CHECK(value(7) == Approx(0).margin(1e-3));
     CHECK(value(8) == Approx(w).epsilon(1e-6));

@@ -36,9 +36,9 @@ TEST_CASE("turns: a motor's joint and its body turn as the motor says, over more
     REQUIRE(at.usable);
     CHECK(at.constraints[0].value == Approx(500 * degree));
     CHECK(at.constraints[1].value == Approx(-500 * degree));
-    CHECK(at.constraints[2].value == Approx(30e-3 * 0.51));
+    CHECK(at.constraints[2].value == Approx(30e-3 * 0.5));
     CHECK(at.constraints[3].value == Approx(1));
-    const MatrixX expected = (MatrixX(4, 2) << 1, 0, -1, 0, 0, 0.51, 0, 0).finished();
+    const MatrixX expected = (MatrixX(4, 2) << 1, 0, -1, 0, 0, 0.5, 0, 0).finished();
     CHECK((at.jacobian - expected).cwiseAbs().maxCoeff() < 1e-7);
 }
 
