@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/adjoint/model_gradient.hpp"
 
+#include "fettle/core/model/row_choice.hpp"
+
 namespace fettle::adjoint {
 namespace {
 
@@ -10,9 +12,10 @@ MechanismGradient zero_mechanism_gradient(const core::model::Mechanism& mechanis
     g.term_coefficient.assign(mechanism.terms.size(), 0);
     g.term_reference = g.term_rate = g.term_coefficient;
     for (const core::model::MeasureTerm& term : mechanism.terms) g.term_values.emplace_back(term.curve.values.size(), 0.0);
-    g.row_constant.assign(mechanism.rows.size(), 0);
+    const std::vector<core::constraint::Row> rows = all_rows(mechanism);
+    g.row_constant.assign(rows.size(), 0);
     g.row_rate = g.row_constant;
-    for (const core::constraint::Row& row : mechanism.rows) {
+    for (const core::constraint::Row& row : rows) {
         g.row_values.emplace_back(row.curve.values.size(), 0.0);
         g.row_factors.emplace_back(row.parts.size(), 0.0);
     }

@@ -17,7 +17,7 @@ namespace fettle::adjoint {
 struct TrajectoryGradient {
     /// [t][body], t = 0 .. steps: derivative with respect to the pose matrix P = [R q], entry by entry (3x4).
     std::vector<std::vector<Matrix34>> pose_bar;
-    /// [step]: derivative with respect to the multipliers of the step's rows (of the potential times its weight); empty: of none.
+    /// [step]: derivative with respect to the multipliers of all rows (stepper/row_multipliers.hpp); empty: of none.
     std::vector<VectorX> multiplier_bar;
     /// [step][body]: of Newmark's velocity Pdot at the step's end, entry by entry; empty: of none (others' velocities are differences of
     /// poses: stepper/velocities.hpp).
@@ -40,7 +40,8 @@ struct BodyGradient {
     std::vector<Vector6> increment_bar;  ///< [step]: prescribed coordinates' increments over each step (chart coordinates); free ones 0
 };
 
-/// dJ/d(core::model::Mechanism). Everything is per frame, term and row of the model, as it was built: how frames, rests and constants
+/// dJ/d(core::model::Mechanism). Everything is per frame, term and row of the model (of all its rows, by core::constraint::Row::number), as
+/// it was built: how frames, rests and constants
 /// follow from a scene is chained by whoever builds it.
 struct MechanismGradient {
     std::vector<core::measure::FrameGradient> frames;  ///< placement, entry by entry: axes too, as if they could be anything

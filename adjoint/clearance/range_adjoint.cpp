@@ -11,6 +11,8 @@
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/kinematics/rotation.hpp"
 #include "fettle/core/kinematics/tangent_system.hpp"
+#include "fettle/core/model/limits.hpp"
+#include "fettle/core/model/row_choice.hpp"
 
 namespace fettle::adjoint::clearance {
 namespace {
@@ -196,9 +198,8 @@ private:
         const int joint = ranges_.joint_of[link.body];
         if (model_.mechanism.joints[joint].kind != core::scene::JointKind::screw) return;
         const double sense = link.body == model_.mechanism.joints[joint].b ? 1 : -1;
-        const auto& rows = model_.mechanism.rows;
-        for (std::size_t i = 0; i < rows.size(); ++i)
-            if (rows[i].owner == joint && rows[i].parts.size() == 2) bar_.mechanism.row_factors[i][1] -= sense * slide_bar;
+        for (const core::constraint::Row& row : all_rows(model_.mechanism))
+            if (row.owner == joint && row.parts.size() == 2) bar_.mechanism.row_factors[row.number][1] -= sense * slide_bar;
     }
 
     // d = at - start: at an end of the range `at` is that of the limit.
@@ -214,8 +215,10 @@ private:
         const auto& terms = model_.mechanism.terms;
         const double limit = end < 0 ? coordinate.low : coordinate.high;
         for (std::size_t t = 0; t < terms.size(); ++t) {
+            // The range of what starts at its limit begins where it starts, which is that to within rounding.
             const bool is_it = terms[t].kind == core::model::LawKind::stop && terms[t].measure == joint->coordinate &&
-                               terms[t].sign * end < 0 && terms[t].reference == limit;
+                               terms[t].sign * end < 0 &&
+                               std::abs(core::model::room_within(terms[t], limit)) <= core::model::at_limit * model_.dhat;
             if (!is_it) continue;
             bar_.mechanism.term_reference[t] += d_bar;
             break;

@@ -39,9 +39,9 @@ void subtract_rows_reverse(const RowsAtEnd& at, const std::vector<std::vector<Ve
         const double running_time = core::scene::curve_running_time(row.curve, at.problem.mechanism.end_time);
         for (std::size_t s = 0; s < motion.size(); ++s) {
             MechanismGradient& bar = model_bar[s].mechanism;
-            bar.row_constant[i] += mu[s][i];
-            bar.row_rate[i] += running_time * mu[s][i];
-            for (std::size_t k = 0; k < weights.size(); ++k) bar.row_values[i][k] += weights[k] * mu[s][i];
+            bar.row_constant[row.number] += mu[s][i];
+            bar.row_rate[row.number] += running_time * mu[s][i];
+            for (std::size_t k = 0; k < weights.size(); ++k) bar.row_values[row.number][k] += weights[k] * mu[s][i];
         }
         for (std::size_t k = 0; k < row.parts.size(); ++k) {
             const RowPart& part = row.parts[k];
@@ -55,7 +55,7 @@ void subtract_rows_reverse(const RowsAtEnd& at, const std::vector<std::vector<Ve
                 add_placement_gradient(f, -part.factor * mu[s][i], rotations, bars);
                 add_placement_gradient_of_change(m, f, -part.factor * at.multipliers[i], {frames, rotations}, moved, bars);
                 const double change = tangent_gradient(g.a).dot(moved.head<6>()) + tangent_gradient(g.b).dot(moved.tail<6>());
-                model_bar[s].mechanism.row_factors[i][k] -= at.multipliers[i] * change + mu[s][i] * value;
+                model_bar[s].mechanism.row_factors[row.number][k] -= at.multipliers[i] * change + mu[s][i] * value;
             }
         }
     }
@@ -73,7 +73,7 @@ VectorX add_rows_tangent(const RowsAtEnd& at, const std::vector<Matrix34>& poses
             const Measure& m = mechanism.set.measures[part.measure];
             const measure::MeasureTangent t = measure::measure_tangent(mechanism.set, m, {at.poses, poses_dot, direction.mechanism.frames});
             const double weight = part.factor * at.multipliers[i];
-            const double factor_dot = direction.mechanism.row_factors[i][k], weight_dot = factor_dot * at.multipliers[i];
+            const double factor_dot = direction.mechanism.row_factors[row.number][k], weight_dot = factor_dot * at.multipliers[i];
             const int a = mechanism.set.frames[m.a].body, b = mechanism.set.frames[m.b].body;
             if (a != core::measure::world) {
                 out.value[a] += weight * t.gradient_a;
@@ -89,8 +89,8 @@ VectorX add_rows_tangent(const RowsAtEnd& at, const std::vector<Matrix34>& poses
         }
         const std::vector<double> weights = core::scene::curve_weights(row.curve, at.problem.mechanism.end_time);
         const double running_time = core::scene::curve_running_time(row.curve, at.problem.mechanism.end_time);
-        change[i] -= direction.mechanism.row_constant[i] + running_time * direction.mechanism.row_rate[i];
-        for (std::size_t k = 0; k < weights.size(); ++k) change[i] -= weights[k] * direction.mechanism.row_values[i][k];
+        change[i] -= direction.mechanism.row_constant[row.number] + running_time * direction.mechanism.row_rate[row.number];
+        for (std::size_t k = 0; k < weights.size(); ++k) change[i] -= weights[k] * direction.mechanism.row_values[row.number][k];
     }
     return change;
 }

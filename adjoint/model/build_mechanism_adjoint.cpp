@@ -3,6 +3,8 @@
 
 #include <numbers>
 
+#include "fettle/core/model/row_choice.hpp"
+
 namespace fettle::adjoint::model {
 namespace {
 
@@ -34,7 +36,7 @@ public:
 
     void run() {
         for (std::size_t k = 0; k < mechanism_.terms.size(); ++k) reverse_term(k);
-        for (std::size_t i = 0; i < mechanism_.rows.size(); ++i) reverse_row(i);
+        for (const core::constraint::Row& row : all_rows(mechanism_)) reverse_row(row);
         reverse_values();
         for (std::size_t k = 0; k < mechanism_.ends.size(); ++k) reverse_ends(k);
     }
@@ -87,8 +89,8 @@ private:
 
     double written_value(std::size_t measure) const { return value_of(mechanism_.set.measures[measure], frames_); }
 
-    void reverse_row(std::size_t i) {
-        const core::constraint::Row& row = mechanism_.rows[i];
+    void reverse_row(const core::constraint::Row& row) {
+        const auto i = static_cast<std::size_t>(row.number);
         const core::model::Joint& joint = mechanism_.joints[row.owner];
         const auto origin = static_cast<std::size_t>(joint.origin.index), first = static_cast<std::size_t>(row.parts[0].measure);
         const double constant = gradient_.row_constant[i];

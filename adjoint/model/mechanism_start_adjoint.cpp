@@ -135,7 +135,7 @@ private:
                 if (a != core::measure::world) pose_bar[a] += of_poses.head<6>();
                 if (b != core::measure::world) pose_bar[b] += of_poses.tail<6>();
                 const core::measure::PoseGradients g = pose_gradients(m, f, frames_);
-                gradient.mechanism.row_factors[i][k] +=
+                gradient.mechanism.row_factors[problem_.rows[i].number][k] +=
                     of_row * (tangent_gradient(g.a).dot(v.head<6>()) + tangent_gradient(g.b).dot(v.tail<6>()));
             }
     }
@@ -144,14 +144,15 @@ private:
     void add_rates(const VectorX& bar, MechanismGradient& out) const {
         for (std::size_t i = 0; i < problem_.rows.size(); ++i) {
             core::scene::Curve curve = problem_.rows[i].curve;
+            const int number = problem_.rows[i].number;
             const double weight = bar[i];
             std::fill(curve.values.begin(), curve.values.end(), 0.0);
             curve.rate = 1;
-            out.row_rate[i] += weight * core::model::rate_at_start(curve, model_.timestep);
+            out.row_rate[number] += weight * core::model::rate_at_start(curve, model_.timestep);
             curve.rate = 0;
             for (std::size_t k = 0; k < curve.values.size(); ++k) {
                 curve.values[k] = 1;
-                out.row_values[i][k] += weight * core::model::rate_at_start(curve, model_.timestep);
+                out.row_values[number][k] += weight * core::model::rate_at_start(curve, model_.timestep);
                 curve.values[k] = 0;
             }
         }
@@ -183,10 +184,11 @@ void reverse_assembly(const Model& model, const AssemblyProblem& problem, Motion
     for (std::size_t i = 0; i < problem.rows.size(); ++i) {
         const double bar = found.targets_bar[i];
         const core::scene::Curve& curve = problem.rows[i].curve;
-        mechanism.row_constant[i] += bar;
+        const int number = problem.rows[i].number;
+        mechanism.row_constant[number] += bar;
         const std::vector<double> weights = core::scene::curve_weights(curve, 0);
-        for (std::size_t k = 0; k < weights.size(); ++k) mechanism.row_values[i][k] += weights[k] * bar;
-        for (std::size_t k = 0; k < problem.rows[i].parts.size(); ++k) mechanism.row_factors[i][k] += found.factors_bar[i][k];
+        for (std::size_t k = 0; k < weights.size(); ++k) mechanism.row_values[number][k] += weights[k] * bar;
+        for (std::size_t k = 0; k < problem.rows[i].parts.size(); ++k) mechanism.row_factors[number][k] += found.factors_bar[i][k];
     }
 }
 

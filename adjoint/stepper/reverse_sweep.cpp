@@ -250,7 +250,8 @@ private:
                     left_jacobian_[i].transpose() * rotation_gradient(end_[s][i].leftCols<3>(), step.poses[i].rotation);
             }
             rhs.col(s) = gather(dofs_, y_bar_[s]);
-            if (const auto& bar = seeds_[s].multiplier_bar; is_last && !bar.empty() && bar[t].size() > 0) of_rows.col(s) = bar[t];
+            if (const auto& bar = seeds_[s].multiplier_bar; is_last && !bar.empty() && bar[t].size() > 0)
+                of_rows.col(s) = stepper::of_rows(step, bar[t]);
         }
         const StepSolver::Solution solution = solver_.solve(step, rhs, of_rows);
         const MatrixX &lambda = solution.y, &mu = solution.mu;

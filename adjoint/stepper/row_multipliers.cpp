@@ -12,8 +12,8 @@ std::vector<VectorX> row_multipliers(const core::model::Model& model, const core
     StepSolver solver(model);
     const SweepHistory history = sweep_history(model, trajectory);
     for (std::size_t t = 0; t < trajectory.steps.size(); ++t) {
-        LinearisedStep step = linearise_step(model, trajectory, static_cast<int>(t), history, solver);
-        out.push_back(std::move(step.multipliers));
+        const LinearisedStep step = linearise_step(model, trajectory, static_cast<int>(t), history, solver);
+        out.push_back(by_number(step, step.multipliers));
         if (weights != nullptr) weights->push_back(step.problem.weight);
     }
     return out;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include "fettle/adjoint/energy/contact_terms_adjoint.hpp"
@@ -10,6 +11,7 @@
 #include "fettle/core/energy/measure_terms.hpp"
 #include "fettle/core/energy/start_history.hpp"
 #include "fettle/core/kinematics/mass_matrix.hpp"
+#include "fettle/core/model/row_choice.hpp"
 #include "fettle/core/solver/row_system.hpp"
 
 namespace fettle::adjoint::stepper {
@@ -222,8 +224,40 @@ std::vector<std::vector<double>> angles_along(const core::model::Model& model, c
     return out;
 }
 
+namespace {
+
+std::vector<std::shared_ptr<const core::model::Model>> models_along(const core::model::Model& model,
+                                                                    const core::stepper::Trajectory& trajectory) {
+    std::vector<std::shared_ptr<const core::model::Model>> out(trajectory.steps.size());
+    std::map<std::vector<int>, std::shared_ptr<const core::model::Model>> known;  // by the rows that are left out
+    for (std::size_t t = 0; t < out.size() && !model.mechanism.dependent.empty(); ++t) {
+        const auto left_out = rows_to_leave_out(model, trajectory.poses[t + 1]);
+        if (!left_out) continue;
+        std::shared_ptr<const core::model::Model>& of_these = known[*left_out];
+        if (!of_these) of_these = std::make_shared<const core::model::Model>(without_rows(model, *left_out));
+        out[t] = of_these;
+    }
+    return out;
+}
+
+}  // namespace
+
+VectorX by_number(const LinearisedStep& step, const VectorX& values) {
+    const core::model::Mechanism& mechanism = step.problem.model->mechanism;
+    VectorX out = VectorX::Zero(mechanism.rows.size() + mechanism.dependent.size());
+    for (std::size_t i = 0; i < mechanism.rows.size(); ++i) out[mechanism.rows[i].number] = values[i];
+    return out;
+}
+
+VectorX of_rows(const LinearisedStep& step, const VectorX& by_number) {
+    const std::vector<core::constraint::Row>& rows = step.problem.model->mechanism.rows;
+    VectorX out(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) out[i] = by_number[rows[i].number];
+    return out;
+}
+
 SweepHistory sweep_history(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
-    SweepHistory out{angles_along(model, trajectory), {}};
+    SweepHistory out{angles_along(model, trajectory), {}, models_along(model, trajectory)};
     if (model.integrator != core::scene::Integrator::newmark) return out;
     core::energy::History now = core::energy::start_history(model);
     now.poses = trajectory.poses[0];
@@ -237,7 +271,8 @@ SweepHistory sweep_history(const core::model::Model& model, const core::stepper:
 
 core::energy::StepProblem problem_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,
                                      const SweepHistory& history) {
-    core::energy::StepProblem problem = core::energy::step_problem(model, history_at(model, trajectory, t, history), model.kappa);
+    const core::model::Model& solved = history.models[t] ? *history.models[t] : model;
+    core::energy::StepProblem problem = core::energy::step_problem(solved, history_at(model, trajectory, t, history), model.kappa);
     set_end_time(problem, t * model.timestep + model.timestep);
     return problem;
 }

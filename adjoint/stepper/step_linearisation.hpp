@@ -89,12 +89,18 @@ struct NewmarkHistory {
     std::vector<std::vector<Matrix34>> velocities, accelerations;  ///< [t][body], t = 0 .. steps - 1
 };
 
-/// What of a step's start follows from all the steps before it.
+/// What of a step's start follows from all the steps before it, and which rows are solved for in it.
 struct SweepHistory {
     std::vector<std::vector<double>> angles;  ///< angles_along
     NewmarkHistory newmark;
+    /// [step]: the model with the rows that are independent at the step's end (core/model/row_choice.hpp); null: these are its own.
+    std::vector<std::shared_ptr<const core::model::Model>> models;
 };
 SweepHistory sweep_history(const core::model::Model& model, const core::stepper::Trajectory& trajectory);
+
+/// Values of the rows that a step is solved with as those of all rows, by number, with 0 for the others; and back.
+VectorX by_number(const LinearisedStep& step, const VectorX& values);
+VectorX of_rows(const LinearisedStep& step, const VectorX& by_number);
 
 /// What step t minimises, which leads from trajectory.poses[t] to poses[t + 1].
 core::energy::StepProblem problem_at(const core::model::Model& model, const core::stepper::Trajectory& trajectory, int t,

@@ -207,7 +207,7 @@ private:
         const MatrixX rhs = -gather(dofs_, residual_dot);
         const StepSolver::Solution solution = solver_.solve(step, rhs, -row_dot);
         scatter(dofs_, solution.y.col(0), y_dot);
-        multiplier_dot_ = step.rows.count() > 0 ? VectorX(solution.mu.col(0)) : VectorX();
+        multiplier_dot_ = step.rows.count() > 0 ? by_number(step, solution.mu.col(0)) : VectorX();
         for (std::size_t i = 0; i < n; ++i)
             for (int k = 0; k < 6; ++k) end_dot[i] += y_dot[i][k] * chart_direction(t, i, change.r[i], k);
         return solution.is_one;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fettle/core/base/text.hpp"
+#include "fettle/core/model/limits.hpp"
 #include "fettle/core/scene/curve.hpp"
 
 namespace fettle::core::clearance {
@@ -190,6 +191,26 @@ private:
         LinkageCoordinate& driven = coordinate(source.coordinate);
         driven.low = driven.start + std::min(source.units * low, source.units * high);
         driven.high = driven.start + std::max(source.units * low, source.units * high);
+        check_limits(driven);
+    }
+
+    // They say where a joint can be, whatever drives it.
+    void check_limits(const LinkageCoordinate& driven) {
+        for (const JointCoordinate& of : driven.joints)
+            for (const Joint& joint : model_.mechanism.joints) {
+                if (joint.is_motor || joint.name != of.joint || joint.coordinate < 0) continue;
+                const bool is_beyond = std::any_of(model_.mechanism.terms.begin(), model_.mechanism.terms.end(), [&](const auto& term) {
+                    if (term.kind != model::LawKind::stop || term.measure != joint.coordinate) return false;
+                    const double room = std::min(room_within(term, of.scale * driven.low + of.offset),
+                                                 room_within(term, of.scale * driven.high + of.offset));
+                    return room < -model::at_limit * model_.dhat;
+                });
+                if (!is_beyond) continue;
+                const std::array<double, 2> limits = *limits_of(model_.mechanism, joint.coordinate);
+                fail(ErrorCode::out_of_range, "joint `" + joint.name + "`",
+                     "is led beyond its limits, " + model::range_text(model_, joint.coordinate, limits[0], limits[1]) +
+                         ": let what drives it end before, or widen `limits`");
+            }
     }
 
     // All that moves, by the time.
@@ -225,6 +246,7 @@ private:
         for (ClosedLoop& loop : out_.loops)
             if (rates[loop.driver] != 0) loop.driver = shared;
         coordinate(shared) = time;
+        check_limits(time);
     }
 
     const model::Model& model_;

@@ -7,7 +7,11 @@
 #include <numbers>
 #include <optional>
 
+#include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/text.hpp"
+#include "fettle/core/constraint/whole_turns.hpp"
+#include "fettle/core/model/limits.hpp"
+#include "fettle/core/model/row_choice.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -21,8 +25,8 @@ using model::Joint;
 using scene::JointKind;
 
 constexpr double pi = std::numbers::pi;
-constexpr int most_turns = 1000;       // of geared joints, until all are where they were
 constexpr double covered = 1 + 1e-15;  // a turn in spite of rounding
+constexpr double least_left = 1e-2;    // of a joint's own range, by the limits of what follows it
 
 bool is_held(const model::Body& body) {
     for (int k = 0; k < 6; ++k) {
@@ -202,8 +206,7 @@ private:
 
     template <class Visit>
     void for_rows(const Visit& visit) const {
-        for (const auto* rows : {&model_.mechanism.rows, &model_.mechanism.dependent})
-            for (const constraint::Row& row : *rows) visit(row, model_.mechanism.joints[row.owner]);
+        for (const constraint::Row& row : all_rows(model_.mechanism)) visit(row, model_.mechanism.joints[row.owner]);
     }
 
     // [m] per radian: the row is slide + factor angle = constant.
@@ -261,37 +264,55 @@ private:
     LinkageCoordinate coordinate_of(int free) {
         LinkageCoordinate out;
         out.start = variables_[free].start;
-        out.low = -std::numeric_limits<double>::infinity();
-        out.high = -out.low;
+        out.low = -base::infinity;
+        out.high = base::infinity;
+        apply_limits(variables_[free], out);
+        const std::array<double, 2> own{out.low, out.high};
         const Variable* slides = nullptr;
+        std::vector<std::string> followers;
         for (const Variable& each : variables_) {
             if (each.is.free != free) continue;
             const bool is_turn = each.measure < 0;
             out.joints.push_back({each.joint->name + (is_turn ? " (turn)" : ""), each.is_angle, each.is.scale, each.is.offset});
             if (!each.is_angle || each.joint->kind == JointKind::screw) slides = &each;
+            const std::array<double, 2> before{out.low, out.high};
             if (!is_turn) apply_limits(each, out);
+            if (before != std::array{out.low, out.high}) followers.push_back("`" + each.joint->name + "`");
+        }
+        if (std::isfinite(out.low)) {
+            tell_narrowed(variables_[free], own, followers, out);
+            // Limits are closed: what starts at one, to within rounding, starts within it (model/limits.hpp).
+            out.low = std::min(out.low, out.start);
+            out.high = std::max(out.high, out.start);
+            return out;
         }
         const std::string& name = out.joints.front().joint;
-        if (!std::isfinite(out.low)) {
-            const std::optional<double> half = slides != nullptr ? std::nullopt : half_period(out.joints);
-            if (slides != nullptr)
-                fail(ErrorCode::missing_key, slides->joint->name,
-                     "has no limits: say \"limits\": [least, greatest], or everything is possible");
-            else if (!half)
-                fail(ErrorCode::missing_key, name,
-                     "its gears come back to where they were after no whole number of turns: give it \"limits\"");
-            out.low = out.start - half.value_or(0);
-            out.high = out.start + half.value_or(0);
-            out.is_whole_turn = true;
-        } else if (!(out.low <= out.start && out.start <= out.high)) {
-            fail(ErrorCode::out_of_range, name, "starts beyond its limits, or those of what it is geared to");
-        }
+        const std::optional<double> half = slides != nullptr ? std::nullopt : half_period(out.joints);
+        if (slides != nullptr)
+            fail(ErrorCode::missing_key, slides->joint->name,
+                 "has no limits: say \"limits\": [least, greatest], or everything is possible");
+        else if (!half)
+            fail(ErrorCode::missing_key, name, "its gears come back to where they were after no whole number of turns: give it \"limits\"");
+        out.low = out.start - half.value_or(0);
+        out.high = out.start + half.value_or(0);
+        out.is_whole_turn = true;
         return out;
+    }
+
+    void tell_narrowed(const Variable& drive, const std::array<double, 2>& own, const std::vector<std::string>& followers,
+                       const LinkageCoordinate& out) {
+        if (followers.empty() || drive.measure < 0) return;
+        const double low = std::min(out.low, out.high), high = std::max(out.low, out.high);
+        const std::string left = "the range of `" + drive.joint->name + "` is " + model::range_text(model_, drive.measure, low, high) +
+                                 ": " + base::joined(followers) + (followers.size() > 1 ? " narrow it" : " narrows it") +
+                                 (std::isfinite(own[0]) ? " from " + model::range_text(model_, drive.measure, own[0], own[1]) : "");
+        const bool is_lost = !(out.high > out.low) || out.high - out.low < least_left * (own[1] - own[0]);
+        (is_lost && (std::isfinite(own[0]) || !(out.high > out.low)) ? out_.lost : out_.narrowed).push_back(left);
     }
 
     void apply_limits(const Variable& variable, LinkageCoordinate& out) const {
         for (const model::MeasureTerm& term : model_.mechanism.terms) {
-            if (term.kind != model::LawKind::stop || term.measure != variable.measure) continue;
+            if (term.kind != model::LawKind::stop || variable.measure < 0 || term.measure != variable.measure) continue;
             const double u = (term.reference - variable.is.offset) / variable.is.scale;
             (term.sign * variable.is.scale > 0 ? out.low : out.high) =
                 term.sign * variable.is.scale > 0 ? std::max(out.low, u) : std::min(out.high, u);
@@ -300,13 +321,10 @@ private:
 
     // Half of the turns after which all of them are where they were.
     static std::optional<double> half_period(const std::vector<JointCoordinate>& joints) {
-        for (int n = 1; n <= most_turns; ++n) {
-            const bool all = std::all_of(joints.begin(), joints.end(), [&](const JointCoordinate& joint) {
-                return std::abs(n * joint.scale - std::round(n * joint.scale)) <= 1e-12 * n * std::max(1.0, std::abs(joint.scale));
-            });
-            if (all) return n * pi * covered;
-        }
-        return std::nullopt;
+        std::vector<double> rates;
+        for (const JointCoordinate& joint : joints) rates.push_back(joint.scale);
+        const std::optional<int> turns = constraint::turns_to_return(rates);
+        return turns ? std::optional(*turns * pi * covered) : std::nullopt;
     }
 
     const model::Model& model_;

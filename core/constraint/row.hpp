@@ -25,6 +25,7 @@ struct Row {
     double constant = 0;  ///< what the parts come to besides the curve
     scene::Curve curve;   ///< empty: constant
     double length = 1;    ///< [m] that one unit is worth: 1 of offsets, a lever of angles and products
+    int number = -1;      ///< its place among all rows of its mechanism, whichever of them are solved for
 };
 
 /// What a row's parts are to come to.

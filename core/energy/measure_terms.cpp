@@ -16,10 +16,11 @@ LawValue quadratic(double stiffness, double away) { return {0.5 * stiffness * aw
 double slip_reference(const StepProblem& problem, const model::MeasureTerm& term) { return problem.mechanism.measures[term.measure]; }
 
 LawValue stop(const StepProblem& problem, const model::MeasureTerm& term, double m) {
-    const double dhat = problem.model->dhat, scale = term.sign * term.length, g = scale * (m - term.reference);
+    const double width = model::stop_give * problem.model->dhat, scale = term.sign * term.length;
+    const double away = scale * (m - term.reference), g = away + width;
     if (!(g > 0)) return {std::numeric_limits<double>::infinity(), 0, 0, 0};
-    if (g >= dhat) return {};
-    const double c = problem.weight * term.coefficient, away = g - dhat, log = std::log(g / dhat);
+    if (away >= 0) return {};
+    const double c = problem.weight * term.coefficient / model::stop_give, log = std::log(g / width);
     const double second = c * scale * scale * (-2 * log - 4 * away / g + away * away / (g * g));
     return {-c * away * away * log, c * scale * (-2 * away * log - away * away / g), second, second};
 }

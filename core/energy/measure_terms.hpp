@@ -4,7 +4,8 @@
 ///   spring    1/2 c (m - reference)^2
 ///   damper    1/2 c (m - m_slip)^2 / slip_time                              nothing in a quasi-static step
 ///   force     -f m, f the curve at the step's end
-///   stop      c b(g), g = sign length (m - reference),  b(g) = -(g - dhat)^2 ln(g/dhat) for 0 < g < dhat, else 0; infinite for g <= 0
+///   stop      c (dhat/w) b(g), g = sign length (m - reference) + w, w = stop_give dhat:
+///             b(g) = -(g - w)^2 ln(g/w) for 0 < g < w, else 0; infinite for g <= 0
 ///   friction  c f0(|m - m_slip| length) / length,   f0 of contact/friction.hpp with e = eps_v slip_time
 /// each times the integrator's weight (time_integration.hpp).
 #pragma once

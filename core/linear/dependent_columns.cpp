@@ -121,6 +121,15 @@ RankFactor factorise(const Sparse& matrix, double share) {
     return factor_by_eigen(matrix, share);
 }
 
+// Of as many columns: those that leave out what is nearly a sum of others already, where there are.
+RankFactor factorise_well(const Sparse& matrix, double share) {
+    constexpr double well_apart = 1e-2;
+    RankFactor out = factorise(matrix, share);
+    if (out.rank == matrix.cols() || share >= well_apart) return out;
+    RankFactor better = factorise(matrix, well_apart);
+    return better.rank == out.rank ? std::move(better) : std::move(out);
+}
+
 }  // namespace
 
 std::vector<DependentColumn> dependent_columns(Sparse matrix, double share) {
@@ -136,7 +145,7 @@ std::vector<DependentColumn> dependent_columns(Sparse matrix, double share) {
         for (int j = 0; j < matrix.cols(); ++j) out.push_back({j, {}});
         return out;
     }
-    const RankFactor factor = factorise(matrix, share);
+    const RankFactor factor = factorise_well(matrix, share);
     const Sparse independent = factor.r.topLeftCorner(factor.rank, factor.rank);
     for (Eigen::Index j = factor.rank; j < matrix.cols(); ++j) {
         DependentColumn& dependent = out.emplace_back();

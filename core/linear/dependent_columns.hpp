@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// Which columns of a matrix are sums of others? By a sparse Q R of the columns scaled to length 1 (SuiteSparseQR, Davis 2011, or Eigen's
 /// where fettle was built without, or it is not there): a column of which less than a share is left, once those before it in the order are
-/// taken out (Heath 1982), depends on them.
+/// taken out (Heath 1982), depends on them. Where there are such columns, those that are kept stand well apart from one another if the
+/// order allows it.
 #pragma once
 
 #include <Eigen/SparseCore>

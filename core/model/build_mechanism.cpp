@@ -12,6 +12,7 @@
 
 #include "fettle/core/model/branch_of_joint.hpp"
 #include "fettle/core/model/choose_kappa.hpp"
+#include "fettle/core/model/limits.hpp"
 #include "fettle/core/model/mechanism_start.hpp"
 
 namespace fettle::core::model {
@@ -360,6 +361,15 @@ private:
     Errors errors_;
 };
 
+// A stop is no force that brings things back from beyond it.
+Errors beyond_at_start(const scene::Scene& scene, const Model& model) {
+    Errors errors;
+    for (const std::string& what : beyond_limits(model, start_poses(model), model.mechanism.angles_start))
+        errors.push_back({ErrorCode::out_of_range, scene.path + "#/joints",
+                          "at the start " + what + ": place its bodies within them, or widen `limits`"});
+    return errors;
+}
+
 }  // namespace
 
 Errors build_mechanism(const scene::Scene& scene, Model& model, const TermScales& scales) {
@@ -368,7 +378,8 @@ Errors build_mechanism(const scene::Scene& scene, Model& model, const TermScales
     if (model.integrator == scene::Integrator::newmark && !model.mechanism.rows.empty())
         return {{ErrorCode::unsupported, scene.path + "#/integrator",
                  "`newmark` lets joints oscillate; `implicit_euler`, `bdf2` and `quasi_static` can have them"}};
-    return settle_start(scene, model);
+    if (Errors errors = settle_start(scene, model); !errors.empty()) return errors;
+    return beyond_at_start(scene, model);
 }
 
 void stiffen_stops(Model& model, const TermScales& scales) {

@@ -26,7 +26,8 @@ struct TermScales {
 ///
 /// Errors: names that are not there, branches that cannot be said so (branch_of_joint.hpp) or on which a loop does not close, joints of a
 /// body with itself, axes of length 0, motors that turn by half a turn in a time step (inconsistent, out_of_range); loops that cannot be
-/// closed, with the joints and the gaps that remain; joints that contradict one another; Newmark, which has no rows (unsupported).
+/// closed, with the joints and the gaps that remain; joints that contradict one another; what starts beyond its limits (limits.hpp);
+/// Newmark, which has no rows (unsupported).
 base::Errors build_mechanism(const scene::Scene& scene, Model& model, const TermScales& scales = {});
 
 /// Gives the stops of joints and springs their stiffness: that of the scales, else choose_stop_stiffness's.

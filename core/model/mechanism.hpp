@@ -25,9 +25,12 @@ enum class LawKind {
     spring,   ///< 1/2 c (m - reference)^2
     damper,   ///< the force -c dm/dt
     force,    ///< -f(t) m, f the curve
-    stop,     ///< the barrier of length sign (m - reference) > 0, c in N/m
+    stop,     ///< a barrier against sign (m - reference) < 0, c in N/m
     friction  ///< Coulomb friction of the force c against dm/dt
 };
+
+/// A stop is closed: it does nothing up to its limit, resists beyond it, and gives way by less than this share of dhat.
+inline constexpr double stop_give = 0.1;
 
 /// An energy of one measure. Its value: energy/measure_terms.hpp.
 struct MeasureTerm {
@@ -63,13 +66,13 @@ struct WrittenStart {
 struct Mechanism {
     measure::MeasureSet set;
     std::vector<Origin> ends;                ///< of frames 2 k, end a, and 2 k + 1, end b
-    std::vector<constraint::Row> rows;       ///< independent; Row::owner is a place in `joints`
-    std::vector<constraint::Row> dependent;  ///< what follows from `rows`: looked at after each step, not solved for
+    std::vector<constraint::Row> rows;       ///< independent at the start; Row::owner is a place in `joints`
+    std::vector<constraint::Row> dependent;  ///< what follows from `rows` there: looked at after each step, not solved for (row_choice.hpp)
     std::vector<MeasureTerm> terms;
     std::vector<Joint> joints;                       ///< and the motors that drive coordinates
     std::vector<std::pair<int, int>> not_colliding;  ///< bodies that joints join, (a < b), sorted
     std::vector<constraint::Branch> branches;        ///< on which side loops are assembled; Branch::joint is a place in `joints`
-    std::vector<double> angles_start;                ///< of the measures, at the start
+    std::vector<double> angles_start;                ///< of the measures, at the start: the turns nearest to the start as written
     WrittenStart written;
     bool empty() const { return rows.empty() && terms.empty() && joints.empty(); }
 };

@@ -9,6 +9,7 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/constraint/assembly.hpp"
+#include "fettle/core/constraint/whole_turns.hpp"
 #include "fettle/core/kinematics/path.hpp"
 #include "fettle/core/model/branch_of_joint.hpp"
 
@@ -59,21 +60,49 @@ bool is_on_sides(const Mechanism& mechanism, const std::vector<kinematics::Pose>
                        [&](const constraint::Branch& branch) { return is_on_side(mechanism, branch, poses); });
 }
 
-// The mirror image of what was found first, then legs at some angles: where the written poses lead to another branch, or to none.
+// Each body turned a little about the axis of one of its joints, each differently.
+std::vector<kinematics::Pose> turned_apart(const AssemblyProblem& problem, const Mechanism& mechanism, std::vector<kinematics::Pose> poses,
+                                           int attempt) {
+    const std::vector<measure::PlacedFrame> frames = placed(mechanism.set.frames, poses);
+    for (int i = 0; i < count_of(poses); ++i) {
+        const auto joint = std::find_if(mechanism.joints.begin(), mechanism.joints.end(),
+                                        [&](const Joint& each) { return each.frame_a >= 0 && (each.a == i || each.b == i); });
+        if (joint == mechanism.joints.end() || !linear::are_all_free(problem.dofs.index[i])) continue;
+        const double angle = 0.05 * ((37 * i + 11 * attempt) % 17 - 8);  // up to 0.4
+        const Vector3 axis = frames[joint->frame_a].axes.col(2);
+        poses[i].rotation = kinematics::orthonormalised(kinematics::rotation(Vector3(angle * axis)) * poses[i].rotation);
+    }
+    return poses;
+}
+
+// Places to begin the search anew, where the written poses lead to another branch, or to none: the mirror image of what was found first,
+// then legs at some angles; and where bodies are in line as written, so that no direction leads nearer to their joints, beside that.
+std::vector<std::vector<kinematics::Pose>> other_attempts(const AssemblyProblem& problem, const Mechanism& mechanism,
+                                                          const std::vector<kinematics::Pose>& written, const Assembly& found) {
+    constexpr int most_turned = 4;
+    const std::optional<double> bends[] = {std::nullopt, 0.5, 1.0, 1.4};
+    std::vector<std::vector<kinematics::Pose>> out;
+    for (const std::vector<kinematics::Pose>& from : {found.poses, written})
+        for (const std::optional<double>& bend : bends) {
+            if (mechanism.branches.empty()) continue;
+            std::vector<kinematics::Pose> attempt = from;
+            for (const constraint::Branch& branch : mechanism.branches)
+                if (bend || !is_on_side(mechanism, branch, attempt)) turn_over(branch, mechanism.set.frames, problem.dofs, bend, attempt);
+            out.push_back(std::move(attempt));
+        }
+    for (int k = 0; k < most_turned && !found.is_met; ++k) out.push_back(turned_apart(problem, mechanism, written, k));
+    return out;
+}
+
 Assembly on_branches(const AssemblyProblem& problem, const Mechanism& mechanism, const std::vector<kinematics::Pose>& written,
                      Assembly found) {
     const auto is_there = [&](const Assembly& at) { return at.is_met && is_on_sides(mechanism, at.poses); };
     if (is_there(found)) return found;
-    const std::optional<double> bends[] = {std::nullopt, 0.5, 1.0, 1.4};
-    for (const std::vector<kinematics::Pose>& from : {found.poses, written})
-        for (const std::optional<double>& bend : bends) {
-            std::vector<kinematics::Pose> attempt = from;
-            for (const constraint::Branch& branch : mechanism.branches)
-                if (bend || !is_on_side(mechanism, branch, attempt)) turn_over(branch, mechanism.set.frames, problem.dofs, bend, attempt);
-            Assembly next = assemble(problem, written, attempt);
-            if (is_there(next)) return next;
-            if (next.is_met && !found.is_met) found = std::move(next);
-        }
+    for (const std::vector<kinematics::Pose>& attempt : other_attempts(problem, mechanism, written, found)) {
+        Assembly next = assemble(problem, written, attempt);
+        if (is_there(next)) return next;
+        if (next.is_met && !found.is_met) found = std::move(next);
+    }
     return found;
 }
 
@@ -191,11 +220,17 @@ Errors settle_start(const scene::Scene& scene, Model& model) {
     mechanism.written.poses = written;
     if (mechanism.rows.empty()) return {};
     const AssemblyProblem problem = start_problem(model);
-    const Assembly found = on_branches(problem, mechanism, written, assemble(problem, written));
+    const Assembly first = assemble(problem, written), found = on_branches(problem, mechanism, written, first);
     if (!found.is_met) return describe_gaps(scene, model, problem, found);
     if (Errors errors = describe_other_side(scene, mechanism, found); !errors.empty()) return errors;
     if (found.has_moved) move_bodies(found, model);
-    mechanism.angles_start = found.angles;
+    if (!first.is_met && mechanism.branches.empty())
+        model.warnings.push_back(
+            "joints: as written the bodies stand where nothing leads nearer to their joints, as in line; beside it they can be met, often "
+            "in "
+            "more ways than one: say which with `assemble`");
+    for (int i = 0; i < count_of(mechanism.rows); ++i) mechanism.rows[i].number = i;
+    mechanism.angles_start = constraint::nearest_turns(mechanism.set, mechanism.rows, mechanism.angles_start, found.angles);
     warn_of_dependent(found, model);
     if (model.integrator != scene::Integrator::quasi_static) agree_velocities(problem, found, model);
     set_apart(found.dependent, mechanism);

@@ -40,7 +40,7 @@ constexpr int most_friction_rounds = 30;      // when they are to converge: norm
 constexpr int most_settling_rounds = 100;     // when they are to agree to rounding, for a gradient
 constexpr double settled_motion = 1e-13;      // of the scene's size: that
 constexpr double friction_resolution = 0.1;   // of eps_v
-constexpr double stop_range = 0.1;            // of dhat: how near to a joint's stop a step may end
+constexpr double stop_range = 0.1;            // of what a joint's stop gives way by
 constexpr double usable_residual = 1e-8;      // of a solve to rounding: the adjoint's accuracy
 constexpr double rounding_of_places = 1e-14;  // of the scene's size
 constexpr int bodies_a_loop = 32;             // that a thread takes
@@ -254,7 +254,7 @@ private:
     double quadratic_range() const {
         double range = smallest_radius_;
         if (at_.contacts.count > 0) range = std::min({range, model_.dhat, at_.contacts.minimum_distance - model_.dmin});
-        if (joints_stop_) range = std::min(range, stop_range * model_.dhat);
+        if (joints_stop_) range = std::min(range, stop_range * model::stop_give * model_.dhat);
         if (is_rubbing()) range = std::min(range, model_.friction.eps_v * problem_.slip_time);
         return range;
     }

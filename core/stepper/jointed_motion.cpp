@@ -14,6 +14,8 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/constraint/assembly.hpp"
 #include "fettle/core/geometry/overlapping_boxes.hpp"
+#include "fettle/core/model/limits.hpp"
+#include "fettle/core/model/row_choice.hpp"
 #include "fettle/core/stepper/joint_outputs.hpp"
 #include "fettle/core/stepper/prescribed_path.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
@@ -28,7 +30,7 @@ using kinematics::ChartPoint;
 using kinematics::Pose;
 
 constexpr int most_parts = 256;
-constexpr double followed_gap = 1e-9;  // of the scene's size, by rows that follow from others
+constexpr double followed_gap = 1e-9;  // of the scene's size, by rows that follow from others where the bodies are
 constexpr double default_gap = 1e-5;   // of the smallest mechanism's size
 constexpr double widest_turn = 0.5;    // of a body between two nodes, so that angles can be counted with room [rad]
 
@@ -169,7 +171,7 @@ public:
             problem_.dofs.add_body([&](int k) { return is_free(body, k) && !stays; });
             if (stays) out_of_it.insert(static_cast<int>(i));
         }
-        for (const constraint::Row& row : model.mechanism.rows) {
+        for (const constraint::Row& row : all_rows(model.mechanism)) {
             const std::vector<int> bodies = bodies_of_row(model, row);
             if (std::none_of(bodies.begin(), bodies.end(), [&](int body) { return out_of_it.count(body) > 0; })) rows_.push_back(row);
         }
@@ -194,7 +196,6 @@ public:
             remember(at, *found, share);
             at = *found;
         }
-        if (auto fault = unmet_dependent(at, time + h)) return fault;
         if (step.nodes.size() == 2) step.fractions.clear();
         out.steps.push_back(std::move(step));
         out.poses.emplace_back();
@@ -254,7 +255,9 @@ private:
         }
         const constraint::Assembly found = assemble(problem_, from);
         gaps_ = found.gaps;
-        if (!found.is_met) return std::nullopt;
+        for (const constraint::DependentRow& d : found.dependent)
+            if (gaps_[d.row] <= followed_gap * model_.diagonal) gaps_[d.row] = 0;
+        if (gaps_.size() > 0 && !(gaps_.maxCoeff() <= constraint::closed_gap(model_.diagonal, from))) return std::nullopt;
         angles_ = constraint::angles_at(model_.mechanism.set, found.poses, counted);
         return found.poses;
     }
@@ -272,23 +275,6 @@ private:
             out.push_back(point);
         }
         return out;
-    }
-
-    // Rows that follow from others at the start do so all along, or there is no such motion.
-    std::optional<std::string> unmet_dependent(const std::vector<Pose>& poses, double time) const {
-        const model::Mechanism& mechanism = model_.mechanism;
-        if (mechanism.dependent.empty()) return std::nullopt;
-        const VectorX values = row_values(mechanism.set, mechanism.dependent, placed(mechanism.set.frames, poses), angles_);
-        for (std::size_t i = 0; i < mechanism.dependent.size(); ++i) {
-            const constraint::Row& row = mechanism.dependent[i];
-            const double gap = std::abs(values[i] - target_at(row, time)) * row.length;
-            if (gap <= followed_gap * model_.diagonal) continue;
-            std::ostringstream message;
-            message << "at " << time << " s `" << mechanism.joints[row.owner].name << "` is " << base::length_text(gap, model_.length_unit)
-                    << " from being met: at the start it followed from the others, here it does not";
-            return message.str();
-        }
-        return std::nullopt;
     }
 
     std::string unmet(const std::vector<Pose>& poses, double time) const {
@@ -324,6 +310,25 @@ std::vector<std::string> undriven_bodies(const model::Model& model) {
     return {groups.held.begin(), groups.held.end()};
 }
 
+namespace {
+
+// Limits say where a joint can be; a motion without dynamics that leads beyond them is none of the mechanism's.
+std::optional<std::string> beyond_limits_on(const model::Model& model, const Trajectory& trajectory) {
+    std::vector<double> angles = model.mechanism.angles_start;
+    for (std::size_t t = 0; t < trajectory.poses.size(); ++t) {
+        angles = constraint::angles_at(model.mechanism.set, trajectory.poses[t], angles);
+        const std::vector<std::string> beyond = model::beyond_limits(model, trajectory.poses[t], angles);
+        if (beyond.empty()) continue;
+        std::ostringstream message;
+        message << "at " << static_cast<double>(t) * trajectory.timestep << " s " << beyond.front()
+                << ": a motor leads it there, or a loop; let it end before, or widen `limits`";
+        return message.str();
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
 base::Result<JointedMotion> follow_joints(const model::Model& model, int steps, double allowed_gap) {
     Groups groups(model);
     groups.judge();
@@ -358,6 +363,7 @@ base::Result<JointedMotion> follow_joints(const model::Model& model, int steps, 
         }
         if (fault && out.parts >= most_parts) return base::Error{ErrorCode::inconsistent, where, *fault};
         if (fault || is_coarse) continue;
+        if (const auto beyond = beyond_limits_on(model, trajectory)) return base::Error{ErrorCode::out_of_range, where, *beyond};
         out.trajectory = std::move(trajectory);
         return out;
     }

@@ -8,6 +8,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/base/stop.hpp"
 #include "fettle/core/base/text.hpp"
+#include "fettle/core/model/row_choice.hpp"
 #include "fettle/core/stepper/step.hpp"
 #include "fettle/core/stepper/step_count.hpp"
 
@@ -84,19 +85,71 @@ StepResult stoppable_step(const model::Model& model, const StepState& state, sol
     }
 }
 
+std::vector<kinematics::Pose> end_of_path(const StepState& state, const TrajectoryStep& path) {
+    std::vector<kinematics::Pose> out = state.history.poses;
+    for (std::size_t i = 0; i < out.size() && !path.nodes.empty(); ++i) {
+        const kinematics::ChartPoint& end = path.nodes.back()[i];
+        out[i] = {kinematics::orthonormalised(kinematics::rotation(end.rotation_vector) * out[i].rotation), end.position};
+    }
+    return out;
+}
+
+// Steps with the rows that are independent where the bodies are. Rows that were independent where they were chosen serve until a step
+// fails; it is then tried with those of where it has led, and of where it began.
+class StepsOnRows {
+public:
+    StepsOnRows(const model::Model& model, const SimulationOptions& options) : model_(model), options_(options) { begin_anew(); }
+
+    StepResult take(const StepState& state) {
+        StepResult first = stoppable_step(*current_, state, *workspace_, options_);
+        if (first.status == SimulationStatus::ok || first.status == SimulationStatus::interrupted) return first;
+        for (const std::vector<kinematics::Pose>& poses : {end_of_path(state, first.path), state.history.poses}) {
+            const std::optional<std::vector<int>> left_out = rows_to_leave_out(*current_, poses);
+            if (!left_out) continue;
+            use(without_rows(model_, *left_out));
+            StepResult again = stoppable_step(*current_, state, *workspace_, options_);
+            if (again.status == SimulationStatus::ok || again.status == SimulationStatus::interrupted) return again;
+        }
+        return first;
+    }
+
+    /// Of what the steps before have left, nothing but the state is carried on.
+    void begin_anew() {
+        if (!workspace_ || chosen_) use(std::nullopt);
+        workspace_->forget();
+    }
+
+    const auto& seconds() const { return workspace_->clock.seconds(); }
+
+private:
+    void use(std::optional<model::Model> chosen) {
+        chosen_ = std::move(chosen);
+        current_ = chosen_ ? &*chosen_ : &model_;
+        const auto clock = workspace_ ? workspace_->clock : decltype(workspace_->clock){};
+        workspace_.emplace(*current_);
+        workspace_->clock = clock;
+    }
+
+    const model::Model& model_;
+    const SimulationOptions& options_;
+    std::optional<model::Model> chosen_;
+    const model::Model* current_ = nullptr;
+    std::optional<solver::NewtonWorkspace> workspace_;
+};
+
 }  // namespace
 
 Simulation simulate(const model::Model& model, const SimulationOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
     Simulation out = taken_up(model, options);
     StepState state = out.checkpoint.state;
-    solver::NewtonWorkspace workspace(model);
+    SimulationOptions watched = options;
+    watched.outputs = options.outputs || model.integrator == scene::Integrator::newmark;
+    StepsOnRows stepping(model, watched);
     const int steps = step_count(model, options);
     std::size_t kept_contacts = 0;
     for (const TrajectoryStep& earlier : out.trajectory.steps) kept_contacts += contacts_of(earlier);
     std::optional<BalanceSum> balance;
-    SimulationOptions watched = options;
-    watched.outputs = options.outputs || model.integrator == scene::Integrator::newmark;
     if (watched.outputs && model.integrator != scene::Integrator::quasi_static) {
         const double work = largest_work(model);
         balance.emplace(start_report(model, state), model.timestep, work, work * (model.dhat / model.diagonal));
@@ -104,10 +157,10 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
     for (int t = out.checkpoint.step; t < steps; ++t) {
         state.time = t * model.timestep;  // not accumulated: no drift over many steps
         if (t % checkpoint_interval == 0) {
-            workspace.forget();
+            stepping.begin_anew();
             out.checkpoint = {t, state};
         }
-        StepResult result = stoppable_step(model, state, workspace, watched);
+        StepResult result = stepping.take(state);
         out.report.newton_iterations += result.report.newton_iterations;
         if (result.status != SimulationStatus::ok) {
             std::ostringstream message;
@@ -137,7 +190,7 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
             base::formatted("by step %d (t = %.6g s) ", t + 1, (t + 1) * model.timestep) + balance_warning(model, *out.balance);
         break;
     }
-    out.report.phase_seconds = workspace.clock.seconds();
+    out.report.phase_seconds = stepping.seconds();
     out.report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return out;
 }

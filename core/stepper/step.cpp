@@ -208,7 +208,8 @@ bool judge_joints(const energy::StepProblem& problem, const solver::NewtonResult
         if (gap <= largest_gap * model.diagonal) continue;
         std::ostringstream message;
         message << "joint '" << mechanism.joints[row.owner].name << "' is " << base::length_text(gap, model.length_unit)
-                << " from being met: at the start it followed from the others, here it does not";
+                << " from being met: where it was left out it followed from the others, here it does not. Does the linkage start at a dead "
+                   "centre, as in line? Let it start beside that";
         result.status = SimulationStatus::not_converged;
         result.message = message.str();
         return false;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "fettle/core/base/text.hpp"
+
 namespace fettle::design::clearance {
 
 namespace {
@@ -143,6 +145,10 @@ std::string why_not_judged(const Subject& subject, const PairSelection& selectio
     if (stopped) message = "interrupted: pairs that were not examined are undecided";
     if (!subject.incomplete.empty())
         message += (message.empty() ? "" : "; ") + std::string("the motion is known up to there only: ") + subject.incomplete;
+    if (subject.ranges && !subject.ranges->lost.empty())
+        message +=
+            (message.empty() ? "" : "; ") + core::base::joined(subject.ranges->lost) +
+            ": that is hardly a range. Correct their `limits`, or leave them out (fettle import --ignore-mimic-limits does, as ROS does)";
     if (selection.pairs.empty())
         message += (message.empty() ? "" : "; ") + std::string("nothing was judged: ") + why_none_is_judged(subject, selection);
     return message;

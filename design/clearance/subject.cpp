@@ -14,6 +14,7 @@ std::vector<std::string> notes_of_ranges(const core::model::Model& model, const 
     using core::base::joined;
     std::vector<std::string> notes, turns, motors;
     if (!ranges.held.empty()) notes.push_back("held at the start pose, as no joint connects them to the world: " + joined(ranges.held));
+    notes.insert(notes.end(), ranges.narrowed.begin(), ranges.narrowed.end());
     for (const auto& coordinate : ranges.linkage.coordinates)
         if (coordinate.is_whole_turn) turns.push_back(coordinate.joints.front().joint);
     if (!turns.empty()) notes.push_back("without limits, so they turn wholly: " + joined(turns));

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 struct ImportArguments {
     std::string path, to;
-    bool floating = false;
+    bool floating = false, ignore_mimic_limits = false;
 };
 
 int run_import(const ImportArguments& arguments, const CommonOptions& common, Console& console) {
@@ -28,8 +28,11 @@ int run_import(const ImportArguments& arguments, const CommonOptions& common, Co
         return console.input_errors({{ErrorCode::unsupported, "--to", "a scene is X" + ending + ", found " + arguments.to}});
     const Result<std::string> text = core::files::read_file(arguments.path);
     if (!text) return console.input_errors(text.errors());
-    const auto robot = urdf::parse_urdf(*text, arguments.path);
+    auto robot = urdf::parse_urdf(*text, arguments.path);
     if (!robot) return console.input_errors(robot.errors());
+    if (arguments.ignore_mimic_limits)
+        for (urdf::Joint& joint : robot->joints)
+            if (!joint.mimics.empty()) joint.lower = joint.upper = std::nullopt;
     urdf::ImportOptions options;
     options.folder = fs::path(arguments.path).parent_path().string();
     options.mesh_dirs = common.mesh_dirs;
@@ -66,6 +69,8 @@ Command add_import(CommandLine& program, const CommonOptions& common) {
     app.option("FILE", options->path, "ROBOT.urdf").required();
     app.option("--to", options->to, "Scene to write, X.scene.json; meshes go to X.meshes beside it").required();
     app.flag("--floating", options->floating, "The root link is free (default: it does not move)");
+    app.flag("--ignore-mimic-limits", options->ignore_mimic_limits,
+             "Joints that mimic another have no limits of their own, as in ROS (default: theirs narrow what they follow)");
     app.closing_words("Example:  fettle import arm.urdf --to arm.scene.json && fettle simulate arm.scene.json --out out");
     return {app, [options, &common](Console& console) { return run_import(*options, common, console); }};
 }

@@ -206,8 +206,10 @@ Errors Clearance::check(const core::model::Model& model, int steps) const {
     for (const Errors& faults : {check_faces(model, range_.a, range_.faces_a), check_faces(model, range_.b, range_.faces_b)})
         errors.insert(errors.end(), faults.begin(), faults.end());
     if (!range_.ranges) return errors;
-    if (const auto ranges = core::clearance::joint_ranges(model); !ranges)
-        for (const Error& error : ranges.errors()) add(error.code, error.where + ": " + error.message);
+    const auto ranges = core::clearance::joint_ranges(model);
+    for (const Error& error : ranges.errors()) add(error.code, error.where + ": " + error.message);
+    for (const std::string& lost : ranges ? ranges->lost : std::vector<std::string>())
+        add(ErrorCode::out_of_range, lost + ": that is hardly a range. Correct their `limits`, or leave them out");
     return errors;
 }
 

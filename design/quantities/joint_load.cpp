@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fettle/adjoint/stepper/row_multipliers.hpp"
+#include "fettle/core/model/row_choice.hpp"
 
 namespace fettle::design::quantities {
 
@@ -30,6 +31,7 @@ class JointAtStep {
 public:
     JointAtStep(const Simulated& s, int joint, size_t step, const VectorX& multipliers, double weight)
         : mechanism_(s.model.mechanism),
+          rows_(all_rows(mechanism_)),
           joint_(mechanism_.joints[joint]),
           owner_(joint),
           multipliers_(multipliers),
@@ -76,7 +78,7 @@ public:
             const double along = -scale * part.factor / weight_, carried = along * multipliers_[i];
             multiplier_bar[i] += along * change;
             add_placement_gradient_of_change(m, f, carried, {frames_, rotations_}, v, seeds.model_bar.mechanism.frames);
-            seeds.model_bar.mechanism.row_factors[i][&part - mechanism_.rows[i].parts.data()] += carried / part.factor * change;
+            seeds.model_bar.mechanism.row_factors[i][&part - rows_[i].parts.data()] += carried / part.factor * change;
             const Vector12 of_poses = carried * pose_gradient_of_change(m, f, frames_, v);
             if (body_of(m.a) != core::measure::world) pose_bar[body_of(m.a)] += of_poses.head<6>();
             if (body_of(m.b) != core::measure::world) pose_bar[body_of(m.b)] += of_poses.tail<6>();
@@ -91,14 +93,14 @@ private:
 
     template <class Do>
     void for_each_row(const Do& act) const {
-        for (size_t i = 0; i < mechanism_.rows.size(); ++i)
-            if (mechanism_.rows[i].owner == owner_) act(i);
+        for (size_t i = 0; i < rows_.size(); ++i)
+            if (rows_[i].owner == owner_) act(i);
     }
 
     template <class Do>
     void for_each_part(const Do& act) const {
         for_each_row([&](size_t i) {
-            for (const RowPart& part : mechanism_.rows[i].parts) act(i, part, mechanism_.set.measures[part.measure]);
+            for (const RowPart& part : rows_[i].parts) act(i, part, mechanism_.set.measures[part.measure]);
         });
     }
 
@@ -120,6 +122,7 @@ private:
     }
 
     const Mechanism& mechanism_;
+    const std::vector<Row> rows_;  // [number]
     const Joint& joint_;
     int owner_;
     const VectorX& multipliers_;

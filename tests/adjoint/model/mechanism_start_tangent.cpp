@@ -46,7 +46,7 @@ RowChange row_change(const StartChanges& at, std::size_t i, const Changes& poses
         const core::constraint::RowPart& part = row.parts[k];
         const core::measure::Measure& m = at.problem.set.measures[part.measure];
         const measure::MeasureTangent t = measure::measure_tangent(at.problem.set, m, {at.poses, poses_dot, dot.frames});
-        const double factor_dot = dot.row_factors[i][k];
+        const double factor_dot = dot.row_factors[row.number][k];
         out.value_dot += part.factor * t.value_dot;
         if (factor_dot != 0)
             out.value_dot += factor_dot * core::constraint::value_at(at.problem.set, part.measure, frames, at.model.mechanism.angles_start);
@@ -143,17 +143,17 @@ private:
 };
 
 // How a row's right-hand side changes at the start, and how fast its curve begins.
-double target_change(const Row& row, const MechanismTangent& dot, std::size_t i) {
-    double out = dot.row_constant[i];
+double target_change(const Row& row, const MechanismTangent& dot) {
+    double out = dot.row_constant[row.number];
     const std::vector<double> weights = core::scene::curve_weights(row.curve, 0);
-    for (std::size_t k = 0; k < weights.size(); ++k) out += weights[k] * dot.row_values[i][k];
+    for (std::size_t k = 0; k < weights.size(); ++k) out += weights[k] * dot.row_values[row.number][k];
     return out;
 }
 
-double rate_change(const Model& model, const Row& row, const MechanismTangent& dot, std::size_t i) {
+double rate_change(const Model& model, const Row& row, const MechanismTangent& dot) {
     core::scene::Curve curve = row.curve;
-    curve.values = dot.row_values[i];
-    curve.rate = dot.row_rate[i];
+    curve.values = dot.row_values[row.number];
+    curve.rate = dot.row_rate[row.number];
     return core::model::rate_at_start(curve, model.timestep);
 }
 
@@ -202,7 +202,7 @@ private:
         for (int i = 0; i < system_.rows(); ++i) {
             const RowChange row = row_change(at_, static_cast<std::size_t>(i), poses_dot, dot);
             for (std::size_t b = 0; b < force_dot.size(); ++b) force_dot[b] += multipliers_[i] * row.gradient_dot[b];
-            out[system_.count() + i] = row.value_dot - target_change(at_.problem.rows[i], dot, static_cast<std::size_t>(i));
+            out[system_.count() + i] = row.value_dot - target_change(at_.problem.rows[i], dot);
         }
         system_.add_along_motions(force_dot, system_.rotations(), out);
         std::vector<Matrix3> rotations_dot;
@@ -265,7 +265,7 @@ public:
                 force_dot[b] += multipliers_[i] * change.gradient_dot[b];
                 rate += change.gradient_dot[b].cwiseProduct(moving[b]).sum() + change.gradient[b].cwiseProduct(agreed_dot[b]).sum();
             }
-            rate -= rate_change(at_.model, at_.problem.rows[row], at_.mechanism_dot, row);
+            rate -= rate_change(at_.model, at_.problem.rows[row], at_.mechanism_dot);
         }
         system_.add_along_motions(force_dot, system_.rotations(), known);
         system_.add_along_motions(force, rotations_dot, known);

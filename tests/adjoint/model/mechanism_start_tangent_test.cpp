@@ -90,7 +90,7 @@ TEST_CASE("assembly and start velocities: forwards and backwards agree", "[adjoi
                 noise(frame.point, 0.02);
                 noise(frame.axes, 0.05);
             }
-            for (std::size_t i = 0; i < model.mechanism.rows.size(); ++i) {
+            for (std::size_t i = 0; i < direction.mechanism.row_constant.size(); ++i) {
                 MechanismTangent& m = direction.mechanism;
                 if (kind == 4) m.row_constant[i] = 0.01 * unit(random);
                 for (double& v : m.row_values[i])

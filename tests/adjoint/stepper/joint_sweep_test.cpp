@@ -223,12 +223,13 @@ core::model::Model with_mechanism(core::model::Model model, const MechanismTange
         m.terms[k].curve.rate += s * d.term_rate[k];
         for (std::size_t i = 0; i < m.terms[k].curve.values.size(); ++i) m.terms[k].curve.values[i] += s * d.term_values[k][i];
     }
-    for (std::size_t i = 0; i < m.rows.size(); ++i) {
-        m.rows[i].constant += s * d.row_constant[i];
-        m.rows[i].curve.rate += s * d.row_rate[i];
-        for (std::size_t k = 0; k < m.rows[i].parts.size(); ++k) m.rows[i].parts[k].factor += s * d.row_factors[i][k];
-        for (std::size_t k = 0; k < m.rows[i].curve.values.size(); ++k) m.rows[i].curve.values[k] += s * d.row_values[i][k];
-    }
+    for (auto* rows : {&m.rows, &m.dependent})
+        for (core::constraint::Row& row : *rows) {
+            row.constant += s * d.row_constant[row.number];
+            row.curve.rate += s * d.row_rate[row.number];
+            for (std::size_t k = 0; k < row.parts.size(); ++k) row.parts[k].factor += s * d.row_factors[row.number][k];
+            for (std::size_t k = 0; k < row.curve.values.size(); ++k) row.curve.values[k] += s * d.row_values[row.number][k];
+        }
     return model;
 }
 

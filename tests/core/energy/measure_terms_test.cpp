@@ -28,7 +28,7 @@ model::Model loose_bars(scene::Integrator integrator) {
     between.name = "between";
     between.a = {"one", Vector3(0.3, 0, 0), Vector3::UnitZ()};
     between.b = {"two", Vector3(0.2, 0, 0), Vector3::UnitZ()};
-    between.forces = {70, 0.2, 0, 3, 2, std::array<double, 2>{0.0, 0.4}};
+    between.forces = {70, 0.2, 0, 3, 2, std::array<double, 2>{0.0, 0.315}};  // pressed where derivatives are looked at
     from_world.name = "from world";
     from_world.a = {"", Vector3(0, 0, 0.5), Vector3::UnitZ()};
     from_world.b = {"one", Vector3(0.1, 0, 0), Vector3::UnitZ()};
@@ -38,6 +38,9 @@ model::Model loose_bars(scene::Integrator integrator) {
     return built(scene);
 }
 
+// What a stop of lengths gives way by at most.
+double width(const model::Model& model) { return model::stop_give * model.dhat; }
+
 }  // namespace
 
 TEST_CASE("laws of measures agree with differences", "[measure_terms]") {
@@ -46,10 +49,13 @@ TEST_CASE("laws of measures agree with differences", "[measure_terms]") {
     for (std::size_t k = 0; k < model.mechanism.terms.size(); ++k) {
         const model::MeasureTerm& term = model.mechanism.terms[k];
         const double start = problem.mechanism.measures[term.measure];
-        for (const double m : {start + 0.003, start - 0.004, start + 0.08}) {
+        std::vector<double> at_values{start + 0.003, start - 0.004, start + 0.08};
+        if (term.kind == model::LawKind::stop)
+            for (const double share : {-0.5, 0.1, 0.5, 0.8}) at_values.push_back(term.reference - share * term.sign * width(model));
+        for (const double m : at_values) {
             CAPTURE(k, static_cast<int>(term.kind), m);
             const auto at = [&](double x) { return measure_law(problem, term, x); };
-            const double h = 1e-6;
+            const double h = 1e-7;
             const LawValue law = at(m);
             if (!std::isfinite(law.value)) continue;
             const double size = std::abs(law.second) + std::abs(law.first) + 1e-12;
@@ -61,16 +67,22 @@ TEST_CASE("laws of measures agree with differences", "[measure_terms]") {
     }
 }
 
-TEST_CASE("a stop is infinite beyond its limit, nothing before dhat of it, and pushes away", "[measure_terms]") {
+TEST_CASE("a stop is nothing within its limit and at it, pushes back beyond it, and gives way by less than its width", "[measure_terms]") {
     const model::Model model = loose_bars(scene::Integrator::implicit_euler);
     const StepProblem problem = step_problem(model, start_history(model), model.kappa);
     for (const model::MeasureTerm& term : model.mechanism.terms) {
         if (term.kind != model::LawKind::stop) continue;
-        const double inside = term.sign * model.dhat;
-        CHECK(measure_law(problem, term, term.reference + 1.01 * inside).value == 0);
-        CHECK(term.sign * measure_law(problem, term, term.reference + 0.3 * inside).first < 0);
-        CHECK(std::isinf(measure_law(problem, term, term.reference).value));
-        CHECK(std::isinf(measure_law(problem, term, term.reference - inside).value));
+        const double inside = term.sign * width(model);
+        for (const double within : {0.0, 0.3, 10.0}) {
+            const LawValue law = measure_law(problem, term, term.reference + within * inside);
+            CHECK(law.value == 0);
+            CHECK(law.first == 0);
+        }
+        const LawValue pressed = measure_law(problem, term, term.reference - 0.7 * inside);
+        CHECK(pressed.value > 0);
+        CHECK(term.sign * pressed.first < 0);
+        CHECK(std::isinf(measure_law(problem, term, term.reference - 1.001 * inside).value));
+        CHECK(std::isinf(measure_law(problem, term, term.reference - 100 * inside).value));
     }
 }
 

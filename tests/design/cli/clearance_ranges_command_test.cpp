@@ -185,6 +185,28 @@ TEST_CASE("ranges: a certificate is accepted, and stale when joints, limits or m
     CHECK(rejected.json()["status"] == "rejected");
 }
 
+TEST_CASE("ranges: limits of what follows a joint are told where they narrow its range, and leave no verdict where they leave none") {
+    const auto with_follower = [](const std::string& limits) {
+        const std::string box = R"("shape": {"part": "box", "dimensions": {"size_x": 40, "size_y": 8, "size_z": 4}})";
+        return R"({"fettle_scene": 1, "units": "mm", "timestep": 0.02, "bodies": [{"name": "one", )" + box +
+               R"(}, {"name": "two", "position": [0, 0, 20], )" + box + R"(}], "joints": [
+            {"name": "drive", "type": "revolute", "b": "one", "point": [0, 0, 0], "axis": [0, 0, 1], "limits": [0, 30]},
+            {"name": "keep", "type": "revolute", "b": "two", "point": [0, 0, 20], "axis": [0, 0, 1], "limits": )" +
+               limits + R"(}, {"name": "mimic", "type": "gear", "of": ["drive", "keep"], "ratio": -1}]})";
+    };
+    const auto asked = [&](const std::string& limits) {
+        const DesignFolder folder(small_design, with_follower(limits));
+        return run("clearance " + folder.file("small.scene.json") + " --ranges --minimum 1mm", true);
+    };
+    const Answer none = asked("[0, 30]"), some = asked("[-20, 30]"), all = asked("[-30, 30]");
+    CHECK(none.code == 2);
+    CHECK(none.says("the range of `drive` is 0 to 0 deg: `keep` narrows it from 0 to 30 deg"));
+    CHECK(some.code == 0);
+    CHECK(some.says("the range of `drive` is 0 to 20 deg: `keep` narrows it from 0 to 30 deg"));
+    CHECK(all.code == 0);
+    CHECK(!all.says("narrows"));
+}
+
 TEST_CASE("ranges: a joint without limits is named, or turns wholly") {
     const std::string text = contents(two_arms);
     const DesignFolder free(small_design, replaced(text, "\"limits\": [-120, 5]", "\"collide\": false"));

@@ -4,6 +4,7 @@
 #include <random>
 #include <set>
 
+#include "fettle/core/model/row_choice.hpp"
 #include "fettle/design/problem/check_design.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/problem/moved_scene.hpp"
@@ -241,7 +242,7 @@ std::vector<double> numbers_of(const Model& model) {
         for (const double value : term.curve.values) v(value);
         v(term.curve.rate);
     }
-    for (const core::constraint::Row& row : model.mechanism.rows) {
+    for (const core::constraint::Row& row : all_rows(model.mechanism)) {
         v(row.constant);
         for (const core::constraint::RowPart& part : row.parts) v(part.factor);
         for (const double value : row.curve.values) v(value);

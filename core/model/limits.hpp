@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+/// Limits of joints and springs. They are closed: what stands at its limit, to within what rounding and assembling make of it, is within.
+/// docs/method/joints.md#springs-dampers-stops-friction.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fettle/core/model/model.hpp"
+
+namespace fettle::core::model {
+
+/// Of dhat: what stands beyond its limit by up to this stands at it.
+inline constexpr double at_limit = 1e-2;
+
+/// How far a value is within a stop's limit, in lengths; less than 0: beyond it [m].
+double room_within(const MeasureTerm& stop, double value);
+
+/// Least and greatest value that the stops of a measure leave it; none: it has no stops.
+std::optional<std::array<double, 2>> limits_of(const Mechanism& mechanism, int measure);
+
+/// What stands beyond its limits, a sentence each: "`hinge` is at -10 deg, beyond its limits, 0 to 90 deg".
+/// @param angles  of the measures, with their turns
+std::vector<std::string> beyond_limits(const Model& model, const std::vector<kinematics::Pose>& poses, const std::vector<double>& angles);
+
+/// "0 to 90 deg", "-3 to 12.5 mm".
+std::string range_text(const Model& model, int measure, double low, double high);
+
+}  // namespace fettle::core::model
