@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/expression/tape.hpp"
@@ -24,6 +25,9 @@ void for_models(Pair& pair, const Visit& visit) {
             for (auto& screw : link.screws) {
                 each(screw.point);
                 each(screw.axis);
+                if (!screw.driven) continue;
+                visit(screw.driven->scale);
+                visit(screw.driven->shift);
             }
         }
     };
@@ -42,7 +46,7 @@ class Extract {
 public:
     Extract(const Toleranced& from, const TolerancedPair& pair) : from_(from), pair_(pair), place_(from.nodes.size(), -1) {}
 
-    void want(const NodePoint& point) {
+    void want(std::span<const int> point) {
         for (const int node : point) place_[node] = 0;
     }
     expression::Nodes take() {
@@ -65,6 +69,10 @@ public:
             out.push_back(node);
         }
         return out;
+    }
+    std::optional<DrivenNodes> now(const std::optional<DrivenNodes>& driven) const {
+        if (!driven) return std::nullopt;
+        return DrivenNodes{place_[driven->scale], place_[driven->shift]};
     }
     NodePoint now(const NodePoint& point) const { return {place_[point[0]], place_[point[1]], place_[point[2]]}; }
 
@@ -109,7 +117,7 @@ ModelledPair restricted(const ModelledPair& whole, const VariableBox& box, const
 PairFormulas::PairFormulas(const Toleranced& toleranced, const TolerancedPair& pair, const Matrix3X& a, const Matrix3X& b)
     : coordinates_(count_of(pair.coordinates)), variables_(pair.variables()), mesh_a_(a), mesh_b_(b) {
     Extract extract(toleranced, pair);
-    const auto want = [&](const NodePoint& point) { extract.want(point); };
+    const auto want = [&](const auto& nodes) { extract.want(nodes); };
     const auto want_line = [&](const std::vector<int>& line) {
         for (const int body : line) for_frame_nodes(toleranced.bodies[body], want);
     };
@@ -137,7 +145,7 @@ PairFormulas::PairFormulas(const Toleranced& toleranced, const TolerancedPair& p
             Link& link = out.emplace_back();
             for (const TolerancedScrew& screw : body.screws)
                 link.screws.push_back({position_of(screw.coordinate), extract.now(screw.point), extract.now(screw.axis), screw.turn,
-                                       screw.slide, toleranced.coordinates[screw.coordinate].start});
+                                       screw.slide, toleranced.coordinates[screw.coordinate].start, extract.now(screw.driven)});
             for (std::size_t i = 0; i < 3; ++i) link.rotation[i] = extract.now(body.rotation[i]);
             link.place = extract.now(body.place);
         }
@@ -197,7 +205,10 @@ ModelledPair PairFormulas::over(const VariableBox& box) const {
     const auto line_of = [&](const std::vector<Link>& line, std::vector<ChainLink>& out) {
         for (const Link& from : line) {
             ChainLink& link = out.emplace_back();
-            for (const Screw& s : from.screws) link.screws.push_back({s.position, point(s.point), point(s.axis), s.turn, s.slide, s.start});
+            for (const Screw& s : from.screws) {
+                link.screws.push_back({s.position, point(s.point), point(s.axis), s.turn, s.slide, s.start});
+                if (s.driven) link.screws.back().driven = {values[s.driven->scale], values[s.driven->shift]};
+            }
             link.rotation = {point(from.rotation[0]), point(from.rotation[1]), point(from.rotation[2])};
             link.place = point(from.place);
         }

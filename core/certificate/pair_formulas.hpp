@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "fettle/core/certificate/taylor_model.hpp"
@@ -61,6 +62,7 @@ private:
         int position;
         NodePoint point, axis;
         double turn, slide, start;
+        std::optional<DrivenNodes> driven;
     };
     struct Link {
         std::vector<Screw> screws;

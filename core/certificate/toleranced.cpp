@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/expression/tape.hpp"
+#include "fettle/core/geometry/range.hpp"
 
 namespace fettle::core::certificate {
 namespace {
@@ -43,7 +46,7 @@ bool is_usable_body(const Toleranced& toleranced, std::size_t index, int vertice
     const TolerancedBody& body = toleranced.bodies[index];
     if (!body.vertices.empty() && count_of(body.vertices) != vertices) return false;
     bool usable = ends_in_the_world(toleranced, index);
-    const auto look = [&](const NodePoint& point) {
+    const auto look = [&](const auto& point) {
         for (const int node : point) usable = usable && node >= 0 && node < count_of(toleranced.nodes);
     };
     for_frame_nodes(body, look);
@@ -79,9 +82,11 @@ bool is_usable_loop(const Toleranced& toleranced, const TolerancedLoop& loop, st
         const BodyLines lines = lines_between(toleranced, closure.a, closure.b);
         for (const auto* line : {&lines.a, &lines.b})
             for (const int body : *line)
-                for (const TolerancedScrew& screw : toleranced.bodies[body].screws)
-                    if (std::find(loop.unknowns.begin(), loop.unknowns.end(), screw.coordinate) == loop.unknowns.end())
-                        drivers.insert(screw.coordinate);
+                for (const TolerancedScrew& screw : toleranced.bodies[body].screws) {
+                    const bool is_unknown = std::find(loop.unknowns.begin(), loop.unknowns.end(), screw.coordinate) != loop.unknowns.end();
+                    if (is_unknown && screw.driven) return false;
+                    if (!is_unknown) drivers.insert(screw.coordinate);
+                }
     }
     return drivers.size() == 1;
 }
@@ -104,6 +109,16 @@ bool is_over_ranges(const Toleranced& toleranced) {
 bool same_toleranced(const Toleranced& x, const Toleranced& y) {
     return x.deviations == y.deviations && same_nodes(x.nodes, y.nodes) && x.coordinates == y.coordinates && x.bodies == y.bodies &&
            x.loops == y.loops && x.duration == y.duration;
+}
+
+double farthest(const Toleranced& toleranced, const TolerancedScrew& screw) {
+    const LinkageCoordinate& c = toleranced.coordinates[screw.coordinate];
+    if (!screw.driven) return c.high - c.low;
+    std::vector<geometry::Range> deviations;
+    for (const Deviation& d : toleranced.deviations) deviations.emplace_back(d.lower, d.upper);
+    const std::vector<geometry::Range> of_nodes = expression::values<geometry::Range>(toleranced.nodes, deviations);
+    const geometry::Range way(c.low - c.start, c.high - c.start);
+    return (of_nodes[screw.driven->shift] + of_nodes[screw.driven->scale] * way).magnitude();
 }
 
 base::Errors check_toleranced(const Toleranced& toleranced, const std::vector<int>& vertices) {
@@ -154,11 +169,11 @@ public:
     void add_lines(const BodyLines& lines) {
         for (const auto* line : {&lines.a, &lines.b})
             for (const int body : *line) {
-                for_frame_nodes(toleranced_.bodies[body], [&](const NodePoint& point) { add(point); });
+                for_frame_nodes(toleranced_.bodies[body], [&](const auto& nodes) { add(nodes); });
                 for (const TolerancedScrew& screw : toleranced_.bodies[body].screws) add_coordinate(screw.coordinate);
             }
     }
-    void add(const NodePoint& point) {
+    void add(std::span<const int> point) {
         for (const int node : point) reached_[node] = true;
     }
     void finish(TolerancedPair& pair) {

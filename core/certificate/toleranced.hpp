@@ -7,12 +7,14 @@
 ///   vertices       of a body, in its frame, one for each of its mesh's; none: as the mesh has them. Triangles and edges are the mesh's
 ///   a body's pose  in its parent's frame, where every coordinate is at its start: x -> rotation x + place
 ///   its screws     as those of a linkage (linkage.hpp), but in the parent's frame: they carry the body from that pose, the one next to the
-///                  parent comes first
+///                  parent comes first. A screw goes by d = u - start of its coordinate, or, where how far it goes deviates (a motor's
+///                  curve), by shift + scale d
 /// So a claim is about the bodies with the triangles that they have at `base`, and vertices that move by these formulas. Coordinates and
 /// their ranges are the same for all of them.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,11 +35,18 @@ struct Deviation {
 
 using NodePoint = std::array<int, 3>;
 
+/// How far a screw goes, of nodes; 1 and 0 at the base.
+struct DrivenNodes {
+    int scale = 0, shift = 0;
+    bool operator==(const DrivenNodes&) const = default;
+};
+
 struct TolerancedScrew {
     int coordinate = 0;
     NodePoint point{}, axis{};  ///< the axis as long as 1
     double turn = 0;            ///< [rad] per unit of the coordinate
     double slide = 0;           ///< [m] per unit of the coordinate
+    std::optional<DrivenNodes> driven{};
     bool operator==(const TolerancedScrew&) const = default;
 };
 
@@ -50,12 +59,13 @@ struct TolerancedBody {
     bool operator==(const TolerancedBody&) const = default;
 };
 
-/// What its frame depends on: all but the vertices.
+/// What its frame depends on, in arrays of nodes: all but the vertices.
 template <class Visit>
 void for_frame_nodes(const TolerancedBody& body, const Visit& visit) {
     for (const TolerancedScrew& screw : body.screws) {
         visit(screw.point);
         visit(screw.axis);
+        if (screw.driven) visit(std::array{screw.driven->scale, screw.driven->shift});
     }
     for (const NodePoint& row : body.rotation) visit(row);
     visit(body.place);
@@ -95,6 +105,9 @@ bool is_over_ranges(const Toleranced& toleranced);
 /// The same formulas, limits and joints?
 bool same_toleranced(const Toleranced& x, const Toleranced& y);
 
+/// |shift + scale (u - start)| at most, or |u - start|, whatever the deviations. Contract: checked.
+double farthest(const Toleranced& toleranced, const TolerancedScrew& screw);
+
 /// More deviations than this that matter for one pair are not dealt with.
 inline constexpr int most_deviations = 8;
 static_assert(most_deviations + most_coordinates == most_variables);
@@ -114,7 +127,8 @@ struct TolerancedPair {
 
 /// {deviations [{of, lower, upper, base, unit}], operations "constant input multiply ...", operands of those that have some and numbers of
 ///  constants one after the other, coordinates, bodies [{parent, screws [{coordinate, point, axis, turn, slide}], rotation, place,
-///  vertices}]}, points as numbers of nodes, three each.
+///  vertices}]}, points as numbers of nodes, three each; a driven screw has {scale, shift, turn, slide} as `driven` in place of its turn
+///  and slide.
 void write_toleranced(files::JsonWriter& out, const Toleranced& toleranced);
 Toleranced read_toleranced(const files::JsonNode& node);
 

@@ -27,7 +27,8 @@ ModelPose pose_along(const std::vector<ChainLink>& line, const std::vector<Taylo
             if (screws != nullptr)
                 screws->push_back({screw.position, screw.turn, screw.slide, times(out.rotation, screw.point) + out.place,
                                    times(out.rotation, screw.axis)});
-            const TaylorModel d = positions[static_cast<std::size_t>(screw.position)] - TaylorModel(screw.start);
+            TaylorModel d = positions[static_cast<std::size_t>(screw.position)] - TaylorModel(screw.start);
+            if (screw.driven) d = screw.driven->shift + screw.driven->scale * d;
             ModelPose motion = unmoved_pose();
             if (screw.turn != 0) {
                 motion.rotation = turned_about(screw.axis, scaled(screw.turn, d));

@@ -3,6 +3,7 @@
 /// with each screw (toleranced_loop.hpp).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "fettle/core/certificate/taylor_model.hpp"
@@ -19,10 +20,16 @@ Model3 exact_model(const Vector3& x);
 Model3 cross(const Model3& a, const Model3& b);
 geometry::Interval3 intervals(const Model3& x);
 
+/// A screw goes by shift + scale d of its position's d.
+struct ChainDrive {
+    TaylorModel scale, shift;
+};
+
 struct ChainScrew {
     int position = 0;  ///< whose value moves it, in a list of positions
     Model3 point, axis;
     double turn = 0, slide = 0, start = 0;
+    std::optional<ChainDrive> driven{};
 };
 
 /// From a body's frame to that of what it hangs on.
@@ -32,7 +39,7 @@ struct ChainLink {
     Model3 place;
 };
 
-/// A screw where the chain has it: in the frame of the chain's first parent.
+/// A screw where the chain has it: in the frame of the chain's first parent. Of those that are driven, its position is not how far it goes.
 struct PlacedScrew {
     int position = 0;
     double turn = 0, slide = 0;

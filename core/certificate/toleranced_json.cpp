@@ -53,9 +53,15 @@ void write_body(JsonWriter& out, const TolerancedBody& body) {
         number("coordinate", screw.coordinate);
         points("point", std::vector<NodePoint>{screw.point});
         points("axis", std::vector<NodePoint>{screw.axis});
+        if (screw.driven) {
+            out.key("driven");
+            out.text += '{';
+            number("scale", screw.driven->scale);
+            number("shift", screw.driven->shift);
+        }
         number("turn", screw.turn);
         number("slide", screw.slide);
-        out.text += '}';
+        out.text += screw.driven ? "}}" : "}";
     });
     points("rotation", body.rotation);
     points("place", std::vector<NodePoint>{body.place});
@@ -156,9 +162,14 @@ NodePoint read_node_point(const JsonNode& node) {
 TolerancedBody read_body(const JsonNode& node) {
     TolerancedBody out;
     out.parent = node.require("parent").integer(-1).value_or(-1);
-    for (const JsonNode& screw : node.require("screws").elements())
-        out.screws.push_back({screw.require("coordinate").integer(0).value_or(0), read_node_point(screw.require("point")),
-                              read_node_point(screw.require("axis")), number_of(screw.require("turn")), number_of(screw.require("slide"))});
+    for (const JsonNode& screw : node.require("screws").elements()) {
+        const bool is_driven = screw["driven"].exists();
+        const JsonNode numbers = is_driven ? screw["driven"] : screw;
+        TolerancedScrew& made = out.screws.emplace_back(TolerancedScrew{
+            screw.require("coordinate").integer(0).value_or(0), read_node_point(screw.require("point")),
+            read_node_point(screw.require("axis")), number_of(numbers.require("turn")), number_of(numbers.require("slide"))});
+        if (is_driven) made.driven = {numbers.require("scale").integer(0).value_or(0), numbers.require("shift").integer(0).value_or(0)};
+    }
     const std::vector<NodePoint> rotation = read_points(node.require("rotation"));
     if (rotation.size() == 3)
         std::copy(rotation.begin(), rotation.end(), out.rotation.begin());

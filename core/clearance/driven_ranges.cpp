@@ -20,14 +20,6 @@ using certificate::Screw;
 using model::Joint;
 using scene::Curve;
 
-// What goes by itself: a motor's coordinate, or a scripted body's own.
-struct Source {
-    std::string name;
-    Curve curve;
-    int coordinate = 0;
-    double units = 1;  // of the coordinate, per unit of the curve
-};
-
 Curve curve_of(const scene::MotionCurve& script) {
     return {scene::CurveKind::linear, script.rate, script.times, script.values, script.stop_time};
 }
@@ -41,17 +33,14 @@ bool moves(const Curve& curve) {
 
 double running_time(const Curve& curve, double duration) { return std::min(duration, curve.stop_time.value_or(duration)); }
 
-// Of u(t) - u(0); between its entries it is straight, or at rest at each and steady.
+// Of u(t) - u(0).
 std::array<double, 2> extent(const Curve& curve, double duration) {
-    const double last = running_time(curve, duration), start = curve_value(curve, 0);
+    const double start = curve_value(curve, 0);
     std::array<double, 2> out{0, 0};
-    const auto reach = [&](double time) {
+    for (const double time : turning_times(curve, duration)) {
         const double value = curve_value(curve, time) - start;
         out = {std::min(out[0], value), std::max(out[1], value)};
-    };
-    reach(last);
-    for (const double time : curve.times)
-        if (time > 0 && time < last) reach(time);
+    }
     return out;
 }
 
@@ -73,11 +62,15 @@ public:
         take_motors();
         take_scripts();
         check_driven();
-        std::erase_if(sources_, [](const Source& source) { return !moves(source.curve); });
-        if (errors_.empty() && sources_.empty())
+        std::erase_if(out_.driven, [](const DrivenSource& source) { return !moves(source.curve); });
+        if (errors_.empty() && out_.driven.empty())
             fail(ErrorCode::missing_key, "motion", "no motor and no script moves anything: leave out --kinematic");
-        if (errors_.empty()) settle();
         if (!errors_.empty()) return errors_;
+        find_screws();
+        settle();
+        if (!errors_.empty()) return errors_;
+        out_.of = LoopedRanges::Of::motion;
+        out_.duration = duration_;
         return std::move(out_);
     }
 
@@ -92,7 +85,11 @@ private:
             for (int k = 0; k < count_of(out_.ranges.linkage.coordinates); ++k)
                 for (const JointCoordinate& joint : coordinate(k).joints)
                     if (is_of(joint.joint, motor) && row.parts.size() == 1)
-                        sources_.push_back({motor.name, row.curve, k, 1 / (joint.scale * row.parts.front().factor)});
+                        out_.driven.push_back({.name = motor.name,
+                                               .motor = motor.origin.index,
+                                               .curve = row.curve,
+                                               .coordinate = k,
+                                               .units = 1 / (joint.scale * row.parts.front().factor)});
         }
     }
     bool is_of(const std::string& joint, const Joint& motor) const {
@@ -161,12 +158,13 @@ private:
             own.joints.push_back({body.name + (way.norm() > 0 ? " (turn)" : ""), true, turn.norm(), 0});
         }
         out_.ranges.linkage.coordinates.push_back(own);
-        sources_.push_back({body.name, curve, k, 1});
+        out_.driven.push_back(
+            {.name = body.name, .body = i, .dof = moving.size() == 1 ? moving.front() : -1, .curve = curve, .coordinate = k});
     }
 
     void check_driven() {
         std::set<int> known;
-        for (const Source& source : sources_) known.insert(source.coordinate);
+        for (const DrivenSource& source : out_.driven) known.insert(source.coordinate);
         for (const ClosedLoop& loop : out_.loops) known.insert(loop.unknowns.begin(), loop.unknowns.end());
         for (int k = 0; k < count_of(out_.ranges.linkage.coordinates); ++k)
             if (known.count(k) == 0)
@@ -175,9 +173,17 @@ private:
                     "no motor drives it, and no loop: where it is would be decided by dynamics. Give it a motor (with speed 0 it is held)");
     }
 
+    void find_screws() {
+        const auto& bodies = out_.ranges.linkage.bodies;
+        for (DrivenSource& source : out_.driven)
+            for (int i = 0; i < count_of(bodies); ++i)
+                for (int k = 0; k < count_of(bodies[i].screws); ++k)
+                    if (bodies[i].screws[k].coordinate == source.coordinate) source.screws.emplace_back(i, k);
+    }
+
     void settle() {
-        if (sources_.size() > 1) return share_time();
-        const Source& source = sources_.front();
+        if (out_.driven.size() > 1) return share_time();
+        const DrivenSource& source = out_.driven.front();
         const bool is_known = is_even(source.curve) || source.curve.kind == scene::CurveKind::linear ||
                               (source.curve.kind == scene::CurveKind::trapezoid && source.curve.rate == 0);
         if (!is_known) {
@@ -215,8 +221,8 @@ private:
 
     // All that moves, by the time.
     void share_time() {
-        const Curve& first = sources_.front().curve;
-        for (const Source& source : sources_)
+        const Curve& first = out_.driven.front().curve;
+        for (const DrivenSource& source : out_.driven)
             if (!is_even(source.curve) || source.curve.stop_time != first.stop_time) {
                 fail(
                     ErrorCode::unsupported, "`" + source.name + "`",
@@ -226,9 +232,9 @@ private:
             }
         LinkageCoordinate time;
         time.high = running_time(first, duration_);
-        const int shared = sources_.front().coordinate;
+        const int shared = out_.driven.front().coordinate;
         std::vector<double> rates(out_.ranges.linkage.coordinates.size(), 0);
-        for (const Source& source : sources_) {
+        for (const DrivenSource& source : out_.driven) {
             const double rate = source.curve.rate * source.units;
             rates[source.coordinate] = rate;
             const LinkageCoordinate& own = coordinate(source.coordinate);
@@ -247,16 +253,25 @@ private:
             if (rates[loop.driver] != 0) loop.driver = shared;
         coordinate(shared) = time;
         check_limits(time);
+        for (DrivenSource& source : out_.driven) source.coordinate = shared;
     }
 
     const model::Model& model_;
     double duration_;
     LoopedRanges out_;
-    std::vector<Source> sources_;
     Errors errors_;
 };
 
 }  // namespace
+
+std::vector<double> turning_times(const Curve& curve, double duration) {
+    const double last = running_time(curve, duration);
+    std::vector<double> out{0};
+    for (const double time : curve.times)
+        if (time > 0 && time < last) out.push_back(time);
+    out.push_back(last);
+    return out;
+}
 
 base::Result<LoopedRanges> driven_ranges(const model::Model& model, double duration) { return DrivenRanges(model, duration).run(); }
 

@@ -15,4 +15,8 @@ namespace fettle::core::clearance {
 /// poses at times; curves whose extent is not known exactly (cubic, control_points).
 base::Result<LoopedRanges> driven_ranges(const model::Model& model, double duration);
 
+/// When a curve may turn back in that time, and its last moment: between two of these it goes one way. Contract: it is linear, or a
+/// trapezoid alone.
+std::vector<double> turning_times(const scene::Curve& curve, double duration);
+
 }  // namespace fettle::core::clearance

@@ -44,6 +44,7 @@ public:
         for (ClosedLoop& loop : out_.loops) settle(loop);
         if (!errors_.empty()) return errors_;
         hold();
+        out_.of = is_pinned_ ? LoopedRanges::Of::start : LoopedRanges::Of::joints;
         return std::move(out_);
     }
 

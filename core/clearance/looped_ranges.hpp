@@ -6,10 +6,13 @@
 /// Loops that share a coordinate other than a driver's are one. The limits of dependents have no effect.
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/clearance/joint_ranges.hpp"
+#include "fettle/core/scene/curve.hpp"
 
 namespace fettle::core::clearance {
 
@@ -20,9 +23,24 @@ struct ClosedLoop {
     std::vector<int> rows;  ///< independent conditions: 6 * place in `closing` + x, y, z of the points, x, y, z of the axes
 };
 
+/// Of a prescribed motion (driven_ranges.hpp): what moves by itself, a motor's joint or a body's coordinates, and what it moves.
+struct DrivenSource {
+    std::string name;
+    int motor = -1;                           ///< a place in the scene's motors; -1: a script's
+    int body = -1, dof = -1;                  ///< of a script: whose, and which one moves; -1: several do
+    scene::Curve curve;                       ///< as designed
+    int coordinate = 0;                       ///< whose range, or time, it decides
+    double units = 1;                         ///< of the coordinate, per unit of the curve
+    std::vector<std::pair<int, int>> screws;  ///< bodies, and which of their screws
+};
+
 struct LoopedRanges {
+    enum class Of { joints, start, motion };
+    Of of = Of::joints;  ///< what the ranges are: the joints' own, their start alone, where a prescribed motion has them
     JointRanges ranges;  ///< of the tree; dependents stand at their start
     std::vector<ClosedLoop> loops;
+    std::vector<DrivenSource> driven{};  ///< of a motion; more than one share the time
+    double duration = 0;                 ///< of a motion [s]
 };
 
 /// Do joints close loops? Static bodies are one with the world.

@@ -25,7 +25,8 @@ kinematics::Pose MadeBodies::pose(int body, const std::vector<double>& coordinat
         start.position = point(from.place);
         out = composed_pose(start, out);
         for (auto screw = from.screws.rbegin(); screw != from.screws.rend(); ++screw) {
-            const double d = coordinates[screw->coordinate] - toleranced_.coordinates[screw->coordinate].start;
+            double d = coordinates[screw->coordinate] - toleranced_.coordinates[screw->coordinate].start;
+            if (screw->driven) d = values_[screw->driven->shift] + values_[screw->driven->scale] * d;
             const Vector3 p = point(screw->point), z = point(screw->axis);
             const Matrix3 turn = kinematics::rotation(Vector3(screw->turn * d * z));
             out = composed_pose({turn, p - turn * p + screw->slide * d * z}, out);

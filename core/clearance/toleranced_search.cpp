@@ -369,9 +369,9 @@ TolerancedBodies toleranced_bodies(const certificate::Toleranced& toleranced, co
         for (const int body : *line) {
             reach += made.pose(body, start).position.norm();
             for (const certificate::TolerancedScrew& screw : toleranced.bodies[body].screws) {
-                const certificate::LinkageCoordinate& c = toleranced.coordinates[screw.coordinate];
-                reach += std::abs(screw.slide) * (c.high - c.low);
-                angle = std::max(angle, std::abs(screw.turn) * (c.high - c.low));
+                const double way = certificate::farthest(toleranced, screw);
+                reach += std::abs(screw.slide) * way;
+                angle = std::max(angle, std::abs(screw.turn) * way);
             }
         }
     const auto links = static_cast<double>(pair.a.size() + pair.b.size());

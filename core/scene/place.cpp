@@ -135,6 +135,7 @@ enum class Range { any, not_negative, positive, not_zero, in_order, some_force }
 struct Row {
     List list;
     std::string_view key;  // below its item; * stands for the entry
+    PlaceKind kind;
     Numbers (*numbers)(const Item&);
     Dimension (*dimension)(const Item&);
     const char* (*misfit)(const Item&) = nullptr;  // why the item has none; null: it has
@@ -226,58 +227,68 @@ const char* is_none(const Item& item) {
 std::vector<Row> make_table() {
     using enum Dimension;
     std::vector<Row> rows{
-        {List::scene, "gravity/*", [](const Item& i) -> Numbers { return &i.scene.gravity; }, is<acceleration>},
-        {List::scene, "contact/dmin", [](const Item& i) -> Numbers { return &i.scene.dmin; }, is<length>, nullptr, Range::not_negative},
-        {List::scene, "friction/mu", [](const Item& i) -> Numbers { return &i.scene.friction.mu; }, is<number>, nullptr, Range::positive},
-        {List::scene, "materials/*/mu", [](const Item& i) -> Numbers { return &i.scene.friction.materials; }, is<number>, nullptr,
-         Range::positive},
-        {List::pair, "mu", [](const Item& i) -> Numbers { return &i.scene.friction.pairs[i.number].mu; }, is<number>, nullptr,
-         Range::positive},
-        {List::body, "shape/dimensions/*", [](const Item& i) { return i.body().shape ? Numbers(&i.body().shape->dimensions) : Numbers(); },
-         is<length>},
-        {List::body, "position/*", [](const Item& i) -> Numbers { return &i.body().pose.position; }, is<length>},
-        {List::body, "rotation/*", orientation_of<Orientation::Kind::angles>, is<angle>, has_no_orientation<Orientation::Kind::angles>},
-        {List::body, "rotation_vector/*", orientation_of<Orientation::Kind::vector>, is<angle>,
+        {List::scene, "gravity/*", PlaceKind::gravity, [](const Item& i) -> Numbers { return &i.scene.gravity; }, is<acceleration>},
+        {List::scene, "contact/dmin", PlaceKind::minimum_separation, [](const Item& i) -> Numbers { return &i.scene.dmin; }, is<length>,
+         nullptr, Range::not_negative},
+        {List::scene, "friction/mu", PlaceKind::friction, [](const Item& i) -> Numbers { return &i.scene.friction.mu; }, is<number>,
+         nullptr, Range::positive},
+        {List::scene, "materials/*/mu", PlaceKind::friction, [](const Item& i) -> Numbers { return &i.scene.friction.materials; },
+         is<number>, nullptr, Range::positive},
+        {List::pair, "mu", PlaceKind::friction, [](const Item& i) -> Numbers { return &i.scene.friction.pairs[i.number].mu; }, is<number>,
+         nullptr, Range::positive},
+        {List::body, "shape/dimensions/*", PlaceKind::shape_dimension,
+         [](const Item& i) { return i.body().shape ? Numbers(&i.body().shape->dimensions) : Numbers(); }, is<length>},
+        {List::body, "position/*", PlaceKind::position, [](const Item& i) -> Numbers { return &i.body().pose.position; }, is<length>},
+        {List::body, "rotation/*", PlaceKind::rotation, orientation_of<Orientation::Kind::angles>, is<angle>,
+         has_no_orientation<Orientation::Kind::angles>},
+        {List::body, "rotation_vector/*", PlaceKind::rotation, orientation_of<Orientation::Kind::vector>, is<angle>,
          has_no_orientation<Orientation::Kind::vector>},
-        {List::body, "turn/*", of_body<&Body::turn>, is<angle>},
-        {List::body, "density", of_body<&Body::density>,
+        {List::body, "turn/*", PlaceKind::rotation, of_body<&Body::turn>, is<angle>},
+        {List::body, "density", PlaceKind::density, of_body<&Body::density>,
          [](const Item& i) { return i.body().mass_kind == MassKind::volume ? density : number; }, has_no_density},
-        {List::body, "linear_velocity/*", of_body<&Body::linear_velocity>, is<speed>},
-        {List::body, "angular_velocity/*", of_body<&Body::angular_velocity>, is<angular_speed>},
-        {List::body, "force/*", of_body<&Body::force>, is<force>},
-        {List::body, "torque/*", of_body<&Body::torque>, is<torque>},
-        {List::body, "mu", of_body<&Body::mu>, is<number>, nullptr, Range::positive},
-        {List::body, "prescribed/px/rate", rate_of<0>, is<speed>, has_no_rate<0>},
-        {List::body, "prescribed/py/rate", rate_of<1>, is<speed>, has_no_rate<1>},
-        {List::body, "prescribed/pz/rate", rate_of<2>, is<speed>, has_no_rate<2>},
-        {List::body, "prescribed/rx/rate", rate_of<3>, is<angular_speed>, has_no_rate<3>},
-        {List::body, "prescribed/ry/rate", rate_of<4>, is<angular_speed>, has_no_rate<4>},
-        {List::body, "prescribed/rz/rate", rate_of<5>, is<angular_speed>, has_no_rate<5>},
-        {List::joint, "axis_a/*", [](const Item& i) -> Numbers { return &i.a().axis; }, is<number>, has_no_axis},
-        {List::joint, "axis_b/*", [](const Item& i) -> Numbers { return &i.b().axis; }, is<number>, has_no_axis},
-        {List::joint, "pitch", [](const Item& i) -> Numbers { return &i.joint().pitch; }, is<length>, is_none<JointKind::screw>},
-        {List::joint, "ratio", [](const Item& i) -> Numbers { return &i.joint().ratio; }, is<number>, is_none<JointKind::gear>,
-         Range::not_zero},
-        {List::joint, "radius", [](const Item& i) -> Numbers { return &i.joint().ratio; }, is<length>, is_none<JointKind::rack>,
-         Range::not_zero},
-        {List::motor, "curve/values/*", [](const Item& i) -> Numbers { return &i.motor().curve.values; },
+        {List::body, "linear_velocity/*", PlaceKind::start_velocity, of_body<&Body::linear_velocity>, is<speed>},
+        {List::body, "angular_velocity/*", PlaceKind::start_velocity, of_body<&Body::angular_velocity>, is<angular_speed>},
+        {List::body, "force/*", PlaceKind::body_load, of_body<&Body::force>, is<force>},
+        {List::body, "torque/*", PlaceKind::body_load, of_body<&Body::torque>, is<torque>},
+        {List::body, "mu", PlaceKind::friction, of_body<&Body::mu>, is<number>, nullptr, Range::positive},
+        {List::body, "prescribed/px/rate", PlaceKind::prescribed_rate, rate_of<0>, is<speed>, has_no_rate<0>},
+        {List::body, "prescribed/py/rate", PlaceKind::prescribed_rate, rate_of<1>, is<speed>, has_no_rate<1>},
+        {List::body, "prescribed/pz/rate", PlaceKind::prescribed_rate, rate_of<2>, is<speed>, has_no_rate<2>},
+        {List::body, "prescribed/rx/rate", PlaceKind::prescribed_rate, rate_of<3>, is<angular_speed>, has_no_rate<3>},
+        {List::body, "prescribed/ry/rate", PlaceKind::prescribed_rate, rate_of<4>, is<angular_speed>, has_no_rate<4>},
+        {List::body, "prescribed/rz/rate", PlaceKind::prescribed_rate, rate_of<5>, is<angular_speed>, has_no_rate<5>},
+        {List::joint, "axis_a/*", PlaceKind::joint_axis, [](const Item& i) -> Numbers { return &i.a().axis; }, is<number>, has_no_axis},
+        {List::joint, "axis_b/*", PlaceKind::joint_axis, [](const Item& i) -> Numbers { return &i.b().axis; }, is<number>, has_no_axis},
+        {List::joint, "pitch", PlaceKind::pitch, [](const Item& i) -> Numbers { return &i.joint().pitch; }, is<length>,
+         is_none<JointKind::screw>},
+        {List::joint, "ratio", PlaceKind::ratio, [](const Item& i) -> Numbers { return &i.joint().ratio; }, is<number>,
+         is_none<JointKind::gear>, Range::not_zero},
+        {List::joint, "radius", PlaceKind::ratio, [](const Item& i) -> Numbers { return &i.joint().ratio; }, is<length>,
+         is_none<JointKind::rack>, Range::not_zero},
+        {List::motor, "curve/values/*", PlaceKind::motor_values, [](const Item& i) -> Numbers { return &i.motor().curve.values; },
          [](const Item& i) { return i.motor().kind == MotorKind::effort ? is<force, torque>(i) : is<length, angle>(i); }},
-        {List::motor, "curve/rate", [](const Item& i) -> Numbers { return &i.motor().curve.rate; },
+        {List::motor, "curve/rate", PlaceKind::motor_rate, [](const Item& i) -> Numbers { return &i.motor().curve.rate; },
          [](const Item& i) { return i.motor().kind == MotorKind::effort ? number : is<speed, angular_speed>(i); }},
-        {List::load, "point/*", [](const Item& i) -> Numbers { return &i.load().point; }, is<length>},
-        {List::load, "force/*", [](const Item& i) -> Numbers { return &i.load().force; }, is<force>, nullptr, Range::some_force}};
+        {List::load, "point/*", PlaceKind::point_load, [](const Item& i) -> Numbers { return &i.load().point; }, is<length>},
+        {List::load, "force/*", PlaceKind::point_load, [](const Item& i) -> Numbers { return &i.load().force; }, is<force>, nullptr,
+         Range::some_force}};
     using F = CoordinateForces;
     for (const List list : {List::joint, List::spring}) {
-        rows.insert(rows.end(),
-                    {{list, "point_a/*", [](const Item& i) -> Numbers { return &i.a().point; }, is<length>, has_no_point},
-                     {list, "point_b/*", [](const Item& i) -> Numbers { return &i.b().point; }, is<length>, has_no_point},
-                     {list, "stiffness", of_forces<&F::stiffness>, is<stiffness, angular_stiffness>, has_no_spring, Range::positive},
-                     {list, "rest", of_forces<&F::rest>, is<length, angle>, has_no_rest},
-                     {list, "preload", of_forces<&F::preload>, is<force, torque>, has_no_preload},
-                     {list, "damping", of_forces<&F::damping>, is<number>, has_no_damping, Range::positive},
-                     {list, "friction", of_forces<&F::friction>, is<force, torque>, has_no_friction, Range::positive},
-                     {list, "limits/*", [](const Item& i) { return i.forces().limits ? Numbers(&*i.forces().limits) : Numbers(); },
-                      is<length, angle>, has_no_limits, Range::in_order}});
+        const bool is_joint = list == List::joint;
+        const PlaceKind point = is_joint ? PlaceKind::joint_point : PlaceKind::spring_point,
+                        limits = is_joint ? PlaceKind::joint_limits : PlaceKind::spring_limits;
+        rows.insert(
+            rows.end(),
+            {{list, "point_a/*", point, [](const Item& i) -> Numbers { return &i.a().point; }, is<length>, has_no_point},
+             {list, "point_b/*", point, [](const Item& i) -> Numbers { return &i.b().point; }, is<length>, has_no_point},
+             {list, "stiffness", PlaceKind::coordinate_force, of_forces<&F::stiffness>, is<stiffness, angular_stiffness>, has_no_spring,
+              Range::positive},
+             {list, "rest", PlaceKind::coordinate_force, of_forces<&F::rest>, is<length, angle>, has_no_rest},
+             {list, "preload", PlaceKind::coordinate_force, of_forces<&F::preload>, is<force, torque>, has_no_preload},
+             {list, "damping", PlaceKind::coordinate_force, of_forces<&F::damping>, is<number>, has_no_damping, Range::positive},
+             {list, "friction", PlaceKind::coordinate_force, of_forces<&F::friction>, is<force, torque>, has_no_friction, Range::positive},
+             {list, "limits/*", limits, [](const Item& i) { return i.forces().limits ? Numbers(&*i.forces().limits) : Numbers(); },
+              is<length, angle>, has_no_limits, Range::in_order}});
     }
     return rows;
 }
@@ -445,6 +456,8 @@ std::vector<Place> places_of(const Scene& scene) {
     }
     return out;
 }
+
+PlaceKind kind_of(const Place& place) { return row_of(place).kind; }
 
 int row_count() { return static_cast<int>(table().size()); }
 

@@ -27,6 +27,32 @@ struct Place {
     auto operator<=>(const Place&) const = default;
 };
 
+/// What a place is to its scene. Who treats places by what they are switches over it without a default, so that a new kind is a new case.
+enum class PlaceKind {
+    gravity,
+    minimum_separation,
+    friction,  ///< the scene's, a material's, a pair's, a body's coefficient
+    shape_dimension,
+    position,
+    rotation,  ///< angles, a rotation vector, or the turn
+    density,
+    start_velocity,  ///< linear and angular
+    body_load,       ///< force and torque at a body's reference point
+    prescribed_rate,
+    joint_axis,
+    joint_point,
+    pitch,
+    ratio,  ///< of a gear; the radius of a rack
+    joint_limits,
+    motor_values,
+    motor_rate,
+    spring_point,
+    spring_limits,
+    coordinate_force,  ///< stiffness, rest, preload, damping, friction of a joint or spring
+    point_load         ///< its point and its force
+};
+PlaceKind kind_of(const Place& place);
+
 /// What a pointer names. Bodies, joints, springs, dampers, motors and loads are named by their number in the file, from 0, or by their
 /// name: "/bodies/pin/density". (A file's dampers stand after its springs in Mechanism::springs, which /springs counts through; a damper is
 /// a spring without stiffness and limits.) A motor's curve is `angle`, `travel`, `torque` or `force`, as in its file, or just `curve`.

@@ -163,12 +163,17 @@ Result<int> scenario_named(const description::Design& design, const std::string&
     return Error{ErrorCode::unknown_key, "--scenario", "the design has no scenario called \"" + name + "\""};
 }
 
-std::vector<std::string> notes_of_tolerances(const core::certificate::Toleranced& toleranced, bool over_ranges) {
+std::vector<std::string> notes_of_tolerances(const core::certificate::Toleranced& toleranced) {
     std::vector<std::string> notes{"within tolerances: bounds hold for every combination of " +
                                    core::base::counted(toleranced.deviations.size(), "deviation") +
                                    ", each anywhere between its limits, and for parts with the facets of the design"};
-    if (!over_ranges && std::any_of(toleranced.bodies.begin(), toleranced.bodies.end(), [](const auto& body) { return body.parent >= 0; }))
-        notes.emplace_back("bodies that joints hold stand where their joints start as designed, whatever deviates");
+    const auto is_driven = [](const core::certificate::TolerancedBody& body) {
+        return std::any_of(body.screws.begin(), body.screws.end(), [](const auto& screw) { return screw.driven.has_value(); });
+    };
+    if (std::any_of(toleranced.bodies.begin(), toleranced.bodies.end(), is_driven))
+        notes.emplace_back(
+            "how far motors or scripts go deviates; a position where a pair is worst is told as they have it as designed, and looked at as "
+            "made");
     std::vector<std::string> shifted;
     for (const core::certificate::Deviation& d : toleranced.deviations)
         if (d.base != 0) shifted.push_back(d.of);
@@ -260,7 +265,7 @@ Result<Subject> from_tolerances(const SubjectOptions& options, const reading::In
         subject.ranges.emplace();
         subject.ranges->linkage.coordinates = toleranced->coordinates;
     }
-    const std::vector<std::string> notes = notes_of_tolerances(*toleranced, moves);
+    const std::vector<std::string> notes = notes_of_tolerances(*toleranced);
     subject.notes.insert(subject.notes.begin(), notes.begin(), notes.end());
     subject.toleranced = *std::move(toleranced);
     subject.scene_path = file->scene_path;

@@ -7,11 +7,13 @@
 #include <set>
 #include <string>
 
-#include "fettle/core/base/text.hpp"
+#include "fettle/core/clearance/driven_ranges.hpp"
 #include "fettle/core/clearance/made_bodies.hpp"
-#include "fettle/core/expression/tape.hpp"
+#include "fettle/core/scene/mass_kind.hpp"
 #include "fettle/core/scene/place.hpp"
 #include "fettle/core/scene_files/scene_formulas.hpp"
+#include "fettle/design/problem/deviating_numbers.hpp"
+#include "fettle/design/problem/deviating_places.hpp"
 #include "fettle/design/problem/moved_scene.hpp"
 
 namespace fettle::design::problem {
@@ -22,126 +24,54 @@ using core::certificate::NodePoint;
 using core::certificate::Toleranced;
 using core::certificate::TolerancedBody;
 using core::clearance::LoopedRanges;
-using core::expression::Number;
-using core::expression::Tape;
 using core::kinematics::Pose;
 using core::model::Joint;
-using core::scene_files::Number3;
 using description::Design;
 using description::Shape;
 using description::Tolerance;
-using NumberMatrix = std::array<Number3, 3>;  // rows
 
 constexpr double allowed_mismatch = 1e-9;  // of a part drawn anew, of its size
 
-Number3 sum(const Number3& a, const Number3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Number3 constant(const Vector3& x) { return {Number(x[0]), Number(x[1]), Number(x[2])}; }
-
-Number3 product(const NumberMatrix& m, const Number3& x) {
-    Number3 out;
-    for (size_t i = 0; i < 3; ++i) out[i] = m[i][0] * x[0] + m[i][1] * x[1] + m[i][2] * x[2];
-    return out;
-}
-
-NumberMatrix constant(const Matrix3& m) {
-    return {constant(Vector3(m.row(0).transpose())), constant(Vector3(m.row(1).transpose())), constant(Vector3(m.row(2).transpose()))};
-}
-
-bool is_constant(const Number3& x) {
-    return std::all_of(x.begin(), x.end(), [](const Number& number) { return number.is_constant(); });
-}
+constexpr double allowed_gap = 1e-12;  // of the scene: slides that the assembly would not close
 
 class Recorder {
 public:
+    /// @param scene  At the base.
     Recorder(const Design& design, const std::vector<Tolerance>& tolerances, const core::model::Model& model,
-             const std::optional<LoopedRanges>& ranges)
-        : design_(design), tolerances_(tolerances), model_(model), ranges_(ranges) {}
+             const std::optional<LoopedRanges>& ranges, core::scene::Scene scene)
+        : design_(design),
+          tolerances_(tolerances),
+          model_(model),
+          ranges_(ranges),
+          probe_(design, tolerances, base_of(tolerances), scene),
+          numbers_(design, tolerances, base_of(tolerances), std::move(scene)),
+          scene_(numbers_.scene()) {}
 
     Result<Toleranced> run() {
-        const VectorX base = base_of(tolerances_);
-        const Result<MovedScene> moved =
-            move_scene(design_, description::with_deviations(design_, tolerances_, base), SceneDerivative::not_wanted);
-        if (!moved) return moved.errors();
-        scene_ = moved->scene;
-        record_numbers(base);
+        Errors refused = refused_places(probe_, model_, ranges_);
+        if (!refused.empty()) return refused;
+        hang();
+        out_.deviations = numbers_.deviations();
         if (ranges_) out_.coordinates = ranges_->ranges.linkage.coordinates;
         out_.bodies.resize(model_.bodies.size());
         for (int i = 0; i < count_of(model_.bodies); ++i) {
             record_vertices(i);
             record_pose(i);
         }
+        drive_screws();
         record_loops();
-        check_couplings();
         if (!errors_.empty()) return errors_;
-        out_.nodes = tape_.nodes();
+        out_.nodes = numbers_.nodes();
         compare_parts();
         if (!errors_.empty()) return errors_;
         return std::move(out_);
     }
 
 private:
-    // Each number of the scene that follows from parameters, as what it is of the deviations.
-    void record_numbers(const VectorX& base) {
-        std::vector<Number> parameters;
-        for (const description::Parameter& parameter : design_.parameters) parameters.emplace_back(parameter.value);
-        for (int k = 0; k < count_of(tolerances_); ++k) {
-            const Tolerance& tolerance = tolerances_[k];
-            const core::base::Unit& unit = design_.parameters[tolerance.parameter].unit;
-            out_.deviations.push_back({tolerance.of, tolerance.deviation.lower, tolerance.deviation.upper, base[k],
-                                       unit.dimension == Dimension::number ? "" : std::string(unit.name)});
-            parameters[tolerance.parameter] = parameters[tolerance.parameter] + tape_.input(base[k]);
-        }
-        const std::vector<std::string> names = description::names_of(design_.parameters);
-        for (const core::scene::BoundNumber& number : design_.numbers) {
-            const auto place = core::scene::find_place(scene_, number.place);
-            if (!place) continue;
-            std::vector<Number> inputs;
-            for (const int position : core::expression::positions_of(number.formula, names)) inputs.push_back(parameters[position]);
-            numbers_[core::scene::pointer_to(scene_, *place)] = core::expression::value_of<Number>(number.formula, inputs);
-        }
-    }
-
-    // The number at a place, whose value is known.
-    Number number(const std::string& pointer, double value) const {
-        const auto found = numbers_.find(pointer);
-        return found == numbers_.end() ? Number(value) : found->second;
-    }
-    Number3 vector(const std::string& pointer, const Vector3& value) const {
-        Number3 out;
-        for (int k = 0; k < 3; ++k) out[static_cast<size_t>(k)] = number(pointer + "/" + std::to_string(k), value[k]);
-        return out;
-    }
-
-    // Which tolerances a number follows from: "`a`, `b`".
-    std::string names_of(const std::vector<Number>& of) {
-        std::set<int> found;
-        std::vector<bool> reached(tape_.nodes().size(), false);
-        for (const Number& x : of)
-            if (!x.is_constant()) reached[x.node] = true;
-        for (size_t k = reached.size(); k-- > 0;) {
-            if (!reached[k]) continue;
-            const core::expression::Node& node = tape_.nodes()[k];
-            if (node.operation == core::expression::Operation::input) found.insert(node.operands[0]);
-            for (int i = 0; i < core::expression::operand_count(node.operation); ++i) reached[node.operands[static_cast<size_t>(i)]] = true;
-        }
-        std::vector<std::string> names;
-        for (const int k : found) names.push_back("`" + tolerances_[k].of + "`");
-        return core::base::joined(names);
-    }
-
-    void refuse(const std::vector<Number>& of, const std::string& what) {
-        errors_.push_back({ErrorCode::unsupported, "tolerances",
-                           names_of(of) + (names_of(of).find(',') == std::string::npos ? " moves " : " move ") + what +
-                               ": within tolerances only lengths, and rotations of bodies without joints, can deviate"});
-    }
-
-    int node_of(const Number& x) {
-        if (!x.is_constant()) return x.node;
-        const auto [found, is_new] = constants_.try_emplace(x.value, 0);
-        if (is_new) found->second = tape_.node_of(x);
-        return found->second;
-    }
-    NodePoint nodes_of(const Number3& x) { return {node_of(x[0]), node_of(x[1]), node_of(x[2])}; }
+    Number number(const std::string& pointer, double value) const { return numbers_.number(pointer, value); }
+    Number3 vector(const std::string& pointer, const Vector3& value) const { return numbers_.vector(pointer, value); }
+    NodePoint nodes_of(const Number3& x) { return numbers_.nodes_of(x); }
+    static Number3 constant(const Vector3& x) { return constant_vector(x); }
     static std::string body_pointer(int i) { return "/bodies/" + std::to_string(i); }
 
     // --- parts
@@ -156,10 +86,6 @@ private:
         return out;
     }
 
-    static bool varies(const std::vector<Number>& numbers) {
-        return std::any_of(numbers.begin(), numbers.end(), [](const Number& x) { return !x.is_constant(); });
-    }
-
     void record_vertices(int i) {
         const std::vector<Number> dimensions = dimensions_of(i);
         if (!varies(dimensions)) return;
@@ -170,7 +96,7 @@ private:
         if (!recorded) {
             for (Error error : recorded.errors()) {
                 error.where = "body " + name + ": " + error.where;
-                error.message += "; tolerances that move it: " + names_of(dimensions);
+                error.message += "; tolerances that move it: " + numbers_.names_of(dimensions);
                 errors_.push_back(std::move(error));
             }
             return;
@@ -243,6 +169,12 @@ private:
             }
             return false;
         }
+        if (turns_about_its_middle(i) && centre_moves(i, *mesh)) {
+            errors_.push_back(
+                {ErrorCode::unsupported, "body " + name,
+                 "its prescribed motion turns it about its centre of mass, which tolerances move: give it a `reference_point`"});
+            return false;
+        }
         const core::clearance::MadeBodies made(out_, deviations);
         const Matrix3X& nominal = model_.bodies[i].mesh.vertices;
         bool same = mesh->vertices.cols() == nominal.cols();
@@ -255,6 +187,21 @@ private:
                            "its part is made of other facets at an end of its tolerances than as designed: what holds for the one is not "
                            "known of the other; say the number of facets (`segments`), or make the tolerances smaller"});
         return false;
+    }
+
+    // About what a script turns a body that names no point.
+    bool turns_about_its_middle(int i) const {
+        const auto& screws = out_.bodies[i].screws;
+        const bool is_scripted = ranges_ && ranges_->of == LoopedRanges::Of::motion && ranges_->ranges.joint_of[i] < 0;
+        return is_scripted && !scene_.bodies[i].reference_point &&
+               std::any_of(screws.begin(), screws.end(), [](const auto& screw) { return screw.turn != 0; });
+    }
+    bool centre_moves(int i, const core::geometry::Mesh& made) const {
+        core::geometry::Mesh designed = model_.bodies[i].mesh;
+        designed.vertices.colwise() += model_.bodies[i].reference_point;
+        const auto before = core::scene::centre_of_mass(designed, model_.bodies[i].mass_kind),
+                   after = core::scene::centre_of_mass(made, model_.bodies[i].mass_kind);
+        return !before || !after || (*after - *before).norm() > allowed_mismatch * model_.bodies[i].radius;
     }
 
     double value_at(const std::string& pointer, double value, const VectorX& p, const std::vector<std::string>& names) const {
@@ -276,10 +223,10 @@ private:
         const bool is_vector = body.orientation.kind == core::scene::Orientation::Kind::vector;
         const Number3 numbers = vector(body_pointer(i) + (is_vector ? "/rotation_vector" : "/rotation"), body.orientation.numbers);
         const Number3 turn = vector(body_pointer(i) + "/turn", body.turn);
-        if (is_constant(numbers) && is_constant(turn)) return constant(body.pose.rotation);
+        if (!varies(numbers) && !varies(turn)) return constant_matrix(body.pose.rotation);
         const NumberMatrix written =
             is_vector ? core::scene_files::rotation_of_vector(numbers) : core::scene_files::rotation_of_angles(numbers);
-        if (is_constant(turn) && body.turn.isZero(0)) return written;
+        if (!varies(turn) && body.turn.isZero(0)) return written;
         const NumberMatrix turned = core::scene_files::rotation_of_vector(turn);
         NumberMatrix out;
         for (size_t i_row = 0; i_row < 3; ++i_row)
@@ -287,8 +234,6 @@ private:
                 out[i_row][j] = turned[i_row][0] * written[0][j] + turned[i_row][1] * written[1][j] + turned[i_row][2] * written[2][j];
         return out;
     }
-
-    static bool is_constant_matrix(const NumberMatrix& m) { return is_constant(m[0]) && is_constant(m[1]) && is_constant(m[2]); }
 
     // What hangs a body on its parent; null: nothing.
     const Joint* joint_of(int i) const {
@@ -299,62 +244,77 @@ private:
             if (joint.kind == core::scene::JointKind::fixed && !joint.is_motor && ends(joint, i, parent)) return &joint;
         return nullptr;
     }
-    bool is_fixed_in_the_world(int body) const { return body < 0 || model_.bodies[body].type == core::scene::BodyType::static_body; }
+    bool is_fixed_in_the_world(int body) const {
+        for (int k = 0; body >= 0 && k < 6; ++k)
+            if (core::model::is_free(model_.bodies[body], k)) return false;
+        return true;
+    }
     bool ends(const Joint& joint, int body, int parent) const {
         const int other = joint.a == body ? joint.b : joint.b == body ? joint.a : -2;
         if (other == -2 || is_fixed_in_the_world(body)) return false;
         return parent >= 0 ? other == parent : is_fixed_in_the_world(other);
     }
 
-    // As assembled: the joints' tree, from what stands in the world. (Loops have ranges that are pinned.)
     const Joint* joint_as_assembled(int i) const {
         const auto found = hung_.find(i);
         return found == hung_.end() ? nullptr : found->second;
     }
 
-public:
-    /// As assembled: which joint hangs which body.
+    // As assembled: which joint of the tree hangs which body, from what stands in the world. (Loops have ranges that are pinned.)
     void hang() {
         if (ranges_) return;
-        std::set<int> reached;
+        std::set<int> reached{-1};
         for (int i = 0; i < count_of(model_.bodies); ++i)
             if (is_fixed_in_the_world(i)) reached.insert(i);
-        reached.insert(-1);
         std::set<const Joint*> used;
         for (int next = -1; next < count_of(model_.bodies); ++next) {
             if (next >= 0 && !reached.insert(next).second) continue;
-            for (bool again = true; again;) {
-                again = false;
-                for (const Joint& joint : model_.mechanism.joints) {
-                    if (joint.is_motor || joint.frame_a < 0 || used.count(&joint) > 0) continue;
-                    const bool has_a = reached.count(joint.a) > 0, has_b = reached.count(joint.b) > 0;
-                    if (!has_a && !has_b) continue;
-                    used.insert(&joint);
-                    again = true;
-                    const int child = has_a ? joint.b : joint.a;
-                    if (has_a && has_b) continue;
-                    hung_[child] = &joint;
-                    reached.insert(child);
-                }
+            while (hang_next(reached, used)) {
             }
         }
     }
+    bool hang_next(std::set<int>& reached, std::set<const Joint*>& used) {
+        bool found = false;
+        for (const Joint& joint : model_.mechanism.joints) {
+            if (joint.is_motor || joint.frame_a < 0 || used.count(&joint) > 0) continue;
+            const bool has_a = reached.count(joint.a) > 0, has_b = reached.count(joint.b) > 0;
+            if (!has_a && !has_b) continue;
+            found = used.insert(&joint).second;
+            const int child = has_a ? joint.b : joint.a;
+            if (has_a && has_b) continue;
+            hung_[child] = &joint;
+            reached.insert(child);
+        }
+        return found;
+    }
 
-private:
     void record_pose(int i) {
         TolerancedBody& out = out_.bodies[i];
         const Joint* joint = joint_of(i);
         if (joint == nullptr) {
-            const NumberMatrix rotation = rotation_of(i);
-            const Number3 position = vector(body_pointer(i) + "/position", scene_.bodies[i].pose.position);
+            NumberMatrix rotation = rotation_of(i);
+            Number3 place = sum(product(rotation, constant(model_.bodies[i].reference_point)),
+                                vector(body_pointer(i) + "/position", scene_.bodies[i].pose.position));
+            const bool stays =
+                !varies(place) && std::none_of(rotation.begin(), rotation.end(), [](const Number3& row) { return varies(row); });
+            if (stays && is_moved_by_assembly(i)) {
+                rotation = constant_matrix(model_.bodies[i].pose_start.rotation);
+                place = constant(model_.bodies[i].pose_start.position);
+            }
             for (size_t k = 0; k < 3; ++k) out.rotation[k] = nodes_of(rotation[k]);
-            out.place = nodes_of(sum(product(rotation, constant(model_.bodies[i].reference_point)), position));
+            out.place = nodes_of(place);
             if (ranges_)  // a script's, about where the body is
                 for (const core::certificate::Screw& screw : ranges_->ranges.linkage.bodies[i].screws)
                     out.screws.push_back({screw.coordinate, out.place, nodes_of(constant(screw.axis)), screw.turn, screw.slide});
             return;
         }
         hang_on(i, *joint, out);
+    }
+
+    bool is_moved_by_assembly(int i) const {
+        const auto& written = model_.mechanism.written.poses;
+        const Pose& start = model_.bodies[i].pose_start;
+        return !written.empty() && (written[i].rotation != start.rotation || written[i].position != start.position);
     }
 
     // A joint's point in a body's frame, or in the world.
@@ -372,24 +332,91 @@ private:
         const bool is_b = joint.b == i;
         const int parent = is_b ? joint.a : joint.b;
         out.parent = parent;
-        check_joint(joint, i, parent);
         const Pose of_parent = pose_at_base(parent), of_body = pose_at_base(i);
         const Matrix3 to_parent = of_parent.rotation.transpose();
         const Matrix3 rotation = to_parent * of_body.rotation;
         const Number3 on_parent = point_of(joint, is_b), on_body = point_of(joint, !is_b);
-        const auto value = [](const Number3& x) { return Vector3(x[0].value, x[1].value, x[2].value); };
         // How far the two points are apart, as a slide is.
-        const Vector3 between = to_parent * (core::kinematics::world_position(of_body, value(on_body)) -
-                                             core::kinematics::world_position(of_parent, value(on_parent)));
-        Number3 back = product(constant(rotation), on_body);
+        Number3 between = constant(to_parent * (core::kinematics::world_position(of_body, value_of(on_body)) -
+                                                core::kinematics::world_position(of_parent, value_of(on_parent))));
+        if (const Number3 more = slide_beyond(joint, i); varies(more)) {
+            const Matrix3 from_a = (is_b ? 1 : -1) * (to_parent * pose_at_base(joint.a).rotation);
+            between = sum(between, product(constant_matrix(from_a), more));
+        }
+        Number3 back = product(constant_matrix(rotation), on_body);
         for (Number& x : back) x = -x;
         for (size_t k = 0; k < 3; ++k)
             out.rotation[k] = nodes_of(constant(Vector3(rotation.row(static_cast<Eigen::Index>(k)).transpose())));
-        out.place = nodes_of(sum(sum(on_parent, constant(between)), back));
+        out.place = nodes_of(sum(sum(on_parent, between), back));
         if (!ranges_) return;
         for (const core::certificate::Screw& screw : ranges_->ranges.linkage.bodies[i].screws)
             out.screws.push_back(
                 {screw.coordinate, nodes_of(on_parent), nodes_of(constant(Vector3(to_parent * screw.axis))), screw.turn, screw.slide});
+    }
+
+    // How far a joint starts beyond where it starts as designed; of one whose slide the ranges or a loop decide it does not matter.
+    Number3 slide_beyond(const Joint& joint, int body) const {
+        const Number3 none = constant(Vector3::Zero());
+        const bool is_decided = ranges_ && (ranges_->of == LoopedRanges::Of::joints || is_unknown_of_loop(*ranges_, body));
+        if (is_decided && joint.kind != core::scene::JointKind::screw) return none;
+        const Number3 found = written_slide(probe_, model_, joint);
+        const bool is_none =
+            std::all_of(found.begin(), found.end(), [&](const Number& x) { return probe_.is_none(x, allowed_gap * model_.diagonal); });
+        return is_none ? none : written_slide(numbers_, model_, joint);
+    }
+
+    // How far screws go where the curves that move them deviate.
+    void drive_screws() {
+        if (!ranges_) return;
+        for (const core::clearance::DrivenSource& source : ranges_->driven) {
+            const std::optional<Drive> drive = drive_of(source);
+            if (!drive) continue;
+            const core::certificate::DrivenNodes nodes{numbers_.node_of(drive->scale), numbers_.node_of(drive->shift)};
+            for (const auto& [body, screw] : source.screws) out_.bodies[body].screws[static_cast<size_t>(screw)].driven = nodes;
+        }
+    }
+
+    struct Drive {
+        Number scale, shift;
+    };
+    // Several sources share the time, by their rates. One alone comes from the least to the largest value of its curve; as made these are
+    // others, and what lies between is stretched.
+    std::optional<Drive> drive_of(const core::clearance::DrivenSource& source) {
+        const core::scene::Curve& curve = source.curve;
+        const Number rate = rate_of(source);
+        std::vector<Number> values;
+        for (size_t k = 0; k < curve.values.size(); ++k)
+            values.push_back(source.motor < 0 ? Number(curve.values[k])
+                                              : at_place("/motors/" + std::to_string(source.motor) + "/curve/values/" + std::to_string(k),
+                                                         curve.values[k]));
+        if (rate.is_constant() && !varies(values)) return std::nullopt;
+        if (ranges_->driven.size() > 1) return Drive{rate / Number(curve.rate), Number(0)};
+        std::vector<Number> ways;
+        for (const double time : core::clearance::turning_times(curve, ranges_->duration)) {
+            Number way = rate * Number(curve_running_time(curve, time)) - Number(curve_value(curve, 0));
+            const std::vector<double> weights = curve_weights(curve, time);
+            for (size_t k = 0; k < values.size(); ++k)
+                if (weights[k] != 0) way = way + Number(weights[k]) * values[k];
+            const auto is_same = [&](const Number& other) { return numbers_.is_none(way - other, 1e-15); };
+            if (std::none_of(ways.begin(), ways.end(), is_same)) ways.push_back(way);
+        }
+        Number low = ways.front(), high = low;
+        for (const Number& way : ways) {
+            low = minimum(low, way);
+            high = maximum(high, way);
+        }
+        const Number scale = (high - low) / Number(high.value - low.value);
+        return Drive{scale, Number(source.units) * (low - scale * Number(low.value))};
+    }
+    Number rate_of(const core::clearance::DrivenSource& source) const {
+        if (source.motor >= 0) return at_place("/motors/" + std::to_string(source.motor) + "/curve/rate", source.curve.rate);
+        constexpr std::array dofs{"px", "py", "pz", "rx", "ry", "rz"};
+        if (source.dof < 0) return {source.curve.rate};
+        return at_place(body_pointer(source.body) + "/prescribed/" + dofs[static_cast<size_t>(source.dof)] + "/rate", source.curve.rate);
+    }
+    // By any of a place's pointers.
+    Number at_place(const std::string& pointer, double value) const {
+        return number(core::scene::pointer_to(scene_, core::scene::find_place(scene_, pointer).value()), value);
     }
 
     void record_loops() {
@@ -401,7 +428,6 @@ private:
             loop.size = model_.diagonal;
             for (const int k : from.closing) {
                 const Joint& joint = model_.mechanism.joints[k];
-                check_joint(joint, joint.a, joint.b);
                 const auto axis_of = [&](int frame) { return constant(Vector3(model_.mechanism.set.frames[frame].axes.col(2))); };
                 loop.closures.push_back({joint.a, joint.b, nodes_of(point_of(joint, true)), nodes_of(axis_of(joint.frame_a)),
                                          nodes_of(point_of(joint, false)), nodes_of(axis_of(joint.frame_b))});
@@ -409,44 +435,13 @@ private:
         }
     }
 
-    void check_joint(const Joint& joint, int body, int parent) {
-        const std::string at = "/joints/" + std::to_string(joint.origin.index);
-        const core::scene::Joint& from = scene_.mechanism.joints[joint.origin.index];
-        std::vector<Number> numbers{number(at + "/pitch", from.pitch)};
-        for (const auto& [key, end] : {std::pair{"/axis_a", &from.a}, {"/axis_b", &from.b}})
-            for (const Number& x : vector(at + key, end->axis)) numbers.push_back(x);
-        if (varies(numbers)) refuse(numbers, "the axis or the pitch of joint `" + joint.name + "`");
-        std::vector<Number> limits;
-        for (int k = 0; k < 2; ++k) limits.push_back(number(at + "/limits/" + std::to_string(k), 0));
-        if (ranges_ && varies(limits)) refuse(limits, "the limits of joint `" + joint.name + "`");
-        for (const int each : {body, parent}) {
-            if (each < 0) continue;
-            const NumberMatrix rotation = rotation_of(each);
-            if (is_constant_matrix(rotation)) continue;
-            std::vector<Number> all;
-            for (const Number3& row : rotation) all.insert(all.end(), row.begin(), row.end());
-            refuse(all, "the rotation of body `" + model_.bodies[each].name + "`, which joint `" + joint.name + "` holds");
-        }
-    }
-
-    void check_couplings() {
-        if (!ranges_) return;
-        for (const Joint& joint : model_.mechanism.joints) {
-            if (joint.is_motor || joint.frame_a >= 0) continue;
-            const std::string at = "/joints/" + std::to_string(joint.origin.index);
-            const std::vector<Number> ratio{number(at + "/ratio", 1), number(at + "/radius", 1)};
-            if (varies(ratio)) refuse(ratio, "the ratio of `" + joint.name + "`");
-        }
-    }
-
     const Design& design_;
     const std::vector<Tolerance>& tolerances_;
     const core::model::Model& model_;
     const std::optional<LoopedRanges>& ranges_;
-    core::scene::Scene scene_;  // at the base
-    Tape tape_;
-    std::map<std::string, Number> numbers_;  // by pointer
-    std::map<double, int> constants_;        // nodes
+    const DeviatingNumbers probe_;  // of the same numbers: for questions that leave nothing in the list of operations
+    DeviatingNumbers numbers_;
+    const core::scene::Scene& scene_;  // at the base
     std::map<int, const Joint*> hung_;
     std::set<int> drawn_;  // bodies whose vertices are formulas
     Toleranced out_;
@@ -466,9 +461,10 @@ VectorX base_of(const std::vector<Tolerance>& tolerances) {
 
 Result<Toleranced> toleranced_bodies(const Design& design, const std::vector<Tolerance>& tolerances, const core::model::Model& model,
                                      const std::optional<LoopedRanges>& ranges) {
-    Recorder recorder(design, tolerances, model, ranges);
-    recorder.hang();
-    return recorder.run();
+    const VectorX base = base_of(tolerances);
+    Result<MovedScene> moved = move_scene(design, description::with_deviations(design, tolerances, base), SceneDerivative::not_wanted);
+    if (!moved) return moved.errors();
+    return Recorder(design, tolerances, model, ranges, std::move(moved->scene)).run();
 }
 
 }  // namespace fettle::design::problem

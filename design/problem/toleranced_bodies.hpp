@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// The bodies of a design as made, for clearances within tolerances (core/certificate/toleranced.hpp): what of its parts, poses and joints
-/// follows from the numbers with a tolerance is recorded as formulas of their deviations.
-///   as assembled   bodies are where the scene has them; what joints join stands where its joints start, whatever deviates
+/// The bodies of a design as made, for clearances within tolerances (core/certificate/toleranced.hpp): what of its parts, poses, joints and
+/// motions follows from the numbers with a tolerance is recorded as formulas of their deviations. deviating_places.hpp says of every number
+/// of a scene whether it is.
+///   as assembled   bodies are where the scene has them, or where motors and loops hold their joints at the start
 ///   over ranges    the joints' coordinates in their ranges as designed (core/clearance/looped_ranges.hpp); in closed loops those that
 ///                  others determine follow
+///   over a motion  the joints' coordinates, and scripted bodies, where curves have them as made (core/clearance/driven_ranges.hpp)
 /// Triangles, and everything that is decided while a part is drawn, are those of the base: the parts as designed, or, of limits that do not
 /// contain 0, with deviations in the middle. At the ends of all tolerances the parts are drawn anew and compared.
 #pragma once
@@ -25,8 +27,8 @@ VectorX base_of(const std::vector<description::Tolerance>& tolerances);
 
 /// @param design  As made, of one scenario (description::design_of_scenario), without faults. @param model  At its base.
 /// @param ranges  Of the model; nothing: as assembled.
-/// Errors, by name: tolerances of a joint's axis, pitch, ratio or limits, or of a jointed body's rotation (unsupported); parts whose
-/// vertices are no formulas (unsupported), that cannot be made, or are made with other facets, at the ends of their tolerances.
+/// Errors, by name: what deviating_places.hpp refuses (unsupported); parts whose vertices are no formulas (unsupported), that cannot be
+/// made, or are made with other facets, at the ends of their tolerances; scripts that turn a body about its centre of mass, which deviates.
 Result<core::certificate::Toleranced> toleranced_bodies(const description::Design& design,
                                                         const std::vector<description::Tolerance>& tolerances,
                                                         const core::model::Model& model,

@@ -243,22 +243,42 @@ std::shared_ptr<const Quantity> stroke_from(py::handle q, const MembersOf& of_q)
     return std::make_shared<quantities::Stroke>(body, axis, of_q.get<std::optional<double>>("target"), window);
 }
 
-// Targets may have formulas at some of their coordinates; these are 0 in the points.
-std::shared_ptr<const Quantity> marker_path_from(py::handle q, const MembersOf& of_q) {
-    std::vector<quantities::MovedCoordinate> moved;
-    py::list targets;
-    for (const py::handle target : q.attr("targets")) {
-        py::list numbers;
-        for (const py::handle coordinate : target) {
-            const bool follows = is_followed(coordinate);
-            if (follows) moved.push_back({count_of(targets), count_of(numbers), formula_from(coordinate)});
-            numbers.append(follows ? py::object(py::float_(0.0)) : py::reinterpret_borrow<py::object>(coordinate));
-        }
-        targets.append(numbers);
+// Coordinates may be formulas.
+quantities::OwnPoint own_point_from(const py::iterable& coordinates) {
+    quantities::OwnPoint out;
+    std::vector<double> numbers;
+    for (const py::handle coordinate : coordinates) {
+        const bool follows = is_followed(coordinate);
+        if (follows && numbers.size() < 3) out.formulas[numbers.size()] = formula_from(coordinate);
+        numbers.push_back(follows ? 0 : coordinate.cast<double>());
     }
-    const auto points = moved.empty() ? of_q.get<std::vector<Vector3>>("targets") : targets.cast<std::vector<Vector3>>();
-    return std::make_shared<quantities::MarkerPath>(of_q.get<int>("body"), of_q.get<Vector3>("point"), points,
-                                                    of_q.get<std::vector<double>>("times"), std::move(moved));
+    if (numbers.size() != 3) throw py::value_error("a point has three coordinates");
+    out.at = Vector3(numbers[0], numbers[1], numbers[2]);
+    return out;
+}
+
+bool is_followed_point(py::handle coordinates) {
+    if (!py::isinstance<py::iterable>(coordinates)) return false;
+    for (const py::handle coordinate : coordinates)
+        if (is_followed(coordinate)) return true;
+    return false;
+}
+
+quantities::OwnPoint own_point_from(const MembersOf& of_q, const char* name) {
+    const py::object member = of_q.object.attr(name);
+    return is_followed_point(member) ? own_point_from(member) : quantities::OwnPoint(of_q.get<Vector3>(name));
+}
+
+std::shared_ptr<const Quantity> marker_path_from(py::handle q, const MembersOf& of_q) {
+    std::vector<quantities::OwnPoint> targets;
+    bool any_follows = false;
+    for (const py::handle target : q.attr("targets")) any_follows = any_follows || is_followed_point(target);
+    if (any_follows)
+        for (const py::handle target : q.attr("targets")) targets.push_back(own_point_from(py::reinterpret_borrow<py::iterable>(target)));
+    else
+        for (const Vector3& target : of_q.get<std::vector<Vector3>>("targets")) targets.emplace_back(target);
+    return std::make_shared<quantities::MarkerPath>(of_q.get<int>("body"), own_point_from(of_q, "point"), std::move(targets),
+                                                    of_q.get<std::vector<double>>("times"));
 }
 
 quantities::Reduction reduction_from(const MembersOf& of_q) {
@@ -365,11 +385,11 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
     if (is("Law")) return law_from(q, of_q, reduction);
     if (is("StepExpression")) return step_expression_from(q, reduction);
     if (is("MarkerPosition")) {
-        const MarkerPosition::Of of{body(), of_q.get<Vector3>("point"), of_q.get<Vector3>("axis"), of_q.get<Vector3>("origin")};
+        const MarkerPosition::Of of{body(), own_point_from(of_q, "point"), of_q.get<Vector3>("axis"), own_point_from(of_q, "origin")};
         return std::make_shared<MarkerPosition>(of, reduction);
     }
     if (is("MarkerSpeed")) {
-        const MarkerSpeed::Of of{body(), of_q.get<Vector3>("point"), of_q.get<Vector3>("axis")};
+        const MarkerSpeed::Of of{body(), own_point_from(of_q, "point"), of_q.get<Vector3>("axis")};
         return std::make_shared<MarkerSpeed>(of, reduction);
     }
     if (is("JointPosition"))
@@ -382,8 +402,8 @@ std::shared_ptr<const Quantity> library_quantity(py::handle q) {
         return std::make_shared<JointLoad>(std::move(of), reduction);
     }
     if (is("ContactLoad")) {
-        ContactForce::Of of{body(), of_q.get<std::optional<int>>("other"), of_q.get<Vector3>("axis"),
-                            of_q.get<std::optional<Vector3>>("about")};
+        ContactForce::Of of{body(), of_q.get<std::optional<int>>("other"), of_q.get<Vector3>("axis")};
+        if (!q.attr("about").is_none()) of.about = own_point_from(of_q, "about");
         return std::make_shared<ContactForce>(of, reduction);
     }
     if (is("Energy")) return std::make_shared<Energy>(of_q.get<EnergyKind>("kind"), reduction);
@@ -407,18 +427,18 @@ py::object number_or_formula(const core::expression::Formula& formula) {
     return formula.is_constant() ? py::object(py::float_(core::expression::value_of<double>(formula, {}))) : py::cast(formula);
 }
 
-py::object moved_targets(const quantities::MarkerPath& path) {
-    py::list targets;
-    for (const Vector3& target : path.targets()) {
-        py::list numbers;
-        for (Eigen::Index k = 0; k < 3; ++k) numbers.append(target[k]);
-        targets.append(numbers);
-    }
-    for (const quantities::MovedCoordinate& each : path.moved()) {
-        const py::list numbers = targets[each.target];
-        numbers[each.axis] = py::cast(each.formula);
-    }
-    return std::move(targets);
+py::object python_point(const quantities::OwnPoint& point) {
+    if (!point.follows()) return py::cast(point.at);
+    py::list out;
+    for (std::size_t k = 0; k < 3; ++k)
+        out.append(point.formulas[k] ? py::cast(*point.formulas[k]) : py::object(py::float_(point.at[static_cast<Eigen::Index>(k)])));
+    return std::move(out);
+}
+
+py::list python_points(const std::vector<quantities::OwnPoint>& points) {
+    py::list out;
+    for (const quantities::OwnPoint& point : points) out.append(python_point(point));
+    return out;
 }
 
 py::list law_values(const quantities::Law& law) {
@@ -438,9 +458,10 @@ py::object series_to_python(const std::shared_ptr<const Quantity>& quantity, con
     using namespace quantities;
     py::object out;
     if (const auto* q = dynamic_cast<const MarkerPosition*>(quantity.get()))
-        out = record_class("MarkerPosition")(q->of().body, q->of().point, q->over(), q->of().axis, q->of().origin);
+        out = record_class("MarkerPosition")(q->of().body, python_point(q->of().point), q->over(), q->of().axis,
+                                             python_point(q->of().origin));
     else if (const auto* q = dynamic_cast<const MarkerSpeed*>(quantity.get()))
-        out = record_class("MarkerSpeed")(q->of().body, q->of().point, q->over(), q->of().axis);
+        out = record_class("MarkerSpeed")(q->of().body, python_point(q->of().point), q->over(), q->of().axis);
     else if (const auto* q = dynamic_cast<const JointPosition*>(quantity.get()))
         out = record_class("JointPosition")(q->of().joint, q->over(), q->of().dimension);
     else if (const auto* q = dynamic_cast<const BodyTurn*>(quantity.get()))
@@ -448,7 +469,8 @@ py::object series_to_python(const std::shared_ptr<const Quantity>& quantity, con
     else if (const auto* q = dynamic_cast<const JointLoad*>(quantity.get()))
         out = record_class("JointLoad")(q->of().kind, q->of().name, q->over(), q->of().axis, q->of().effort_dimension);
     else if (const auto* q = dynamic_cast<const ContactForce*>(quantity.get()))
-        out = record_class("ContactLoad")(q->of().body, q->of().other, q->over(), q->of().axis, q->of().about);
+        out = record_class("ContactLoad")(q->of().body, q->of().other, q->over(), q->of().axis,
+                                          q->of().about ? python_point(*q->of().about) : py::object(py::none()));
     else if (const auto* q = dynamic_cast<const Energy*>(quantity.get()))
         out = record_class("Energy")(q->kind(), q->over());
     else if (const auto* q = dynamic_cast<const Law*>(quantity.get()))
@@ -487,8 +509,7 @@ py::object quantity_to_python(const std::shared_ptr<const Quantity>& quantity) {
         return record_class("Stroke")(q->body(), q->axis(), target, q->window().from, q->window().to);
     }
     if (const auto* q = dynamic_cast<const MarkerPath*>(quantity.get())) {
-        const py::object targets = q->moved().empty() ? py::object(py::cast(q->targets())) : moved_targets(*q);
-        return record_class("MarkerPath")(q->body(), q->point(), targets, q->times());
+        return record_class("MarkerPath")(q->body(), python_point(q->point()), python_points(q->targets()), q->times());
     }
     if (const auto* q = dynamic_cast<const Expression*>(quantity.get()))
         return record_class("Expression")(q->formula(), python_parts(q->parts()));

@@ -17,20 +17,33 @@ using description::Simulated;
 
 namespace {
 
-adjoint::stepper::ContactForceOf asked_of(const core::model::Model& model, const ContactForce::Of& of) {
+adjoint::stepper::ContactForceOf asked_of(const Simulated& s, const ContactForce::Of& of) {
     adjoint::stepper::ContactForceOf out{of.body, of.other};
-    if (of.about) out.about = *of.about - model.bodies[of.body].reference_point;
+    if (of.about) out.about = of.about->value(s) - s.model.bodies[of.body].reference_point;
     return out;
 }
 
 }  // namespace
 
 std::vector<Vector3> ContactForce::vectors(const Simulated& s) const {
-    return adjoint::stepper::contact_forces(s.model, s.trajectory, asked_of(s.model, of_));
+    return adjoint::stepper::contact_forces(s.model, s.trajectory, asked_of(s, of_));
 }
 
 void ContactForce::add_vector_seeds(const Simulated& s, const std::vector<Vector3>& weights, Seeds& seeds) const {
-    adjoint::stepper::add_contact_force_seeds(s.model, s.trajectory, asked_of(s.model, of_), weights, seeds);
+    adjoint::stepper::add_contact_force_seeds(s.model, s.trajectory, asked_of(s, of_), weights, seeds);
+    if (!of_.about || !of_.about->follows()) return;
+    // The torque changes with the point X by - R dX x F.
+    const std::vector<Vector3> forces = adjoint::stepper::contact_forces(s.model, s.trajectory, {of_.body, of_.other});
+    Vector3 of_point = Vector3::Zero();
+    for (std::size_t t = 0; t < weights.size(); ++t)
+        of_point += s.trajectory.poses[t + 1][of_.body].rotation.transpose() * weights[t].cross(forces[t]);
+    of_.about->add_seed(s, of_point, seeds);
+}
+
+std::vector<std::string> ContactForce::parameters() const {
+    std::vector<std::string> names;
+    if (of_.about) of_.about->add_parameters(names);
+    return names;
 }
 
 namespace {

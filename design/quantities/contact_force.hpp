@@ -18,6 +18,7 @@
 
 #include <optional>
 
+#include "fettle/design/quantities/own_formula.hpp"
 #include "fettle/design/quantities/vector_series.hpp"
 
 namespace fettle::design::quantities {
@@ -25,15 +26,16 @@ namespace fettle::design::quantities {
 class ContactForce : public VectorSeries {
 public:
     struct Of {
-        int body = 0;                    ///< what the force acts on
-        std::optional<int> other;        ///< what presses; nullopt: all
-        Vector3 axis = Vector3::Zero();  ///< the component along this unit vector, world; 0: the magnitude
-        std::optional<Vector3> about{};  ///< the torque about this point of the body's file frame [m], in place of the force
+        int body = 0;                     ///< what the force acts on
+        std::optional<int> other;         ///< what presses; nullopt: all
+        Vector3 axis = Vector3::Zero();   ///< the component along this unit vector, world; 0: the magnitude
+        std::optional<OwnPoint> about{};  ///< the torque about this point of the body's file frame [m], in place of the force
     };
     ContactForce(const Of& of, const Reduction& reduction) : VectorSeries(of.axis, reduction), of_(of) {}
 
     const Of& of() const { return of_; }
     Dimension instant_dimension() const override { return of_.about ? Dimension::torque : Dimension::force; }
+    std::vector<std::string> parameters() const override;
     /// Over "least", "end" or `at` a time, of a lower bound; "largest", "end" or `at`, of an upper one. Not of derivatives in time.
     std::optional<description::Continuation> continuation(const description::Simulated& simulated, const description::Measurement& measured,
                                                           const description::Bounds& bounds) const override;

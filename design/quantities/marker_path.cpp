@@ -7,7 +7,6 @@
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/design/quantities/marker.hpp"
-#include "fettle/design/quantities/own_formula.hpp"
 
 namespace fettle::design::quantities {
 
@@ -15,19 +14,10 @@ using description::Measurement;
 using description::Seeds;
 using description::Simulated;
 
-MarkerPath::MarkerPath(int body, const Vector3& point, std::vector<Vector3> targets, std::vector<double> times,
-                       std::vector<MovedCoordinate> moved)
-    : body_(body), point_(point), targets_(std::move(targets)), times_(std::move(times)), moved_(std::move(moved)) {
+MarkerPath::MarkerPath(int body, OwnPoint point, std::vector<OwnPoint> targets, std::vector<double> times)
+    : body_(body), point_(std::move(point)), targets_(std::move(targets)), times_(std::move(times)) {
     FETTLE_ASSERT(!targets_.empty(), "a path of no points");
     FETTLE_ASSERT(times_.empty() || times_.size() == targets_.size(), "one time per target, or none");
-    for (const MovedCoordinate& each : moved_)
-        FETTLE_ASSERT(each.target >= 0 && each.target < count_of(targets_) && each.axis >= 0 && each.axis < 3, "a coordinate of a target");
-}
-
-std::vector<Vector3> MarkerPath::targets_at(const Simulated& simulated) const {
-    std::vector<Vector3> targets = targets_;
-    for (const MovedCoordinate& each : moved_) targets[each.target][each.axis] = value_at(each.formula, simulated);
-    return targets;
 }
 
 MarkerPath::Place MarkerPath::nearest(const std::vector<Vector3>& path, const Vector3& target) const {
@@ -50,12 +40,12 @@ MarkerPath::Place MarkerPath::nearest(const std::vector<Vector3>& path, const Ve
 std::vector<MarkerPath::Place> MarkerPath::places(const Simulated& s) const {
     std::vector<Vector3> path;
     const int last = count_of(s.trajectory.poses) - 1;
-    for (int t = 0; t <= last; ++t) path.push_back(marker_position(s, t, body_, point_));
+    const Vector3 point = point_.value(s);
+    for (int t = 0; t <= last; ++t) path.push_back(marker_position(s, t, body_, point));
     FETTLE_ASSERT(last >= 1, "a marker's path needs a step");
     std::vector<Place> result;
-    const std::vector<Vector3> targets = targets_at(s);
     for (size_t k = 0; k < targets_.size(); ++k) {
-        const Vector3& target = targets[k];
+        const Vector3 target = targets_[k].value(s);
         if (times_.empty()) {
             result.push_back(nearest(path, target));
             continue;
@@ -78,13 +68,16 @@ Measurement MarkerPath::value(const Simulated& simulated) const {
 
 void MarkerPath::add_seeds(const Simulated& simulated, const Measurement&, double scale, Seeds& seeds) const {
     const std::vector<Place> found = places(simulated);
-    for (size_t k = 0; k < targets_.size(); ++k) {
+    for (int k = 0; k < count_of(targets_); ++k) {
         const Vector3 gradient = scale * 2 / static_cast<double>(targets_.size()) * (found[k].position - found[k].target);
-        add_marker_seed(simulated, found[k].index, body_, point_, (1 - found[k].fraction) * gradient, seeds);
-        add_marker_seed(simulated, found[k].index + 1, body_, point_, found[k].fraction * gradient, seeds);
-        for (const MovedCoordinate& each : moved_)
-            if (each.target == static_cast<int>(k)) add_formula_seed(each.formula, simulated, -gradient[each.axis], seeds);
+        add_place_seeds(simulated, found[k], k, gradient, seeds);
     }
+}
+
+void MarkerPath::add_place_seeds(const Simulated& simulated, const Place& place, int k, const Vector3& direction, Seeds& seeds) const {
+    add_marker_seed(simulated, place.index, body_, point_, (1 - place.fraction) * direction, seeds);
+    add_marker_seed(simulated, place.index + 1, body_, point_, place.fraction * direction, seeds);
+    targets_[k].add_seed(simulated, -direction, seeds);
 }
 
 VectorX MarkerPath::deviations(const Simulated& simulated) const {
@@ -102,20 +95,18 @@ void MarkerPath::add_deviation_seeds(const Simulated& simulated, int i, double s
     const Place found = places(simulated)[i / 3];
     Vector3 direction = Vector3::Unit(i % 3) * scale / std::sqrt(static_cast<double>(targets_.size()));
     if (times_.empty() && found.fraction > 0 && found.fraction < 1) {
-        const Vector3 along =
-            (marker_position(simulated, found.index + 1, body_, point_) - marker_position(simulated, found.index, body_, point_))
-                .normalized();
+        const Vector3 point = point_.value(simulated), along = (marker_position(simulated, found.index + 1, body_, point) -
+                                                                marker_position(simulated, found.index, body_, point))
+                                                                   .normalized();
         direction -= along * along.dot(direction);
     }
-    add_marker_seed(simulated, found.index, body_, point_, (1 - found.fraction) * direction, seeds);
-    add_marker_seed(simulated, found.index + 1, body_, point_, found.fraction * direction, seeds);
-    for (const MovedCoordinate& each : moved_)
-        if (each.target == i / 3) add_formula_seed(each.formula, simulated, -direction[each.axis], seeds);
+    add_place_seeds(simulated, found, i / 3, direction, seeds);
 }
 
 std::vector<std::string> MarkerPath::parameters() const {
     std::vector<std::string> names;
-    for (const MovedCoordinate& each : moved_) names.insert(names.end(), each.formula.inputs.begin(), each.formula.inputs.end());
+    point_.add_parameters(names);
+    for (const OwnPoint& target : targets_) target.add_parameters(names);
     return names;
 }
 

@@ -4,6 +4,7 @@
 /// marker_speed.hpp has the integrator's own velocity.
 #pragma once
 
+#include "fettle/design/quantities/own_formula.hpp"
 #include "fettle/design/quantities/vector_series.hpp"
 
 namespace fettle::design::quantities {
@@ -12,15 +13,16 @@ class MarkerPosition : public VectorSeries {
 public:
     struct Of {
         int body = 0;
-        Vector3 point = Vector3::Zero();   ///< in the body's file frame [m]
-        Vector3 axis = Vector3::Zero();    ///< the component along this unit vector, world; 0: the magnitude, of a position the distance
-        Vector3 origin = Vector3::Zero();  ///< from here, world [m]
+        OwnPoint point{};                ///< in the body's file frame [m]
+        Vector3 axis = Vector3::Zero();  ///< the component along this unit vector, world; 0: the magnitude, of a position the distance
+        OwnPoint origin{};               ///< from here, world [m]
     };
     MarkerPosition(const Of& of, const Reduction& reduction) : VectorSeries(of.axis, reduction), of_(of) {}
 
     const Of& of() const { return of_; }
     Dimension instant_dimension() const override { return Dimension::length; }
     bool has_start() const override { return true; }
+    std::vector<std::string> parameters() const override;
     bool has_direction() const override { return reduction().derivative > 0 && VectorSeries::has_direction(); }
     /// A body that is not there.
     Errors check(const core::model::Model& model, int steps) const override;

@@ -8,24 +8,36 @@ namespace fettle::design::quantities {
 using description::Seeds;
 using description::Simulated;
 
-Eigen::Vector4d MarkerSpeed::place(const core::model::Model& model) const {
-    const Vector3 X = of_.point - model.bodies[of_.body].reference_point;
+Eigen::Vector4d MarkerSpeed::place(const Simulated& s) const {
+    const Vector3 X = of_.point.value(s) - s.model.bodies[of_.body].reference_point;
     return X.homogeneous();
 }
 
 std::vector<Vector3> MarkerSpeed::vectors(const Simulated& s) const {
     std::vector<Vector3> out;
-    for (const std::vector<Matrix34>& at : adjoint::stepper::end_velocities(s.model, s.trajectory))
-        out.emplace_back(at[of_.body] * place(s.model));
+    const Eigen::Vector4d point = place(s);
+    for (const std::vector<Matrix34>& at : adjoint::stepper::end_velocities(s.model, s.trajectory)) out.emplace_back(at[of_.body] * point);
     return out;
 }
 
 void MarkerSpeed::add_vector_seeds(const Simulated& s, const std::vector<Vector3>& weights, Seeds& seeds) const {
+    const Eigen::Vector4d point = place(s);
     for (size_t t = 0; t < weights.size(); ++t) {
         if (weights[t].isZero(0)) continue;
-        const Matrix34 bar = weights[t] * place(s.model).transpose();
+        const Matrix34 bar = weights[t] * point.transpose();
         adjoint::stepper::add_velocity_seed(s.model, static_cast<int>(t), of_.body, bar, seeds.trajectory_bar);
     }
+    if (!of_.point.follows()) return;
+    const auto velocities = adjoint::stepper::end_velocities(s.model, s.trajectory);
+    Vector3 of_point = Vector3::Zero();
+    for (size_t t = 0; t < weights.size(); ++t) of_point += velocities[t][of_.body].leftCols<3>().transpose() * weights[t];
+    of_.point.add_seed(s, of_point, seeds);
+}
+
+std::vector<std::string> MarkerSpeed::parameters() const {
+    std::vector<std::string> names;
+    of_.point.add_parameters(names);
+    return names;
 }
 
 Errors MarkerSpeed::check(const core::model::Model& model, int steps) const {

@@ -3,6 +3,7 @@
 ///   v = V [X; 1],   V the integrator's end velocity (adjoint/stepper/velocities.hpp)   [m/s], world
 #pragma once
 
+#include "fettle/design/quantities/own_formula.hpp"
 #include "fettle/design/quantities/vector_series.hpp"
 
 namespace fettle::design::quantities {
@@ -11,13 +12,14 @@ class MarkerSpeed : public VectorSeries {
 public:
     struct Of {
         int body = 0;
-        Vector3 point = Vector3::Zero();  ///< in the body's file frame [m]
-        Vector3 axis = Vector3::Zero();   ///< the component along this unit vector, world; 0: the magnitude
+        OwnPoint point{};                ///< in the body's file frame [m]
+        Vector3 axis = Vector3::Zero();  ///< the component along this unit vector, world; 0: the magnitude
     };
     MarkerSpeed(const Of& of, const Reduction& reduction) : VectorSeries(of.axis, reduction), of_(of) {}
 
     const Of& of() const { return of_; }
     Dimension instant_dimension() const override { return Dimension::speed; }
+    std::vector<std::string> parameters() const override;
     /// A body that is not there; a quasi-static simulation.
     Errors check(const core::model::Model& model, int steps) const override;
 
@@ -27,7 +29,7 @@ protected:
                           description::Seeds& seeds) const override;
 
 private:
-    Eigen::Vector4d place(const core::model::Model& model) const;
+    Eigen::Vector4d place(const description::Simulated& simulated) const;
 
     Of of_;
 };

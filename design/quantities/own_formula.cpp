@@ -37,4 +37,21 @@ void add_formula_seed(const Formula& formula, const Simulated& simulated, double
     for (size_t k = 0; k < formula.inputs.size(); ++k) add_parameter_seed(formula.inputs[k], simulated, scale * gradient[k], seeds);
 }
 
+Vector3 OwnPoint::value(const Simulated& simulated) const {
+    Vector3 out = at;
+    for (size_t k = 0; k < 3; ++k)
+        if (formulas[k]) out[static_cast<Eigen::Index>(k)] = value_at(*formulas[k], simulated);
+    return out;
+}
+
+void OwnPoint::add_seed(const Simulated& simulated, const Vector3& gradient, Seeds& seeds) const {
+    for (size_t k = 0; k < 3; ++k)
+        if (formulas[k]) add_formula_seed(*formulas[k], simulated, gradient[static_cast<Eigen::Index>(k)], seeds);
+}
+
+void OwnPoint::add_parameters(std::vector<std::string>& names) const {
+    for (const std::optional<Formula>& formula : formulas)
+        if (formula) names.insert(names.end(), formula->inputs.begin(), formula->inputs.end());
+}
+
 }  // namespace fettle::design::quantities

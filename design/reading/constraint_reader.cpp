@@ -132,7 +132,7 @@ private:
             if (key != "target") keys.push_back(key);  // a constraint bounds the stroke itself
         }
         node.allow_keys(keys);
-        std::shared_ptr<const description::Quantity> quantity = type.read(node, context_);
+        std::shared_ptr<const description::Quantity> quantity = read_quantity(type, node, context_);
         if (!node["lower"].exists() && !node["upper"].exists()) {
             node.fail(ErrorCode::missing_key, "a constraint has `lower`, `upper` or both");
         }

@@ -178,8 +178,12 @@ std::optional<double> DesignFormulas::read(const JsonNode& node, const std::stri
         node.fail(ErrorCode::inconsistent, refused);
         return std::nullopt;
     }
-    if (std::all_of(formula->inputs.begin(), formula->inputs.end(), [&](const std::string& name) { return is_deviation(name); }))
-        return value_of(*formula);
+    if (std::all_of(formula->inputs.begin(), formula->inputs.end(), [&](const std::string& name) { return is_deviation(name); })) {
+        if (measuring_ == 0 || formula->is_constant()) return value_of(*formula);
+        node.fail(ErrorCode::unsupported, "this number cannot follow from the " + formula->inputs.front() +
+                                              ", which has a tolerance: write a number, or use variables without tolerance");
+        return std::nullopt;
+    }
     node.fail(ErrorCode::unsupported, "this number cannot follow from parameters; use only variables that no parameter changes");
     return std::nullopt;
 }

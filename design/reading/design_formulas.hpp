@@ -2,7 +2,7 @@
 /// The formulas of a design's file: over its parameters, its own `variables`, and those of its scene.
 ///     "variables": { "room": "= bore - pin" }          of parameters, and of the scene's variables
 ///     "clearance_margin": "= layer / 100"              any number of the file, if no parameter changes it
-///     "upper": "= 2 * gap"                             bounds and targets, which parameters may change
+///     "upper": "= 2 * gap"                             bounds, targets and points, which parameters may change
 /// Part of design_reader.hpp.
 #pragma once
 
@@ -34,7 +34,7 @@ public:
     /// Formulas may name these parameters from here on; they replace the scene's variables of their names. Faults go to the node.
     void add_parameters(const core::files::JsonNode& node, const std::vector<description::Parameter>& parameters);
     /// From here on a number is added to a variable of the design or of the scene: how far it is off as made. The design's own formulas
-    /// follow from it; numbers of the file that can follow from nothing are what they are where it is 0.
+    /// follow from it; settings of the file that can follow from nothing are what they are where it is 0 (Measuring).
     /// @param names  Of the added numbers, by variable. @param scene  Whose variables are read again.
     void add_deviations(const std::map<std::string, std::string>& names, core::files::JsonDocument& scene);
     /// The design's own `variables`.
@@ -53,6 +53,18 @@ public:
     /// The formula of a number that parameters change: a text that begins with "=". Nothing where it is another number, or is wrong; then
     /// reading the number as such tells what is wrong with it.
     std::optional<core::expression::Formula> followed(const core::files::JsonNode& node, Dimension dimension, double si_per_number) const;
+    /// While one lives, what is read is a number of what is measured: where a deviation reaches it and it cannot follow, it is refused, as
+    /// it is where a parameter does. Other numbers of the file (margins, weights, settings) are what they are without deviations.
+    class Measuring {
+    public:
+        explicit Measuring(const DesignFormulas& formulas) : formulas_(formulas) { ++formulas_.measuring_; }
+        ~Measuring() { --formulas_.measuring_; }
+        Measuring(const Measuring&) = delete;
+        Measuring& operator=(const Measuring&) = delete;
+
+    private:
+        const DesignFormulas& formulas_;
+    };
     /// At the parameters' reference values.
     double value_of(const core::expression::Formula& formula) const;
 
@@ -74,6 +86,7 @@ private:
     std::vector<core::scene::FormulaInput> own_;
     std::map<std::string, std::string> own_deviations_;  // to come, by variable
     std::vector<core::scene::FormulaInput> deviations_;  // that are in the scope
+    mutable int measuring_ = 0;                          // how many Measuring live
     std::map<std::string, std::string> refused_;         // variables, and the scenario that has them otherwise
 };
 

@@ -469,7 +469,7 @@ private:
             keys.insert(keys.end(), type.keys.begin(), type.keys.end());
             entry.allow_keys(keys);
             description::ObjectiveTerm term;
-            term.quantity = type.read(entry, context);
+            term.quantity = read_quantity(type, entry, context);
             term.weight = entry["weight"].number().value_or(1);
             term.over_tolerances = read_over_tolerances(entry["over_tolerances"]);
             const std::string name = entry["name"].string().value_or(type.default_name(entry));

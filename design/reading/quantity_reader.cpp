@@ -17,6 +17,7 @@
 #include "fettle/design/quantities/marker_position.hpp"
 #include "fettle/design/quantities/marker_speed.hpp"
 #include "fettle/design/quantities/mass.hpp"
+#include "fettle/design/quantities/own_formula.hpp"
 #include "fettle/design/quantities/step_expression.hpp"
 #include "fettle/design/quantities/stroke.hpp"
 
@@ -44,32 +45,29 @@ std::shared_ptr<const Quantity> read_stroke(const JsonNode& node, const ReadCont
     return std::make_shared<quantities::Stroke>(*body, *axis, target, window);
 }
 
-// One that parameters move, at their values; its moved coordinates are added to those.
-std::optional<Vector3> read_moved_point(const JsonNode& entry, int index, const ReadContext& context,
-                                        std::vector<quantities::MovedCoordinate>& moved) {
-    const std::vector<JsonNode> numbers = entry.is_array() ? entry.elements() : std::vector<JsonNode>();
-    std::vector<quantities::MovedCoordinate> found;
-    for (int axis = 0; numbers.size() == 3 && axis < 3; ++axis)
-        if (auto formula = context.formulas.followed(numbers[axis], Dimension::length, context.length_unit))
-            found.push_back({index, axis, std::move(*formula)});
-    if (found.empty()) return entry.length3(context.length_unit);
-    Vector3 point = Vector3::Zero();
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto is_here = [&](const quantities::MovedCoordinate& each) { return each.axis == axis; };
-        const auto at = std::find_if(found.begin(), found.end(), is_here);
-        const auto number =
-            at != found.end() ? std::optional(context.formulas.value_of(at->formula)) : numbers[axis].length(context.length_unit);
-        if (!number) return std::nullopt;
-        point[axis] = *number;
+// A point whose coordinates may follow from parameters.
+std::optional<quantities::OwnPoint> read_point(const JsonNode& node, const ReadContext& context) {
+    const std::vector<JsonNode> numbers = node.is_array() ? node.elements() : std::vector<JsonNode>();
+    quantities::OwnPoint out;
+    for (size_t k = 0; numbers.size() == 3 && k < 3; ++k)
+        out.formulas[k] = context.formulas.followed(numbers[k], Dimension::length, context.length_unit);
+    if (!out.follows()) {
+        const auto point = node.length3(context.length_unit);
+        return point ? std::optional<quantities::OwnPoint>(*point) : std::nullopt;
     }
-    moved.insert(moved.end(), found.begin(), found.end());
-    return point;
+    for (size_t k = 0; k < 3; ++k) {
+        const auto number =
+            out.formulas[k] ? std::optional(context.formulas.value_of(*out.formulas[k])) : numbers[k].length(context.length_unit);
+        if (!number) return std::nullopt;
+        out.at[static_cast<Eigen::Index>(k)] = *number;
+    }
+    return out;
 }
 
-std::vector<Vector3> read_points(const JsonNode& node, const ReadContext& context, std::vector<quantities::MovedCoordinate>& moved) {
-    std::vector<Vector3> points;
+std::vector<quantities::OwnPoint> read_points(const JsonNode& node, const ReadContext& context) {
+    std::vector<quantities::OwnPoint> points;
     for (const JsonNode& entry : node.elements()) {
-        if (const auto point = read_moved_point(entry, count_of(points), context, moved)) points.push_back(*point);
+        if (const auto point = read_point(entry, context)) points.push_back(*point);
     }
     if (node.is_array() && points.empty()) node.fail(ErrorCode::out_of_range, "a path needs a point");
     return points;
@@ -89,12 +87,11 @@ std::vector<double> read_times(const JsonNode& node, size_t points, double end_t
 
 std::shared_ptr<const Quantity> read_marker_path(const JsonNode& node, const ReadContext& context) {
     const auto body = context.body(node.require("body"));
-    const auto point = node.require("point").length3(context.length_unit);
-    std::vector<quantities::MovedCoordinate> moved;
-    const std::vector<Vector3> targets = read_points(node.require("points"), context, moved);
+    const auto point = read_point(node.require("point"), context);
+    const std::vector<quantities::OwnPoint> targets = read_points(node.require("points"), context);
     const std::vector<double> times = read_times(node["times"], targets.size(), context.end_time);
     if (!body || !point || targets.empty() || (!times.empty() && times.size() != targets.size())) return nullptr;
-    return std::make_shared<quantities::MarkerPath>(*body, *point, targets, times, std::move(moved));
+    return std::make_shared<quantities::MarkerPath>(*body, *point, targets, times);
 }
 
 std::vector<std::string> read_faces(const JsonNode& node, int body, const ReadContext& context) {
@@ -175,7 +172,7 @@ quantities::Reduction read_reduction(const JsonNode& node, Dimension of_instants
 
 std::shared_ptr<const Quantity> read_marker_speed(const JsonNode& node, const ReadContext& context) {
     const auto body = context.body(node.require("body"));
-    const auto point = node.require("point").length3(context.length_unit);
+    const auto point = read_point(node.require("point"), context);
     const std::optional<Vector3> axis = node["axis"].exists() ? context.axis(node["axis"]) : Vector3(Vector3::Zero());
     const quantities::Reduction reduction = read_reduction(node, Dimension::speed);
     if (!body || !point || !axis) return nullptr;
@@ -184,9 +181,9 @@ std::shared_ptr<const Quantity> read_marker_speed(const JsonNode& node, const Re
 
 std::shared_ptr<const Quantity> read_marker_position(const JsonNode& node, const ReadContext& context) {
     const auto body = context.body(node.require("body"));
-    const auto point = node.require("point").length3(context.length_unit);
+    const auto point = read_point(node.require("point"), context);
     const std::optional<Vector3> axis = node["axis"].exists() ? context.axis(node["axis"]) : Vector3(Vector3::Zero());
-    const std::optional<Vector3> origin = node["origin"].exists() ? node["origin"].length3(context.length_unit) : Vector3(Vector3::Zero());
+    const auto origin = node["origin"].exists() ? read_point(node["origin"], context) : quantities::OwnPoint();
     const quantities::Reduction reduction = read_reduction(node, Dimension::length);
     if (!body || !point || !axis || !origin) return nullptr;
     return std::make_shared<quantities::MarkerPosition>(quantities::MarkerPosition::Of{*body, *point, *axis, *origin}, reduction);
@@ -256,7 +253,8 @@ std::shared_ptr<const Quantity> read_motor_effort(const JsonNode& node, const Re
 }
 
 // Of the force, or its torque about a point.
-std::shared_ptr<const Quantity> read_contact_load(const JsonNode& node, const ReadContext& context, const std::optional<Vector3>& about) {
+std::shared_ptr<const Quantity> read_contact_load(const JsonNode& node, const ReadContext& context,
+                                                  const std::optional<quantities::OwnPoint>& about) {
     const auto body = context.body(node.require("body"));
     const auto other = node["of"].exists() ? context.body(node["of"]) : std::nullopt;
     const std::optional<Vector3> axis = node["axis"].exists() ? context.axis(node["axis"]) : Vector3(Vector3::Zero());
@@ -274,8 +272,8 @@ std::shared_ptr<const Quantity> read_contact_force(const JsonNode& node, const R
 }
 
 std::shared_ptr<const Quantity> read_contact_torque(const JsonNode& node, const ReadContext& context) {
-    const auto point = node.require("point").length3(context.length_unit);
-    const std::shared_ptr<const Quantity> load = read_contact_load(node, context, point.value_or(Vector3::Zero()));
+    const auto point = read_point(node.require("point"), context);
+    const std::shared_ptr<const Quantity> load = read_contact_load(node, context, point.value_or(quantities::OwnPoint()));
     return point ? load : nullptr;
 }
 
@@ -435,7 +433,13 @@ std::string expression_name(const JsonNode& node) { return text(node["expression
 
 }  // namespace
 
+std::shared_ptr<const Quantity> read_quantity(const QuantityType& type, const JsonNode& node, const ReadContext& context) {
+    const DesignFormulas::Measuring measuring(context.formulas);
+    return type.read(node, context);
+}
+
 std::optional<quantities::ClearanceRange> read_clearance_range(const JsonNode& node, const ReadContext& context) {
+    const DesignFormulas::Measuring measuring(context.formulas);
     const auto a = context.body(node.require("a")), b = context.body(node.require("b"));
     quantities::ClearanceRange range;
     range.motion = node["motion"].boolean().value_or(false);
@@ -546,7 +550,7 @@ std::vector<quantities::NamedQuantity> read_named_quantities(const JsonNode& nod
             std::vector<std::string_view> keys{"type", "scenario"};
             keys.insert(keys.end(), type.keys.begin(), type.keys.end());
             entry.allow_keys(keys);
-            if (const auto quantity = type.read(entry, so_far))
+            if (const auto quantity = read_quantity(type, entry, so_far))
                 out.push_back({name, in_named_scenario(entry, quantity, context.scenarios)});
         }
     }

@@ -29,6 +29,10 @@ const std::vector<QuantityType>& quantity_table();
 std::vector<std::string_view> quantity_names();
 const QuantityType* find_quantity_type(std::string_view name);
 
+/// type.read, of numbers that all count: what follows from a deviation and cannot is refused.
+std::shared_ptr<const description::Quantity> read_quantity(const QuantityType& type, const core::files::JsonNode& node,
+                                                           const ReadContext& context);
+
 inline constexpr std::string_view expression_type = "expression";
 
 /// What a clearance is between, and over what: all keys of the quantity.

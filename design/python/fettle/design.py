@@ -229,8 +229,8 @@ class Stroke(Record, Measured):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class MarkerPath(Record, Measured):
-    """Mean squared distance of a body's point from targets, whose coordinates may be formulas of parameters [m^2]; without times each at its
-    nearest."""
+    """Mean squared distance of a body's point from targets, all of whose coordinates may be formulas of parameters [m^2]; without times each
+    at its nearest."""
 
     body: Which
     point: Vector = number("length")
@@ -254,7 +254,7 @@ class Series(Record, Measured):
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class MarkerPosition(Series):
     """Where a body's point (in its file frame) is at the start and the steps' ends, from an origin [m]: along an axis, else the distance. With
-    derivative=2 its acceleration, by differences of the steps."""
+    derivative=2 its acceleration, by differences of the steps. Coordinates of both may be formulas of parameters."""
 
     body: Which
     point: Vector = number("length")
@@ -265,7 +265,8 @@ class MarkerPosition(Series):
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class MarkerSpeed(Series):
-    """Velocity of a body's point (in its file frame) at the steps' ends, as the integrator has it [m/s]."""
+    """Velocity of a body's point (in its file frame) at the steps' ends, as the integrator has it [m/s]. The point's coordinates may be
+    formulas of parameters."""
 
     body: Which
     point: Vector = number("length")

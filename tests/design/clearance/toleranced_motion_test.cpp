@@ -134,4 +134,68 @@ TEST_CASE("Prescribed motions that cannot be proven within tolerances are refuse
     CHECK(moved_by(R"("speed": 20)").empty());
 }
 
+namespace {
+
+// A lever that a motor swings towards a stop. @param swing, size  as text
+std::string lever(const std::string& swing, const std::string& size) {
+    return R"json({"fettle_scene": 1, "units": "mm", "timestep": 0.1, "end_time": 1,
+        "variables": {"arm": "50 mm", "swing": ")json" +
+           swing + R"json(", "size": ")json" + size + R"json("},
+        "bodies": [
+          {"name": "lever", "density": 1000, "position": ["= arm / 2", 0, 0],
+           "shape": {"part": "box", "dimensions": {"size_x": "= arm", "size_y": 6, "size_z": 6}}},
+          {"name": "stop", "type": "static", "position": [35, 40, 0],
+           "shape": {"part": "box", "dimensions": {"size_x": "= size", "size_y": 10, "size_z": 10}}}],
+        "joints": [{"name": "hinge", "type": "revolute", "b": "lever", "point": [0, 0, 0], "axis": [0, 0, 1]}],
+        "motors": [{"name": "drive", "joint": "hinge", "angle": {"times": [0, 0.4, 1], "values": [0, "= swing", "= swing"]}}]})json";
+}
+
+}  // namespace
+
+TEST_CASE("How far a motor goes deviates: the lever made anew at the end of its tolerance", "[toleranced]") {
+    tests::support::TemporaryFolder folder;
+    folder.write("x.scene.json", lever("30 deg", "10 mm"));
+    folder.write("x.design.json", R"json({"fettle_design": 1, "scene": "x.scene.json", "units": "mm",
+        "parameters": [{"name": "arm", "lower": 40, "upper": 60}], "objective": [{"type": "mass", "bodies": ["lever"]}],
+        "tolerances": {"swing": "+-2 deg", "size": "+-0.1 mm"}})json");
+    const auto read = [&](const std::string& file, bool tolerances) {
+        SubjectOptions options;
+        options.path = folder.file(file);
+        options.kinematic = true;
+        options.tolerances = tolerances;
+        Result<Subject> found = read_subject(options, {});
+        for (const Error& error : found.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
+        REQUIRE(found);
+        return *std::move(found);
+    };
+    const Subject subject = read("x.design.json", true);
+    const PairClearance found = of_arm_and_slide(subject);
+    CHECK(found.deviations.size() == 2);
+    double least = 1;
+    for (const char* swing : {"28 deg", "32 deg"})
+        for (const char* size : {"9.9 mm", "10.1 mm"}) {
+            folder.write("anew.scene.json", lever(swing, size));
+            const Subject anew = read("anew.scene.json", false);
+            least = std::min(least, of_arm_and_slide(anew, 1e-8).upper);
+        }
+    INFO(found.lower << " " << found.upper << " anew " << least);
+    CHECK(found.lower <= least);
+    CHECK(found.upper == Approx(least).margin(1e-5));  // along the path the lever's corners are cut by a little
+    CHECK(found.upper < 7e-3);
+    ClearanceOptions options;
+    options.tolerance = 1e-5;
+    const auto proven = certify_with_proof(subject, {{0, 1}}, options);
+    REQUIRE(write_certificate(folder.file("x.certificate.json"), proven.certificate).empty());
+    const auto stored = core::certificate::read_certificate(folder.file("x.certificate.json"));
+    REQUIRE(stored);
+    CHECK(same_toleranced(*stored->toleranced, *subject.toleranced));
+    CHECK(core::certificate::check_certificate(*stored, subject.model, subject.trajectory).accepted());
+    // Without the curve's formulas, or with less of them, it is another claim.
+    core::certificate::Certificate damaged = *stored;
+    damaged.toleranced->bodies[0].screws[0].driven.reset();
+    CHECK_FALSE(same_toleranced(*damaged.toleranced, *subject.toleranced));
+    damaged.toleranced->bodies[0].screws[0].driven = {9999, 0};
+    CHECK_FALSE(core::certificate::check_certificate(damaged, subject.model, subject.trajectory).accepted());
+}
+
 }  // namespace fettle::design::clearance::toleranced_motion_test

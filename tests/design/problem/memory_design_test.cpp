@@ -288,14 +288,14 @@ TEST_CASE("a design read from a file and one made in memory have the same bits")
                                          {"/bodies/table/prescribed/ry/rate", "speed"}})
         REQUIRE(set_number(made, place, formula).empty());
     const double mm = 1e-3;
-    using Points = std::vector<Vector3>;
+    using Points = std::vector<quantities::OwnPoint>;
     made.objective = {
         {"mass", 1, 1e-3, std::make_shared<quantities::Mass>(made.scene, std::vector<int>{1})},
         {"timed", 0.1, mm * mm,
-         std::make_shared<quantities::MarkerPath>(1, Vector3(3e-3, 2e-3, 1e-3), Points{{4e-3, 2e-3, 7e-3}, {8e-3, 3e-3, 6e-3}},
-                                                  std::vector<double>{0.052, 0.1})},
+         std::make_shared<quantities::MarkerPath>(
+             1, Vector3(3e-3, 2e-3, 1e-3), Points{Vector3(4e-3, 2e-3, 7e-3), Vector3(8e-3, 3e-3, 6e-3)}, std::vector<double>{0.052, 0.1})},
         {"free", 0.1, mm * mm,
-         std::make_shared<quantities::MarkerPath>(1, Vector3(0, 0, 5e-3), Points{{3e-3, 1e-3, 11e-3}}, std::vector<double>{})},
+         std::make_shared<quantities::MarkerPath>(1, Vector3(0, 0, 5e-3), Points{Vector3(3e-3, 1e-3, 11e-3)}, std::vector<double>{})},
         {"play", 0.5, mm, std::make_shared<quantities::Clearance>(quantities::ClearanceRange{.a = 1, .b = 2})},
         {"stroke", 1, mm * mm, std::make_shared<quantities::Stroke>(1, Vector3::UnitZ(), 1e-3)}};
     Bounds apart;

@@ -14,7 +14,7 @@ using namespace fettle::tests::design_support;
 
 TEST_CASE("marker path: value and derivative, timed and with free timing") {
     const Vector3 point(0.4, 0.0, 0.1);
-    const std::vector<Vector3> targets{{0.9, 0.1, 0}, {0.2, 0.9, 0.5}, {-1, 0.3, 0.8}};
+    const std::vector<OwnPoint> targets{Vector3(0.9, 0.1, 0), Vector3(0.2, 0.9, 0.5), Vector3(-1, 0.3, 0.8)};
     check_pose_gradient(MarkerPath(0, point, targets, {0.0, 0.37, 1.4}));
     check_pose_gradient(MarkerPath(0, point, targets, {}), 1e-7);
     check_deviations(MarkerPath(0, point, targets, {0.0, 0.37, 1.4}));

@@ -1,0 +1,444 @@
+// SPDX-License-Identifier: MIT
+// Every place of the table, moved by a deviation, in every question about clearances within tolerances: refused by name, or the bound of
+// the box holds for the scene that is made anew at both ends of the deviation; what is told to have no influence has none.
+#include "fettle/design/problem/deviating_places.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/clearance/driven_ranges.hpp"
+#include "fettle/core/clearance/range_clearance.hpp"
+#include "fettle/core/clearance/toleranced_clearance.hpp"
+#include "fettle/core/stepper/jointed_motion.hpp"
+#include "fettle/core/stepper/scripted_motion.hpp"
+#include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/problem/toleranced_bodies.hpp"
+#include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/quantities/marker_position.hpp"
+#include "fettle/design/shapes/file_part.hpp"
+#include "fettle/tests/support/mechanisms.hpp"
+
+namespace fettle::design::problem::deviating_places_test {
+
+using namespace fettle::tests::mechanisms;
+using core::clearance::ClearanceOptions;
+using core::clearance::LoopedRanges;
+using core::clearance::PairClearance;
+using core::clearance::PairRequest;
+using core::model::Model;
+using core::scene::Attachment;
+using core::scene::CurveKind;
+using core::scene::JointKind;
+using core::scene::Place;
+using core::scene::PlaceKind;
+using description::Design;
+using description::Tolerance;
+
+namespace {
+
+const Vector3 along_x = Vector3::UnitX(), along_z = Vector3::UnitZ();
+constexpr double step = 0.05;
+constexpr int steps = 8;
+constexpr double accuracy = 2e-4;  // [m]
+constexpr double slack = 1e-9;
+
+core::scene::Curve table(std::vector<double> times, std::vector<double> values, CurveKind kind = CurveKind::linear) {
+    core::scene::Curve out;
+    out.kind = kind;
+    out.times = std::move(times);
+    out.values = std::move(values);
+    return out;
+}
+core::scene::Curve even(double rate) {
+    core::scene::Curve out;
+    out.rate = rate;
+    return out;
+}
+
+core::scene::Joint limited(core::scene::Joint joint, double low, double high) {
+    joint.forces.limits = std::array{low, high};
+    return joint;
+}
+
+struct Case {
+    std::string name;
+    Design design;
+    std::vector<PairRequest> pairs;
+};
+
+// A box that is drawn, static.
+void add_post(Design& design, const Vector3& position) {
+    core::scene::Body post;
+    post.name = "post";
+    post.type = core::scene::BodyType::static_body;
+    post.pose.position = position;
+    post.group = 0;
+    const auto shape = shapes::FilePart::create("box", {{"size_x", 0.06}, {"size_y", 0.05}, {"size_z", 0.04}});
+    REQUIRE(shape);
+    REQUIRE(description::add_part(design, post, *shape));
+}
+
+core::scene::Body standing(core::scene::Body body) {
+    settle_rotation(body);
+    return body;
+}
+
+// A hinge that carries a slide and a nut on a thread; a wheel geared to it, and a rack on that. @param motors  whether all of them are
+// driven
+Case machine(bool motors) {
+    core::scene::Scene scene = scene_of(
+        {standing(bar("arm", 0.3)), standing(bar("slide", 0.1, Vector3(0.3, 0, 0.03))), standing(bar("nut", 0.1, Vector3(0.1, 0, 0.1))),
+         standing(bar("wheel", 0.08, Vector3(0.1, -0.3, 0))), standing(bar("rack", 0.1, Vector3(0.2, -0.4, 0)))},
+        step);
+    scene.bodies[2].material = "steel";
+    scene.bodies[1].mu = 0.3;
+    scene.bodies[3].material = "wood";
+    scene.friction.materials = {{"steel", 0.5}};
+    scene.friction.pairs = {{"wood", "steel", 0.7}};
+    scene.friction.mu = 0.2;
+    core::scene::Joint hinge = joint("hinge", JointKind::revolute, {"", Vector3::Zero(), along_z}, {"arm", Vector3::Zero(), along_z});
+    hinge.forces = {3, 0.2, 0, 0.05, 0.03, std::array{-0.3, 0.8}};
+    core::scene::Joint thread =
+        limited(joint("thread", JointKind::screw, {"arm", Vector3(0.1, 0, 0.1), along_z}, {"nut", Vector3::Zero(), along_z}), -0.5, 0.5);
+    thread.pitch = 0.05;
+    scene.mechanism.joints = {
+        hinge,
+        limited(joint("guide", JointKind::prismatic, {"arm", Vector3(0.3, 0, 0.03), along_x}, {"slide", Vector3::Zero(), along_x}), -0.04,
+                0.05),
+        thread, joint("axle", JointKind::revolute, {"", Vector3(0.1, -0.3, 0), along_z}, {"wheel", Vector3::Zero(), along_z}),
+        joint("way", JointKind::prismatic, {"", Vector3(0.2, -0.4, 0), along_x}, {"rack", Vector3::Zero(), along_x})};
+    for (const auto& [name, kind, first, second, ratio] :
+         {std::tuple("gear", JointKind::gear, "hinge", "axle", -0.5), std::tuple("pinion", JointKind::rack, "axle", "way", 0.1)}) {
+        core::scene::Joint coupling = joint(name, kind, {}, {});
+        coupling.of = {first, second};
+        coupling.ratio = ratio;
+        scene.mechanism.joints.push_back(coupling);
+    }
+    core::scene::Spring stay = spring_between("stay", {"arm", Vector3(0.1, 0, 0), along_z}, {"", Vector3(0.1, 0.2, 0), along_z}, {}), about;
+    stay.forces = {7, 0.3, 0, 0.1, 0.2, std::array{0.1, 2.0}};
+    about = spring_of("about", "hinge", {});
+    about.forces.stiffness = 2;
+    about.forces.preload = 0.3;
+    about.forces.limits = std::array{-0.25, 0.75};
+    core::scene::Spring dash = spring_of("dash", "guide", {});
+    dash.forces.damping = 0.3;
+    scene.mechanism.springs = {stay, about, dash};
+    scene.mechanism.loads = {{"load", "", "arm", Vector3(0.25, 0, 0), Vector3(1, -2, 0.5)}};
+    core::scene::Motor push = motor("push", "guide", table({0, 0.2}, {0.3, 0.1}));
+    push.kind = core::scene::MotorKind::effort;
+    push.curve.rate = 0.1;
+    scene.mechanism.motors = {push};
+    if (motors) {
+        core::scene::Curve swing = table({0, 0.2, 0.4}, {0, 0.6, 0.2});
+        swing.rate = 0.1;
+        scene.mechanism.motors.push_back(motor("swing", "hinge", swing));
+        scene.mechanism.motors.push_back(motor("hold slide", "guide", even(0)));
+        scene.mechanism.motors.push_back(motor("hold nut", "thread", even(0)));
+    }
+    Case out{motors ? "machine that motors drive" : "machine", {}, {{1, 5}, {2, 5}, {4, 5}, {1, 2}}};
+    out.design.scene = std::move(scene);
+    add_post(out.design, Vector3(0.4, 0.35, 0.05));
+    return out;
+}
+
+// Two motors at even speed, the second one's joint on the first one's, and a body that stands by itself.
+Case even_speeds() {
+    core::scene::Body turned = bar("turned", 0.1, Vector3(0.5, -0.2, 0));
+    turned.orientation = {core::scene::Orientation::Kind::vector, Vector3(0.1, 0.4, -0.2)};
+    core::scene::Scene scene =
+        scene_of({standing(bar("arm", 0.3)), standing(bar("slide", 0.1, Vector3(0.3, 0, 0))), standing(turned)}, step);
+    scene.mechanism.joints = {
+        joint("hinge", JointKind::revolute, {"", Vector3::Zero(), along_z}, {"arm", Vector3::Zero(), along_z}),
+        joint("guide", JointKind::prismatic, {"arm", Vector3(0.3, 0, 0), along_x}, {"slide", Vector3(0.01, 0, 0), along_x})};
+    scene.mechanism.motors = {motor("swing", "hinge", even(1.5)), motor("push", "guide", even(0.2))};
+    Case out{"even speeds", {}, {{1, 3}, {1, 2}}};
+    out.design.scene = std::move(scene);
+    add_post(out.design, Vector3(0.35, 0.35, 0));
+    return out;
+}
+
+// One body goes along one of its coordinates.
+Case script(int dof, double rate) {
+    core::scene::Body cam = bar("cam", 0.2, Vector3(0, 0, 0));
+    cam.type = core::scene::BodyType::kinematic_body;
+    for (auto& each : cam.prescribed) each = core::scene::MotionCurve{};
+    cam.prescribed[static_cast<std::size_t>(dof)]->rate = rate;
+    cam.orientation.numbers = Vector3(0.1, -0.2, 0.3);
+    Case out{"script of coordinate " + std::to_string(dof), {}, {{0, 1}}};
+    out.design.scene = scene_of({standing(cam)}, step);
+    add_post(out.design, Vector3(0.3, 0.3, 0.1));
+    return out;
+}
+
+// A four-bar linkage that a motor drives; its positions are where its joints are met.
+Case linkage(CurveKind kind) {
+    const double a = 0.9, b = 1.8;  // of coupler and rocker
+    const Vector3 pin(0.1, 0, 0), joint_b = pin + 0.3 * Vector3(std::cos(a), std::sin(a), 0),
+                                  pivot = joint_b - 0.2 * Vector3(std::cos(b), std::sin(b), 0);
+    const auto turned = [](core::scene::Body body, double angle) {
+        body.orientation.numbers = Vector3(0, 0, angle);
+        return standing(body);
+    };
+    core::scene::Scene scene = scene_of({standing(bar("crank", 0.1)), turned(bar("coupler", 0.3, pin + Vector3(0, 0, 0.03)), a),
+                                         turned(bar("rocker", 0.2, pivot + Vector3(0, 0, 0.06)), b)},
+                                        step);
+    scene.mechanism.joints = {
+        joint("O", JointKind::revolute, {"", Vector3::Zero(), along_z}, {"crank", Vector3::Zero(), along_z}),
+        joint("A", JointKind::revolute, {"crank", Vector3(0.1, 0, 0.03), along_z}, {"coupler", Vector3::Zero(), along_z}),
+        joint("C", JointKind::revolute, {"", pivot, along_z}, {"rocker", Vector3(0, 0, -0.06), along_z}),
+        joint("B", JointKind::revolute, {"coupler", Vector3(0.3, 0, 0), along_z}, {"rocker", Vector3(0.2, 0, -0.03), along_z})};
+    scene.mechanism.motors = {motor("drive", "O", table({0, 0.2, 0.4}, {0.1, 0.5, 0.3}, kind))};
+    Case out{"linkage", {}, {{1, 3}, {2, 3}}};
+    out.design.scene = std::move(scene);
+    add_post(out.design, Vector3(0.25, 0.45, 0.06));
+    return out;
+}
+
+std::vector<Case> cases() {
+    std::vector<Case> out{machine(false), machine(true), even_speeds(), linkage(CurveKind::linear), linkage(CurveKind::trapezoid)};
+    for (int dof = 0; dof < 6; ++dof) out.push_back(script(dof, dof < 3 ? 0.3 : 1.2));
+    return out;
+}
+
+enum class Question { assembled, ranges, motion };
+
+// --- the box
+
+struct Asked {
+    Errors refused;  // or the bounds
+    std::vector<PairClearance> pairs;
+};
+
+Result<std::optional<LoopedRanges>> ranges_of(Question question, const Model& model) {
+    using Ranges = std::optional<LoopedRanges>;
+    if (question == Question::assembled && !core::clearance::closes_loops(model)) return Ranges{};
+    Result<LoopedRanges> found = question == Question::motion ? core::clearance::driven_ranges(model, steps * step)
+                                                              : core::clearance::looped_ranges(model, question == Question::assembled);
+    if (!found) return found.errors();
+    return Ranges{*std::move(found)};
+}
+
+ClearanceOptions options() {
+    ClearanceOptions out;
+    out.tolerance = accuracy;
+    out.measure_overlap = out.sample_nodes = false;
+    return out;
+}
+
+Asked within(const Design& design, const std::vector<Tolerance>& tolerances, const std::vector<PairRequest>& pairs, Question question) {
+    const Result<DesignProblem> problem = DesignProblem::create(design);
+    for (const Error& error : problem.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
+    REQUIRE(problem);
+    const Result<Model> model = problem->model_at(description::with_deviations(design, tolerances, base_of(tolerances)));
+    REQUIRE(model);
+    const auto ranges = ranges_of(question, *model);
+    if (!ranges) return {ranges.errors(), {}};
+    const auto toleranced = toleranced_bodies(problem->design(), tolerances, *model, *ranges);
+    if (!toleranced) return {toleranced.errors(), {}};
+    return {{}, core::clearance::certify_toleranced(*model, *toleranced, pairs, options())};
+}
+
+// --- the scene made anew
+
+// Nothing: it cannot be made.
+std::optional<Model> made_anew(const Design& design, const Place& place, double deviation) {
+    core::scene::Scene scene = description::described_scene(design);
+    core::scene::at(scene, place) += deviation;
+    const PlaceKind kind = core::scene::kind_of(place);
+    if (kind == PlaceKind::rotation) settle_rotation(scene.bodies[static_cast<std::size_t>(place.item)]);
+    if (kind == PlaceKind::shape_dimension) {
+        core::scene::Body& body = scene.bodies[static_cast<std::size_t>(place.item)];
+        std::vector<double> values;
+        for (const auto& dimension : description::shape_of(design, place.item)->dimensions())
+            values.push_back(body.shape->dimensions.at(dimension.name));
+        body.mesh = description::shape_of(design, place.item)->mesh(values).value();
+    }
+    core::setup::BuildOptions build;
+    build.check_start = false;
+    auto model = core::setup::build_model(scene, build);
+    if (!model) return std::nullopt;
+    return std::move(model).value();
+}
+
+double distance_at(Model model, const std::vector<core::kinematics::Pose>& poses, const PairRequest& pair) {
+    for (std::size_t i = 0; i < poses.size(); ++i) model.bodies[i].pose_start = poses[i];
+    ClearanceOptions fine = options();
+    fine.tolerance = 1e-9;
+    return core::clearance::certify_clearance(model, core::clearance::as_assembled(model), {pair}, fine).front().upper;
+}
+
+// Some distance that is met; of the motion the least at its nodes.
+std::optional<double> distance_of(const Model& model, const PairRequest& pair, Question question) {
+    if (question == Question::assembled) return distance_at(model, {}, pair);
+    if (question == Question::ranges) {
+        const auto ranges = core::clearance::joint_ranges(model);
+        if (!ranges) return std::nullopt;
+        return core::clearance::certify_ranges(model, *ranges, {pair}, options()).front().upper;
+    }
+    core::stepper::Trajectory trajectory;
+    if (model.mechanism.rows.empty()) {
+        trajectory = core::stepper::follow_scripts(model, steps);
+    } else {
+        auto motion = core::stepper::follow_joints(model, steps, 1);
+        if (!motion) return std::nullopt;
+        trajectory = std::move(motion->trajectory);
+    }
+    double least = HUGE_VAL;
+    for (const auto& poses : trajectory.poses) least = std::min(least, distance_at(model, poses, pair));
+    return least;
+}
+
+double deviation_of(const core::scene::Scene& scene, const Place& place) {
+    const Dimension dimension = core::scene::dimension_at(scene, place);
+    if (dimension == Dimension::length) return 4e-3;
+    if (dimension == Dimension::angle) return 0.05;
+    return 0.2 * std::max(0.1, std::abs(core::scene::value_at(scene, place)));
+}
+
+// Of the places that have nothing to do with where bodies are one component is enough.
+bool is_looked_at(const Place& place) {
+    switch (core::scene::kind_of(place)) {
+        case PlaceKind::gravity:
+        case PlaceKind::start_velocity:
+        case PlaceKind::body_load:
+        case PlaceKind::spring_point:
+        case PlaceKind::point_load:
+            return place.entry == place.item % 3;
+        default:
+            return true;
+    }
+}
+
+struct Deviating {
+    Design design;
+    std::vector<Tolerance> tolerances;
+};
+Deviating deviating(const Design& design, const std::string& pointer, double deviation, Dimension dimension) {
+    Deviating out{design, {}};
+    const auto parameter = description::add_deviation(out.design, pointer, core::base::Unit{core::base::si_unit(dimension), dimension});
+    for (const Error& error : parameter.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
+    REQUIRE(parameter);
+    Tolerance& tolerance = out.tolerances.emplace_back();
+    tolerance.of = pointer;
+    tolerance.parameter = *parameter;
+    tolerance.deviation.lower = -deviation;
+    tolerance.deviation.upper = deviation;
+    return out;
+}
+
+struct Counts {
+    int refused = 0, held = 0, without = 0;
+};
+
+void look_at(const Case& of, const Place& place, Question question, const std::vector<double>& as_designed, Counts& counts) {
+    const core::scene::Scene scene = description::described_scene(of.design);
+    const std::string pointer = core::scene::pointer_to(scene, place);
+    const double deviation = deviation_of(scene, place);
+    INFO(of.name << ", question " << static_cast<int>(question) << ": " << pointer << " +- " << deviation);
+    const Deviating asked = deviating(of.design, pointer, deviation, core::scene::dimension_at(scene, place));
+    const Asked box = within(asked.design, asked.tolerances, of.pairs, question);
+    if (!box.refused.empty()) {
+        INFO(box.refused.front().message);
+        CHECK(box.refused.front().message.find("`" + pointer + "`") != std::string::npos);
+        ++counts.refused;
+        return;
+    }
+    for (const double end : {-deviation, deviation}) {
+        const std::optional<Model> model = made_anew(of.design, place, end);
+        for (std::size_t k = 0; model && k < of.pairs.size(); ++k) {
+            const std::optional<double> distance = distance_of(*model, of.pairs[k], question);
+            if (!distance) continue;
+            const PairClearance& pair = box.pairs[k];
+            INFO(of.design.scene.bodies[static_cast<std::size_t>(pair.a)].name
+                 << " and " << of.design.scene.bodies[static_cast<std::size_t>(pair.b)].name << " at " << end << ": " << *distance
+                 << " in [" << pair.lower << ", " << pair.upper << "] " << pair.reason);
+            CHECK(pair.lower <= *distance + slack);
+            CHECK(pair.upper - pair.lower <= 2 * accuracy);
+            if (pair.deviations.empty()) CHECK(std::abs(*distance - as_designed[k]) <= (question == Question::ranges ? accuracy : slack));
+            ++(pair.deviations.empty() ? counts.without : counts.held);
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("Every place that a deviation moves, in every question, against the scene made anew", "[toleranced][places]") {
+    std::set<int> rows;
+    std::map<Question, Counts> counts;
+    for (const Case& of : cases()) {
+        const core::scene::Scene scene = description::described_scene(of.design);
+        const Place none = core::scene::find_place(scene, "/gravity/0").value();
+        for (const Question question : {Question::assembled, Question::ranges, Question::motion}) {
+            const std::optional<Model> designed = made_anew(of.design, none, 0);
+            REQUIRE(designed);
+            if (!ranges_of(question, *designed)) continue;  // the case has no such question
+            std::vector<double> as_designed;
+            for (const PairRequest& pair : of.pairs) as_designed.push_back(distance_of(*designed, pair, question).value_or(std::nan("")));
+            for (const Place& place : core::scene::places_of(scene)) {
+                rows.insert(place.row);
+                if (std::isnan(core::scene::value_at(scene, place)) || !core::scene::faults_at(scene, place).empty()) continue;
+                if (is_looked_at(place)) look_at(of, place, question, as_designed, counts[question]);
+            }
+        }
+    }
+    // All rows of the table are among them: a new one wants a case here.
+    CHECK(static_cast<int>(rows.size()) == core::scene::row_count());
+    for (const auto& [question, count] : counts) {
+        INFO(static_cast<int>(question) << ": " << count.refused << " " << count.held << " " << count.without);
+        CHECK(count.refused > 10);
+        CHECK(count.held > 100);
+        CHECK(count.without > 100);
+    }
+}
+
+TEST_CASE("Every place that a deviation moves, in the statistics of tolerances, against the scene made anew", "[toleranced][places]") {
+    int looked_at = 0, moving = 0;
+    for (Case& of : std::vector{machine(true), linkage(CurveKind::linear), script(5, 1.2)}) {
+        of.design.steps = 2;
+        const int post = count_of(of.design.scene.bodies) - 1, body = of.pairs[0].a;
+        of.design.constraints = {
+            {"clearance", {}, std::make_shared<quantities::Clearance>(quantities::ClearanceRange{.a = body, .b = post})},
+            {"place",
+             {},
+             std::make_shared<quantities::MarkerPosition>(quantities::MarkerPosition::Of{body, Vector3(0.1, 0.01, 0)},
+                                                          quantities::Over::end)}};
+        const core::scene::Scene scene = description::described_scene(of.design);
+        const auto values_of = [&](const Design& design, const VectorX& p) -> std::optional<std::array<double, 2>> {
+            const Result<DesignProblem> problem = DesignProblem::create(design);
+            if (!problem) return std::nullopt;
+            const DesignEvaluation at = problem->evaluate(p, {false, {}, {}});
+            if (!at.usable) return std::nullopt;
+            return std::array{at.constraints[0].value, at.constraints[1].value};
+        };
+        const auto designed = values_of(of.design, VectorX());
+        REQUIRE(designed);
+        for (const Place& place : core::scene::places_of(scene)) {
+            if (std::isnan(core::scene::value_at(scene, place)) || !core::scene::faults_at(scene, place).empty() || !is_looked_at(place))
+                continue;
+            const std::string pointer = core::scene::pointer_to(scene, place);
+            const double deviation = deviation_of(scene, place);
+            const Deviating made = deviating(of.design, pointer, deviation, core::scene::dimension_at(scene, place));
+            Design anew = of.design;
+            core::scene::at(anew.scene, place) += deviation;
+            const auto item = static_cast<std::size_t>(place.item);
+            if (core::scene::kind_of(place) == PlaceKind::rotation) settle_rotation(anew.scene.bodies[item]);
+            if (core::scene::kind_of(place) == PlaceKind::shape_dimension) continue;  // a shape of its own dimensions: moved_places_test
+            const auto sample = values_of(made.design,
+                                          description::with_deviations(made.design, made.tolerances, VectorX::Constant(1, deviation))),
+                       wanted = values_of(anew, VectorX());
+            INFO(of.name << ": " << pointer << " + " << deviation);
+            CHECK(sample.has_value() == wanted.has_value());
+            if (!sample || !wanted) continue;
+            for (std::size_t k = 0; k < 2; ++k) CHECK((*sample)[k] == Approx((*wanted)[k]).margin(1e-7));
+            ++looked_at;
+            moving += std::abs((*sample)[1] - (*designed)[1]) > 1e-5 ? 1 : 0;
+        }
+    }
+    CHECK(looked_at > 200);
+    CHECK(moving > 50);
+}
+
+}  // namespace fettle::design::problem::deviating_places_test
