@@ -28,8 +28,8 @@
 ///   n(u).(x_a(u) - x_b(u)) >= lower max |n| > 0   for all u of the cell and all points x_a, x_b of the two pieces,
 /// which is what a checker has to verify, for the corners of the elements. How far above the claim it lies is not recorded: ours leave a
 /// room of at least 4 times the search's own bound of its rounding (PairSegment::slack, ScrewedPair::slack), and 1/16 of the tolerance, for
-/// a checker's rounding and for its own way of bounding curves. Over a path leaves are merged and vectors rounded as far as this room and
-/// this checker allow (certificate_thinning.hpp).
+/// a checker's rounding and for its own way of bounding curves. Over a path leaves are as large and vectors as rounded as this room and
+/// this checker allow (clearance/segment_proof.hpp).
 /// Over a box of tolerances vectors are in B's frame; a leaf : has 1 + k of them, for n(t) = n_0 + sum n_j t_j, t in [-1, 1] over the
 /// cell's part of the box (toleranced_prover.hpp). `upper` is the distance of two points of the bodies at one place of one box.
 ///

@@ -20,11 +20,11 @@
 /// - the upper bound is attained by its witness: not below the distance there, nor above it by more than rounding.
 /// The cost is linear in the certificate: a few microseconds a leaf, on all threads. A false leaf ends at its first piece without proof.
 ///
-/// Why every certificate of ours over a path is accepted, not only those that were tried. The search proves of each leaf, with the recorded
-/// plane and rounding charged, n(u).(x_a - x_b) >= lower + room in real numbers, for the corners of the two pieces' elements, which are
-/// what the checker looks at too. (Leaves that were merged or rounded after that, certificate_thinning.hpp, are accepted because this
-/// checker was asked.) The room that a claim leaves is at least 8 slack, the search's bound of its own rounding (segment_bound.hpp): with u
-/// = 2^-53, P the sum of the bodies' |q| and |q'|, r a body's radius, w its turn during the segment,
+/// Why every certificate of ours over a path is accepted, not only those that were tried. Each of its leaves was asked of this checker's
+/// prover, with half of the room above the claim, before it was written (clearance/segment_proof.hpp). And why one is found: the search
+/// has proven n(u).(x_a - x_b) >= lower + room in real numbers, for the corners of the two pieces' elements, which are what the checker
+/// looks at too, and time can be halved. The room that a claim leaves is at least 8 slack, the search's bound of its own rounding
+/// (segment_bound.hpp): with u = 2^-53, P the sum of the bodies' |q| and |q'|, r a body's radius, w its turn during the segment,
 ///   slack >= the sum over the bodies of (208 + 48 (|theta0| + w)) 2u r,   + 24u P.
 /// What remains to be shown is that the checker loses less than the room. It halves a leaf k times, k <= 24.
 /// - Rounding. An operation on intervals moves an end by at most 4u of the result. Rotations, functionals and their products with corners

@@ -21,6 +21,7 @@ inline constexpr double rounding_of_sums = 0x1p-47;
 struct VariableBox {
     using Values = std::array<double, most_variables>;
     Values low{}, high{};  ///< those beyond the pair's own are 0
+    bool operator==(const VariableBox&) const = default;
 };
 
 /// Vertices and frames over a box of deviations.

@@ -45,7 +45,7 @@ TolerancedProver::TolerancedProver(const Toleranced& toleranced, const Tolerance
 
 std::optional<std::vector<double>> TolerancedProver::dependents_at(const VariableBox::Values& at) {
     if (formulas_->loops().empty()) return std::vector<double>{};
-    const PlacedPair found = placed({at, at});
+    const PlacedPair found = placed_anew({at, at});
     if (!found.is_known) return std::nullopt;
     std::vector<double> out;
     for (std::size_t k = static_cast<std::size_t>(formulas_->coordinates()); k < found.positions.size(); ++k)
@@ -72,7 +72,15 @@ std::shared_ptr<const ModelledPair> TolerancedProver::models(const VariableBox& 
     return known_[key] = found;
 }
 
-PlacedPair TolerancedProver::placed(const VariableBox& box) {
+const PlacedPair& TolerancedProver::placed(const VariableBox& box) {
+    if (!last_ || !(last_box_ == box)) {
+        last_ = placed_anew(box);
+        last_box_ = box;
+    }
+    return *last_;
+}
+
+PlacedPair TolerancedProver::placed_anew(const VariableBox& box) {
     PlacedPair out;
     out.models = models(box);
     out.positions = formulas_->positions_over(box);
@@ -91,7 +99,7 @@ long TolerancedProver::prove(const Region& a, const Region& b, const VariableBox
     for (const Vector3& normal : normals)
         if (!normal.allFinite() || !(normal.norm() < 1e6)) return 0;
     if (!(normals[0].norm() > 1e-6)) return 0;
-    const PlacedPair at = placed(box);
+    const PlacedPair& at = placed(box);
     const std::vector<int> of_a = vertices_of(a), of_b = vertices_of(b);
     if (kind == turning_leaf) return least_turning(at, turning_vector(normals), of_a, of_b) >= lower ? 1 : 0;
     const double length = norm_bound(Interval3{normals[0][0], normals[0][1], normals[0][2]});
@@ -100,7 +108,7 @@ long TolerancedProver::prove(const Region& a, const Region& b, const VariableBox
 
 std::optional<Interval> TolerancedProver::distance_at(const geometry::Mesh& mesh_a, const CertifiedPoint& a, const geometry::Mesh& mesh_b,
                                                       const CertifiedPoint& b, const VariableBox::Values& at) {
-    const PlacedPair placed_pair = placed({at, at});
+    const PlacedPair placed_pair = placed_anew({at, at});
     if (!placed_pair.is_known) return Interval{0, infinity};
     Interval3 X_a, X_b;
     const auto of_a = [&](int v) { return intervals(placed_pair.models->a[v]); };
@@ -118,7 +126,7 @@ std::optional<Interval> TolerancedProver::distance_at(const geometry::Mesh& mesh
 
 double TolerancedProver::mismatch_at_base(const kinematics::Pose& pose_a, const kinematics::Pose& pose_b, const Matrix3X& a,
                                           const Matrix3X& b) {
-    const PlacedPair at = placed(base_);
+    const PlacedPair& at = placed(base_);
     if (!at.is_known) return infinity;
     const auto distance = [](const Model3& x, const Vector3& y) { return norm_bound(intervals(x - exact_model(y))); };
     double of_a = 0, of_b = 0, radius = 0;
@@ -140,7 +148,7 @@ double TolerancedProver::mismatch_at_base(const kinematics::Pose& pose_a, const 
 }
 
 double TolerancedProver::witness_room(const Interval3&, const Interval3&) {
-    const PlacedPair at = placed(base_);
+    const PlacedPair& at = placed(base_);
     return 1e-11 * (size_ + norm_bound(intervals(at.place))) * (1 + norm_bound(intervals(at.place))) + 1e-300;
 }
 

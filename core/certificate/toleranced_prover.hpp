@@ -44,7 +44,8 @@ public:
     int coordinates() const { return formulas_->variables(); }
     const VariableBox& box() const { return box_; }
 
-    PlacedPair placed(const VariableBox& box);
+    /// Valid until another box is asked for. The last one is kept: the pieces of a box are bounded one after the other.
+    const PlacedPair& placed(const VariableBox& box);
 
     /// 1: the vector proves dist >= lower over the box; 0: it does not.
     long prove(const Region& a, const Region& b, const VariableBox& box, char kind, std::span<const Vector3> normals, double lower);
@@ -67,12 +68,15 @@ public:
 
 private:
     std::shared_ptr<const ModelledPair> models(const VariableBox& box);
+    PlacedPair placed_anew(const VariableBox& box);
 
     std::shared_ptr<const PairFormulas> formulas_;
     VariableBox box_, base_;
     std::map<std::vector<double>, std::shared_ptr<const ModelledPair>> known_;
     std::shared_ptr<const ModelledPair> whole_;  // over all of the box
     double whole_rest_ = 0, size_ = 0;
+    VariableBox last_box_;
+    std::optional<PlacedPair> last_;
     std::shared_ptr<const LoopSlices> loops_;  // null: not bounded
 };
 

@@ -32,7 +32,10 @@ std::vector<PairClearance> BoxCertification::run() {
     int done = 0;
     const auto count = count_of(pairs_);
     base::parallel_for(count, 1, [&](int i) {
-        results[i] = certified(static_cast<std::size_t>(i));
+        const PairRequest& asked = pairs_[i];
+        const bool stopped = options_.should_stop && options_.should_stop();
+        results[i] =
+            stopped ? unmeasured(asked, "the search was cut short, by a stop or its budget") : certified(static_cast<std::size_t>(i));
         if (!options_.on_pair) return;
         const std::lock_guard<std::mutex> lock(report);
         options_.on_pair(++done, count);
@@ -49,18 +52,19 @@ std::string BoxCertification::obstacle(const PairRequest& request, int coordinat
     return {};
 }
 
-BoxSearchOptions BoxCertification::search_options(PairClearance& out, int coordinates, double size) const {
+BoxSearchOptions BoxCertification::search_options(PairClearance& out, int coordinates, double size, long second) const {
     out.tolerance = coordinates > 2 && options_.coarse > 0 ? std::max(options_.tolerance, options_.coarse * size) : options_.tolerance;
     BoxSearchOptions search;
     search.tolerance = is_recorded() ? 0.75 * out.tolerance : out.tolerance;
-    search.minimum = out.minimum;
+    search.stop = {out.minimum, options_.answer_is_enough, second / 2, second};
     search.max_bounds = options_.max_bounds;
     search.should_stop = options_.should_stop;
     return search;
 }
 
-double BoxCertification::make_claim(double slack, PairClearance& out) {
-    double room = std::min(out.tolerance, std::max(0.0, out.upper - out.lower)) / 8 + 8 * slack;
+double BoxCertification::make_claim(double slack, PairClearance& out) const {
+    const double gap = std::max(0.0, out.upper - out.lower);
+    double room = (options_.answer_is_enough ? gap : std::min(out.tolerance, gap)) / 8 + 8 * slack;
     const double above = out.lower - (out.minimum < out.lower ? out.minimum : 0);  // a claim keeps what was decided, if it can
     room = std::max(8 * slack, std::min(room, 0.5 * above));
     out.lower = out.lower > room ? out.lower - room : 0;

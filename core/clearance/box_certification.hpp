@@ -39,7 +39,8 @@ protected:
     /// Why a pair that so many coordinates move cannot be looked at; empty: it can.
     std::string obstacle(const PairRequest& request, int coordinates) const;
     /// @param size  Of the two bodies [m]: with more than two coordinates options' `coarse` share of it is enough.
-    BoxSearchOptions search_options(PairClearance& out, int coordinates, double size) const;
+    /// @param second  About how many bounds take a second.
+    BoxSearchOptions search_options(PairClearance& out, int coordinates, double size, long second) const;
 
     template <class Found>
     static void take_bounds(const Found& found, PairClearance& out) {
@@ -52,7 +53,7 @@ protected:
 
     /// Lowers out.lower to what is claimed: below what was found by a room for the order in which a proof goes through its cells, and for a
     /// checker's rounding, but above the minimum, where that was decided. @return the room
-    static double make_claim(double slack, PairClearance& out);
+    double make_claim(double slack, PairClearance& out) const;
 
     /// Surfaces that never meet leave one thing to ask, whose answer is the same everywhere in the box: are the solids apart? Then the
     /// verdict.

@@ -28,12 +28,13 @@
 #include "fettle/core/clearance/element_pair.hpp"
 #include "fettle/core/clearance/piece_tree.hpp"
 #include "fettle/core/clearance/search_front.hpp"
+#include "fettle/core/clearance/stop_rule.hpp"
 
 namespace fettle::core::clearance {
 
 struct BoxSearchOptions {
     double tolerance = 1e-6;  ///< [m]
-    double minimum = 0;       ///< greater than 0: goes on below the tolerance until it does not lie between the bounds
+    StopRule stop;            ///< of a minimum the search goes on below the tolerance until it does not lie between the bounds
     long max_bounds = 4'000'000;
     std::function<bool()> should_stop;
     double enough = std::numeric_limits<double>::infinity();  ///< stops where they are proven so far apart, whatever the least distance [m]
@@ -155,11 +156,13 @@ private:
     bool is_settled() const {
         const double lower = lower_bound(), upper = cells_.result.upper, slack = cells_.trees().slack;
         if (cells_.result.intersecting || queue_.empty() || queue_.least() >= aside_ || lower >= options_.enough) return true;
-        if (!(upper - lower <= options_.tolerance)) return false;
+        const StopRule& stop = options_.stop;
+        const long bounds = cells_.result.bounds;
+        if (!(upper - lower <= stop.gap(options_.tolerance, upper, bounds))) return stop.ends(lower, upper, bounds);
         if (upper - lower <= 4 * slack) return true;
         const double finest = 1e-3 * options_.tolerance;  // where the minimum lies between, or 0 does
         if (!(lower > 0) && upper > 64 * slack) return upper - lower <= std::min(finest, 1e-2 * upper);
-        return !(options_.minimum > lower && options_.minimum <= upper) || upper - lower <= finest;
+        return !(stop.minimum > lower && stop.minimum <= upper) || upper - lower <= finest;
     }
 
     void expand(const Cell& cell) {

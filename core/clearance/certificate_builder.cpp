@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/certificate/certificate_thinning.hpp"
 #include "fettle/core/geometry/distance.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 
@@ -106,16 +104,6 @@ std::vector<certificate::CertifiedBody> certified_bodies(const certificate::Cert
         bodies[i] = std::move(body).value();
     }
     return bodies;
-}
-
-void thin_certificate(const PairMotion& pair, const certificate::CertifiedBody& a, const certificate::CertifiedBody& b, double room,
-                      certificate::PairCertificate& certificate) {
-    base::parallel_for(count_of(certificate.boxes), 1, [&](int i) {
-        const PairSegment& segment = pair.segments[i];
-        certificate::BoxProof& proof = certificate.boxes[i];
-        const auto path = [&](int body) { return certificate::body_path(pair.trajectory, segment.step, segment.segment, body); };
-        proof = certificate::thinned(proof, a, b, path(certificate.a), path(certificate.b), certificate.lower + room);
-    });
 }
 
 void drop_unmeasured(certificate::Certificate& certificate) {

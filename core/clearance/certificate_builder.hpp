@@ -34,8 +34,4 @@ void drop_unmeasured(certificate::Certificate& certificate);
 /// The bodies as the certificate cuts them; empty ones for those of no pair.
 std::vector<certificate::CertifiedBody> certified_bodies(const certificate::Certificate& certificate, const model::Model& model);
 
-/// Fewer leaves and shorter normals, with `room` [m] above the claim: see certificate_thinning.hpp.
-void thin_certificate(const PairMotion& pair, const certificate::CertifiedBody& a, const certificate::CertifiedBody& b, double room,
-                      certificate::PairCertificate& certificate);
-
 }  // namespace fettle::core::clearance

@@ -225,6 +225,7 @@ ClearanceOptions usual_options(const std::vector<PairRequest>& pairs, std::optio
     ClearanceOptions options;
     options.tolerance = tolerance.value_or(1e-6);
     if (tolerance) return options;
+    options.answer_is_enough = true;
     options.coarse = 0.01;
     for (const PairRequest& pair : pairs)
         if (pair.minimum > 0) options.tolerance = std::min(options.tolerance, 1e-3 * pair.minimum);

@@ -7,6 +7,7 @@
 
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/clearance/crossing.hpp"
+#include "fettle/core/clearance/segment_proof.hpp"
 #include "fettle/core/clearance/touching.hpp"
 
 namespace fettle::core::clearance {
@@ -29,9 +30,19 @@ bool is_measurable(const PairMotion& pair) {
     });
 }
 
-// A certificate's checker rounds in its own way and bounds curves in its own way: the claim leaves it this much room; half of it after
-// thinning.
-double checking_room(const ClearanceOptions& options, const PairMotion& pair) { return options.tolerance / 8 + 8 * most_slack(pair); }
+constexpr long bounds_a_second = 1'000'000;
+
+StopRule stop_rule(const ClearanceOptions& options, double minimum, bool is_recorded) {
+    return {minimum, options.answer_is_enough, is_recorded ? bounds_a_second / 50 : bounds_a_second / 5, bounds_a_second};
+}
+
+// A certificate's checker rounds in its own way and bounds curves in its own way: the claim leaves it this much room, of which its proof
+// takes half. What keeps the minimum keeps it in the claim.
+double checking_room(const PairMotion& pair, const SearchOptions& search, const SearchResult& found, double tolerance) {
+    const double least = 8 * most_slack(pair), minimum = search.stop.minimum;
+    const double room = search.stop.gap(tolerance, found.upper, found.evaluations) / 8 + least;
+    return search.stop.answer_is_enough && minimum < found.lower ? std::max(least, std::min(room, 0.5 * (found.lower - minimum))) : room;
+}
 
 // The least at the nodes of the path, as a tool that samples would see it; a good upper bound for a search over the motion, too.
 Encounter least_at_nodes(const PairMotion& pair, SearchOptions search) {
@@ -42,20 +53,25 @@ Encounter least_at_nodes(const PairMotion& pair, SearchOptions search) {
     return search.nodes_only ? found.nearest : found.sampled;
 }
 
-SearchResult certified_search(const PairMotion& pair, const ClearanceOptions& options, SearchOptions search,
+SearchResult certified_search(const PairMotion& pair, const ClearanceOptions& options, double minimum, SearchOptions search,
                               const std::optional<PairRecord>& record) {
     search.enough = options.enough;
+    search.stop = stop_rule(options, minimum, record.has_value());
     if (!record) {
         search.sample_nodes = options.sample_nodes && pair.segments.size() > 1;
         return search_pair(pair.a, pair.b, pair.segments, search);
     }
     search.tolerance *= 0.75;
-    search.proof = &record->certificate.boxes;
     SearchResult found = search_pair(pair.a, pair.b, pair.segments, search);
-    const double room = checking_room(options, pair);
+    const double room = checking_room(pair, search, found, options.tolerance);
     found.lower = std::max(0.0, found.lower - room);
+    record->certificate.boxes.clear();
+    if (found.lower > 0) {
+        record->certificate.boxes =
+            prove_path(pair, record->a, record->b, record->certificate, found.lower + 0.5 * room, options.should_stop);
+        if (record->certificate.boxes.empty()) found.lower = 0, found.complete = false;
+    }
     complete_certificate(pair, found, record->certificate);
-    thin_certificate(pair, record->a, record->b, 0.5 * room, record->certificate);
     return found;
 }
 
@@ -93,8 +109,12 @@ public:
 private:
     void measure() {
         const bool apart = options_.sample_nodes && (record_ || pair_.segments.size() == 1);
-        if (apart) search_.seed = least_at_nodes(pair_, search_);
-        found_ = certified_search(pair_, options_, search_, record_);
+        if (apart) {
+            SearchOptions at_nodes = search_;
+            at_nodes.stop = stop_rule(options_, result_.minimum, false);
+            search_.seed = least_at_nodes(pair_, at_nodes);
+        }
+        found_ = certified_search(pair_, options_, result_.minimum, search_, record_);
         result_.sampled = !options_.sample_nodes ? infinity : (apart ? *search_.seed : found_.sampled).pair.distance;
         search_.seed.reset();
     }
@@ -121,11 +141,11 @@ private:
     void search_to(double tolerance, long max_evaluations) {
         ClearanceOptions finer = options_;
         SearchOptions search = search_;
-        finer.sample_nodes = false;
+        finer.sample_nodes = finer.answer_is_enough = false;
         finer.tolerance = search.tolerance = tolerance;
         search.max_evaluations = max_evaluations;
         const certificate::PairCertificate before = record_ ? record_->certificate : certificate::PairCertificate{};
-        SearchResult closer = certified_search(pair_, finer, search, record_);
+        SearchResult closer = certified_search(pair_, finer, result_.minimum, search, record_);
         if (closer.lower > found_.lower) {
             if (found_.upper < closer.upper) {
                 closer.upper = found_.upper;

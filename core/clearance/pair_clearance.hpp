@@ -86,7 +86,7 @@ struct Touch {
 };
 
 struct ClearanceOptions {
-    double tolerance = 1e-6;                        ///< wanted upper - lower [m]
+    double tolerance = 1e-6;                        ///< wanted upper - lower [m]; less will do: answer_is_enough
     bool motion = false;                            ///< over the whole trajectory; false: at poses[0]
     long max_evaluations = 50'000'000;              ///< box pairs per pair of bodies; beyond it: undecided with true bounds
     std::function<void(int done, int of)> on_pair;  ///< optional progress
@@ -97,13 +97,15 @@ struct ClearanceOptions {
     bool sample_nodes = true;                       ///< fill PairClearance::sampled, to a hundredth of the tolerance
     double enough = std::numeric_limits<double>::infinity();  ///< the search stops at a pair proven so far apart, whatever the gap [m]
     std::function<bool()> should_stop;  ///< optional, asked often, on any thread: true ends the search with true bounds
+    bool answer_is_enough = false;      ///< bounds may be farther apart than the tolerance where the minimum is decided (stop_rule.hpp)
     // Over ranges of joints, which are asked for nothing else than the tolerance and the two functions:
     double coarse = 0;            ///< tolerance of pairs that more than two coordinates move, as a share of the bodies' radii; 0: as others
     long max_bounds = 4'000'000;  ///< per pair of bodies; beyond it: undecided with true bounds
 };
 
 /// What is wanted where nothing is said: to 1 um, or to 0.1% of the least minimum if that is less; of pairs that more than two coordinates
-/// of joints move, whose search grows with the power of these, to 1% of the bodies' radii. A tolerance that is given holds for all.
+/// of joints move, whose search grows with the power of these, to 1% of the bodies' radii; and where that takes long, only as near as the
+/// answer needs it (stop_rule.hpp). A tolerance that is given holds for all.
 ClearanceOptions usual_options(const std::vector<PairRequest>& pairs, std::optional<double> tolerance = std::nullopt);
 
 /// Bounds are of the distance of the surfaces; of bodies that clash `lower` is 0.
@@ -115,7 +117,7 @@ struct PairClearance {
     bool is_far = false;     ///< clear: lower >= PairRequest::far. Not measured: `upper`, `sampled` are infinite, there is no witness
     PairStatus status = PairStatus::undecided;
     Witness witness;       ///< attains `upper`; of a clash of surfaces, where they meet first; of one inside the other, nearest surfaces
-    bool complete = true;  ///< false: budget or should_stop ended the search before the tolerance was reached
+    bool complete = true;  ///< false: budget or should_stop ended the search before its bounds were as near as was wanted
     bool intersecting = false;         ///< the surfaces were found passing through each other, or the solids to share a ball: a clash
     Solids solids = Solids::unproven;  ///< `overlap`: one lies inside the other's material (bounds are then 0), or shares a ball with it
     std::optional<Overlap> overlap;    ///< of a clash of closed bodies: how deep, the deepest of up to 32 instants looked at

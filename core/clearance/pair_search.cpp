@@ -15,7 +15,6 @@
 #include "fettle/core/base/rounding.hpp"
 #include "fettle/core/clearance/hull_direction.hpp"
 #include "fettle/core/clearance/piece_bound.hpp"
-#include "fettle/core/clearance/proof_recorder.hpp"
 #include "fettle/core/clearance/relative_spans.hpp"
 #include "fettle/core/clearance/search_front.hpp"
 
@@ -44,8 +43,7 @@ bool splits_a(const Piece& a, const Piece& b) {
 // the closest points of two elements.
 class SegmentSearch {
 public:
-    explicit SegmentSearch(SearchFront& front)
-        : front_(front), recorder_(front.options.proof != nullptr, front.segments.size()), hulls_(front.a, front.b) {
+    explicit SegmentSearch(SearchFront& front) : front_(front), hulls_(front.a, front.b) {
         const auto count = count_of(front_.segments);
         intervals_.resize(count);
         bounds_.resize(count);
@@ -61,20 +59,19 @@ public:
         const auto roots = count_of(intervals_);
         for (int i = 0; i < roots; ++i) {
             if (i < count_of(front_.segments)) make_whole(i);
-            try_pieces(i, 0, 0, {recorder_.root(intervals_[i].segment)});
+            try_pieces(i, 0, 0, -infinity);
         }
     }
 
     /// Two pieces over a whole segment; returns a lower bound of their distance there.
     double try_segment(int segment, int a, int b) {
         make_whole(segment);
-        return try_pieces(segment, a, b, {recorder_.root(segment)});
+        return try_pieces(segment, a, b, -infinity);
     }
     /// Halves an entry that the queue gave back, in time or in space, unless its bound has become good enough.
     void split(int index, double lower) {
         const Entry entry = entries_.take(index);
         if (lower >= front_.cutoff()) return front_.set_aside(lower);
-        const certificate::LeafPlane plane = recorder_.plane(entry.cell);
         const bool elements = piece_a(entry.a).is_element() && piece_b(entry.b).is_element();
         if (elements && front_.is_collecting() && entry.measured) {
             if (!collect_pair(entry)) halve(entry);
@@ -83,13 +80,11 @@ public:
         } else if (elements) {
             measure_elements(entry);
         } else if (splits_a(piece_a(entry.a), piece_b(entry.b))) {
-            const auto [first, second] = recorder_.split(entry.cell, 'a');
-            try_pieces(entry.interval, piece_a(entry.a).left, entry.b, {first, lower, plane});
-            try_pieces(entry.interval, piece_a(entry.a).right, entry.b, {second, lower, plane});
+            try_pieces(entry.interval, piece_a(entry.a).left, entry.b, lower);
+            try_pieces(entry.interval, piece_a(entry.a).right, entry.b, lower);
         } else {
-            const auto [first, second] = recorder_.split(entry.cell, 'b');
-            try_pieces(entry.interval, entry.a, piece_b(entry.b).left, {first, lower, plane});
-            try_pieces(entry.interval, entry.a, piece_b(entry.b).right, {second, lower, plane});
+            try_pieces(entry.interval, entry.a, piece_b(entry.b).left, lower);
+            try_pieces(entry.interval, entry.a, piece_b(entry.b).right, lower);
         }
     }
 
@@ -134,7 +129,6 @@ public:
     }
 
     const std::vector<Encounter>& found() const { return found_; }
-    const ProofRecorder& recorder() const { return recorder_; }
 
 private:
     // A dyadic part of a segment; parts are made when first needed and shared by all pieces. Those of whole segments come first.
@@ -147,19 +141,11 @@ private:
     struct Entry {
         int interval = 0;
         int a = 0, b = 0;       // pieces
-        int cell = -1;          // of the recorder
         bool measured = false;  // two elements whose closest points are known at the interval's ends: n0, n1 are their directions
         bool beside = false;    // both whole bodies, whose hulls are apart along n0 and n1 at the interval's ends
         bool halve = false;     // in time, else in space
         double at_ends = 0;     // beside each other: what their bound may become by halving in time
         Vector3 n0 = Vector3::Zero(), n1 = Vector3::Zero();
-    };
-
-    // Of the recorder, and what is known of it.
-    struct Cell {
-        int index = -1;
-        double lower = -infinity;
-        certificate::LeafPlane plane{};  // proves it
     };
 
     void make_whole(int segment) {
@@ -199,15 +185,14 @@ private:
         intervals_[index] = interval;
     }
 
-    // Queues the entry, or sets it aside if it cannot change the result. `plane` proves `lower`.
-    void keep(const Entry& entry, double lower, const certificate::LeafPlane& plane, bool splittable) {
-        recorder_.set_plane(entry.cell, plane);
+    // Queues the entry, or sets it aside if it cannot change the result.
+    void keep(const Entry& entry, double lower, bool splittable) {
         if (!splittable || lower >= front_.cutoff()) return front_.set_aside(lower);
         front_.push(lower, EntryKind::segment, entries_.add(entry));
     }
 
-    // `cell` knows what was proven of the pieces that these are parts of.
-    double try_pieces(int interval_index, int a, int b, const Cell& cell) {
+    // `known`: what was proven of the pieces that these are parts of.
+    double try_pieces(int interval_index, int a, int b, double known) {
         ++front_.result.evaluations;
         const Interval& interval = intervals_[interval_index];
         const IntervalBound& prepared = *bounds_[interval_index];
@@ -217,10 +202,8 @@ private:
         entry.interval = interval_index;
         entry.a = a;
         entry.b = b;
-        entry.cell = cell.index;
-        Cell known = cell;
         const auto learn = [&](double lower) {
-            if (!(known.lower > lower)) known = {cell.index, lower, {gap.direction, gap.direction}};
+            if (!(known > lower)) known = lower;
         };
         const double motion = prepared.motion(piece_of_a, piece_of_b), at_once = gap.apart - motion - segment_of(interval).slack;
         const bool elements = piece_of_a.is_element() && piece_of_b.is_element();
@@ -235,22 +218,22 @@ private:
             // With the exact values of their corners elements may do better than at once, boxes with an overlap worse.
             learn(bound.lower);
         }
-        if (a == 0 && b == 0 && !elements && gap.apart > 0 && known.lower < front_.cutoff()) return try_hulls(entry, known);
-        keep(entry, known.lower, known.plane, true);
-        return known.lower;
+        if (a == 0 && b == 0 && !elements && gap.apart > 0 && known < front_.cutoff()) return try_hulls(entry, known);
+        keep(entry, known, true);
+        return known;
     }
 
     // Both whole bodies, as if they were two elements, where their hulls are apart.
-    double try_hulls(const Entry& whole, const Cell& known) {
+    double try_hulls(const Entry& whole, double known) {
         const Interval interval = intervals_[whole.interval];
         const Vector3 n0 = hull_direction(interval.segment, interval.start);
         if (!n0.isZero(0))
             return try_hulls_along(whole, n0, interval.start == interval.end ? n0 : hull_direction(interval.segment, interval.end), known);
-        keep(whole, known.lower, known.plane, true);
-        return known.lower;
+        keep(whole, known, true);
+        return known;
     }
 
-    double try_hulls_along(const Entry& whole, const Vector3& n0, const Vector3& n1, const Cell& known) {
+    double try_hulls_along(const Entry& whole, const Vector3& n0, const Vector3& n1, double known) {
         ++front_.result.evaluations;
         const Interval& interval = intervals_[whole.interval];
         const PairSegment& segment = segment_of(interval);
@@ -271,9 +254,8 @@ private:
         entry.n1 = n1;
         const bool worth = bound.at_ends - bound.lower > 4 * segment.slack;
         entry.at_ends = worth && can_halve(interval) ? bound.at_ends : -infinity;
-        const bool better = !(known.lower > bound.lower);
-        const double lower = better ? bound.lower : known.lower;
-        keep(entry, lower, better ? certificate::LeafPlane{n0, n1} : known.plane, true);
+        const double lower = known > bound.lower ? known : bound.lower;
+        keep(entry, lower, true);
         return lower;
     }
 
@@ -312,7 +294,7 @@ private:
         }
         // Halving cannot win more than the loss; below the rounding charge it is not worth while.
         const bool worth = bound.at_ends - bound.lower > 4 * segment.slack;
-        keep(entry, bound.lower, {n0, n1}, front_.is_collecting() || (worth && can_halve(interval)));
+        keep(entry, bound.lower, front_.is_collecting() || (worth && can_halve(interval)));
     }
 
     Separation measure(int segment_index, const Instant& at, int element_a, int element_b) {
@@ -336,7 +318,7 @@ private:
         if (interval.start == interval.end) return try_elements(entry, n, n);
         const SegmentBound bound =
             bounds_[entry.interval]->along(n, piece_a(entry.a), piece_b(entry.b), &corners_a(entry.a), &corners_b(entry.b));
-        if (!front_.is_collecting() && bound.lower >= front_.cutoff()) return keep(entry, bound.lower, {n, n}, true);
+        if (!front_.is_collecting() && bound.lower >= front_.cutoff()) return keep(entry, bound.lower, true);
         const Vector3 n0 = measure(entry, instants_[interval.start]).direction;
         try_elements(entry, n0, measure(entry, instants_[interval.end]).direction);
     }
@@ -344,29 +326,24 @@ private:
     void halve(const Entry& entry) {
         if (intervals_[entry.interval].first_half < 0) make_halves(entry.interval);
         const Interval interval = intervals_[entry.interval];
-        const auto [first, second] = recorder_.split(entry.cell, '0');
         if (entry.beside) {
             Entry half = entry;
             const Vector3 n = hull_direction(interval.segment, interval.middle);
-            half.cell = first;
             half.interval = interval.first_half;
-            try_hulls_along(half, entry.n0, n, {first});
-            half.cell = second;
+            try_hulls_along(half, entry.n0, n, -infinity);
             half.interval = interval.second_half;
-            try_hulls_along(half, n, entry.n1, {second});
+            try_hulls_along(half, n, entry.n1, -infinity);
             return;
         }
         if (!entry.measured) {
-            try_pieces(interval.first_half, entry.a, entry.b, {first});
-            try_pieces(interval.second_half, entry.a, entry.b, {second});
+            try_pieces(interval.first_half, entry.a, entry.b, -infinity);
+            try_pieces(interval.second_half, entry.a, entry.b, -infinity);
             return;
         }
         const Vector3 n = measure(entry, instants_[interval.middle]).direction;
         Entry half = entry;
-        half.cell = first;
         half.interval = interval.first_half;
         try_elements(half, entry.n0, n);
-        half.cell = second;
         half.interval = interval.second_half;
         try_elements(half, n, entry.n1);
     }
@@ -396,7 +373,6 @@ private:
     double length(const Interval& interval) const { return instants_[interval.end].s - instants_[interval.start].s; }
 
     SearchFront& front_;
-    ProofRecorder recorder_;
     HullDirection hulls_;
     std::vector<Instant> instants_;
     std::vector<Interval> intervals_;
@@ -661,7 +637,7 @@ public:
     PairSearch(const PieceTree& a, const PieceTree& b, const std::vector<PairSegment>& segments, const SearchOptions& options,
                double within = -1)
         : front_(a, b, segments, options, within), segments_(front_) {
-        if (options.proof == nullptr && !options.nodes_only && segments.size() > 1) spans_.emplace(front_, segments_);
+        if (!options.nodes_only && segments.size() > 1) spans_.emplace(front_, segments_);
     }
 
     SearchResult run() {
@@ -673,7 +649,6 @@ public:
         search(0);
         front_.result.lower = front_.lower_bound();
         if (!front_.options.nodes_only && front_.result.upper <= front_.options.enough) refine_nearest();
-        if (front_.options.proof != nullptr) segments_.recorder().write(*front_.options.proof);
         return front_.result;
     }
 

@@ -112,10 +112,10 @@ public:
     double cutoff() const {
         if (is_collecting()) return std::nextafter(within_, infinity);
         if (options.seek_intersection) return std::numeric_limits<double>::min();
-        return std::min({result.upper - options.tolerance, options.enough, aside_});
+        return std::min({result.upper - gap(), options.enough, aside_});
     }
     /// The same of bounds that hold at the ends of segments, for the least distance there.
-    double sampling_cutoff() const { return options.sample_nodes ? result.sampled.pair.distance - 0.01 * options.tolerance : -infinity; }
+    double sampling_cutoff() const { return options.sample_nodes ? result.sampled.pair.distance - 0.01 * gap() : -infinity; }
 
     /// How well the distance of the bodies' hulls is to be known at an instant.
     double hull_tolerance() const { return 1e-3 * options.tolerance; }
@@ -144,7 +144,8 @@ public:
         const double next = queue_.least();
         if (is_collecting()) return next > within_;
         if (options.seek_intersection) return result.intersecting || next > 0;
-        return std::max(next, 0.0) >= std::max(cutoff(), sampling_cutoff());
+        return std::max(next, 0.0) >= std::max(cutoff(), sampling_cutoff()) ||
+               options.stop.ends(std::min(next, aside_), result.upper, result.evaluations);
     }
 
     /// The bound of everything searched, however far the search has come.
@@ -167,6 +168,8 @@ public:
     }
 
 private:
+    double gap() const { return options.stop.gap(options.tolerance, result.upper, result.evaluations); }
+
     Key next() {
         if (last_made_.empty() || (in_order_ && ++taken_ > longest_dive)) {
             put_in_order();

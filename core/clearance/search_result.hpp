@@ -9,6 +9,7 @@
 
 #include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/clearance/segment_bound.hpp"
+#include "fettle/core/clearance/stop_rule.hpp"
 #include "fettle/core/clearance/witness_instant.hpp"
 
 namespace fettle::core::clearance {
@@ -18,22 +19,23 @@ struct SearchOptions {
     long max_evaluations = 50'000'000;
     std::function<bool()> should_stop;                          ///< optional
     double enough = std::numeric_limits<double>::infinity();    ///< a lower bound of this much ends the search, whatever the gap [m]
+    StopRule stop;                                              ///< when less than the tolerance will do
     double refuted = -std::numeric_limits<double>::infinity();  ///< an upper bound below this ends the search, whatever the gap [m]
     bool nodes_only = false;                                    ///< at the ends of the segments instead of over them
     bool seek_intersection = false;  ///< for an edge through a triangle, deeper than rounding: bounds are of no use then
     std::optional<Encounter> seed;   ///< of the same bodies: its distance is the first upper bound
     bool exact_witness = true;       ///< `nearest` are the nearest elements at their instant, if that is found soon
-    bool sample_nodes = false;       ///< find SearchResult::sampled along the way. Contract: no proof, over more than one segment
-    std::vector<certificate::BoxProof>* proof = nullptr;  ///< the tree of entries is recorded here, one proof per segment
+    bool sample_nodes = false;       ///< find SearchResult::sampled along the way. Contract: over more than one segment
 };
 
 struct SearchResult {
-    double lower = 0, upper = 0;  ///< [m], lower >= 0; upper - lower <= tolerance unless rounding or the budget stands in the way
-    Encounter nearest;            ///< attains `upper`
-    Encounter sampled;            ///< if asked for: the least at ends of segments, to a hundredth of the tolerance
-    long evaluations = 0;         ///< bounds computed
-    bool complete = true;         ///< false: out of budget, or stopped
-    bool intersecting = false;    ///< `nearest` is an edge that passes through a triangle, deeper than rounding
+    /// [m], lower >= 0; upper - lower <= tolerance unless less will do, or rounding or the budget stands in the way
+    double lower = 0, upper = 0;
+    Encounter nearest;          ///< attains `upper`
+    Encounter sampled;          ///< if asked for: the least at ends of segments, to a hundredth of the tolerance
+    long evaluations = 0;       ///< bounds computed
+    bool complete = true;       ///< false: out of budget, or stopped
+    bool intersecting = false;  ///< `nearest` is an edge that passes through a triangle, deeper than rounding
 };
 
 }  // namespace fettle::core::clearance

@@ -19,6 +19,8 @@ using certificate::TolerancedPair;
 using certificate::TolerancedProver;
 using certificate::VariableBox;
 
+constexpr long bounds_a_second = 20'000;
+
 class TolerancedCertification : public BoxCertification {
 public:
     TolerancedCertification(const model::Model& model, const Toleranced& toleranced, const std::vector<PairRequest>& pairs,
@@ -60,16 +62,16 @@ private:
             out.reason = "the formulas of the two are not those of their meshes and start poses";
             return;
         }
-        const TolerancedBodies bodies = toleranced_bodies(toleranced_, pair, *shape(out.a).tree, *shape(out.b).tree);
+        const TolerancedBodies bodies = toleranced_bodies(toleranced_, pair, prover, *shape(out.a).tree, *shape(out.b).tree);
         if (!(bodies.slack <= 1e-3 * prover.size())) {
             out.reason = "its numbers are so large that rounding hides the distance";
             return;
         }
-        const BoxSearchOptions search = search_options(out, count_of(pair.coordinates), prover.size());
+        const BoxSearchOptions search = search_options(out, count_of(pair.coordinates), prover.size(), bounds_a_second);
         const TolerancedSearchResult found = search_toleranced(bodies, search);
         take_bounds(found, out);
         if (found.nearest.element_a >= 0) take_nearest(bodies, found, out);
-        if (is_recorded()) write_record(bodies, prover, found, search, out, record(index));
+        if (is_recorded()) write_record(bodies, found, search, out, record(index));
         finish(index, mismatch, out);
     }
 
@@ -83,8 +85,8 @@ private:
         out.witnesses = {out.witness};
     }
 
-    void write_record(const TolerancedBodies& bodies, TolerancedProver& prover, const TolerancedSearchResult& found,
-                      const BoxSearchOptions& search, PairClearance& out, certificate::PairCertificate& record) const {
+    void write_record(const TolerancedBodies& bodies, const TolerancedSearchResult& found, const BoxSearchOptions& search,
+                      PairClearance& out, certificate::PairCertificate& record) const {
         record.a = out.a;
         record.b = out.b;
         record.at.assign(out.at.begin(), out.at.begin() + static_cast<std::ptrdiff_t>(bodies.pair.coordinates.size()));
@@ -103,7 +105,7 @@ private:
         record.point_b = point(made, bodies.b, out.b, all, found.nearest.element_b, near, near.kind_b, near.corner_b, near.point_b);
         VariableBox::Values at{};
         std::copy(record.at.begin(), record.at.end(), at.begin());
-        const auto there = prover.distance_at(*bodies.a.mesh, record.point_a, *bodies.b.mesh, record.point_b, at);
+        const auto there = bodies.prover.distance_at(*bodies.a.mesh, record.point_a, *bodies.b.mesh, record.point_b, at);
         record.upper = there ? std::max(there->high, record.lower) : found.upper;
     }
 

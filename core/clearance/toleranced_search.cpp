@@ -61,7 +61,7 @@ public:
 
     explicit TolerancedCells(const TolerancedBodies& bodies)
         : bodies_(bodies),
-          prover_(bodies.toleranced, bodies.pair, bodies.a.mesh->vertices, bodies.b.mesh->vertices),
+          prover_(bodies.prover),
           variables_(bodies.pair.variables()),
           vertices_a_(piece_vertices(bodies.a)),
           vertices_b_(piece_vertices(bodies.b)) {
@@ -84,11 +84,8 @@ public:
     CellProof evaluate(TolerancedCell& cell, double wanted, double tolerance) {
         return evaluate(prover_.placed(cell.box), cell, wanted, tolerance);
     }
-    void evaluate_parts(const TolerancedCell& /*whole*/, char by, std::array<TolerancedCell, 2>& parts, double tolerance) {
-        PlacedPair at = prover_.placed(parts[0].box);
-        evaluate(at, parts[0], result.upper, tolerance);
-        if (by != 'a' && by != 'b') at = prover_.placed(parts[1].box);
-        evaluate(at, parts[1], result.upper, tolerance);
+    void evaluate_parts(const TolerancedCell& /*whole*/, char /*by*/, std::array<TolerancedCell, 2>& parts, double tolerance) {
+        for (TolerancedCell& part : parts) evaluate(prover_.placed(part.box), part, result.upper, tolerance);
     }
     // A vector that turns is bounded as if it were as long as 1; one that stays as it is.
     static bool proves(const CellProof& found, double distance) {
@@ -277,7 +274,7 @@ private:
     }
 
     const TolerancedBodies& bodies_;
-    TolerancedProver prover_;
+    TolerancedProver& prover_;
     int variables_;
     std::vector<std::vector<int>> vertices_a_, vertices_b_;         // of the pieces
     std::array<double, certificate::most_variables> turn_rates_{};  // of all screws of a coordinate [rad] per unit
@@ -356,10 +353,9 @@ void TolerancedCells::descend() { TolerancedDescent(bodies_, *this).run(); }
 
 }  // namespace
 
-TolerancedBodies toleranced_bodies(const certificate::Toleranced& toleranced, const certificate::TolerancedPair& pair, const PieceTree& a,
-                                   const PieceTree& b) {
-    TolerancedBodies out{toleranced, pair, a, b};
-    TolerancedProver prover(toleranced, pair, a.mesh->vertices, b.mesh->vertices);
+TolerancedBodies toleranced_bodies(const certificate::Toleranced& toleranced, const certificate::TolerancedPair& pair,
+                                   TolerancedProver& prover, const PieceTree& a, const PieceTree& b) {
+    TolerancedBodies out{toleranced, pair, prover, a, b};
     const MadeBodies made(toleranced, base_deviations(toleranced));
     const std::vector<double> start = start_coordinates(toleranced);
     double reach = prover.size();

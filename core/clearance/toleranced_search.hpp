@@ -22,11 +22,12 @@ namespace fettle::core::clearance {
 struct TolerancedBodies {
     const certificate::Toleranced& toleranced;
     const certificate::TolerancedPair& pair;
-    const PieceTree &a, &b;  ///< of the meshes at the base
-    double slack = 0;        ///< rounding of a distance in doubles [m]
+    certificate::TolerancedProver& prover;  ///< of the pair
+    const PieceTree &a, &b;                 ///< of the meshes at the base
+    double slack = 0;                       ///< rounding of a distance in doubles [m]
 };
-TolerancedBodies toleranced_bodies(const certificate::Toleranced& toleranced, const certificate::TolerancedPair& pair, const PieceTree& a,
-                                   const PieceTree& b);
+TolerancedBodies toleranced_bodies(const certificate::Toleranced& toleranced, const certificate::TolerancedPair& pair,
+                                   certificate::TolerancedProver& prover, const PieceTree& a, const PieceTree& b);
 
 using certificate::VariableBox;
 

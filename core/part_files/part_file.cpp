@@ -246,7 +246,7 @@ Result<parts::DrawnPart> PartFile::drawn(const std::vector<double>& values, cons
                                          const parts::Structure& structure, const parts::DrawnOptions& options) const {
     Errors errors = faults(values);
     if (!errors.empty()) return errors;
-    parts::Drawing drawing(facets.value_or(contents_->facets), structure);
+    parts::Drawing drawing(facets.value_or(contents_->facets), structure, options.compare_counts);
     std::vector<Number> dimensions;
     for (const double value : values) dimensions.push_back(drawing.dimension(value));
     Sheet sheet{drawing, contents_->numbers.values(std::move(dimensions)), {}, {}, 0};

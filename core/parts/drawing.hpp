@@ -33,7 +33,7 @@ struct Structure {
 
 class Drawing {
 public:
-    explicit Drawing(const Facets& facets = {}, Structure kept = {});
+    explicit Drawing(const Facets& facets = {}, Structure kept = {}, bool compares_counts = false);
     Drawing(const Drawing&) = delete;  // numbers point to the tape
     Drawing& operator=(const Drawing&) = delete;
 
@@ -61,17 +61,27 @@ public:
     std::vector<int> decision(const std::string& what, const std::function<bool(const std::vector<int>&)>& holds,
                               const std::function<std::vector<int>()>& decide);
 
+    /// Of how many facets something is made: as many as were kept, whatever the dimensions have become since, else what `choose` returns.
+    /// Where counts are compared, a choice that is another than what was kept is told: other_counts().
+    int count(const std::string& what, const std::function<int()>& choose);
+
     const Structure& structure() const { return made_; }
     const Structure& kept() const { return kept_; }
     /// What could not be kept, a sentence each: the triangles are not those of the drawing whose structure was handed in. Empty where
     /// none was.
     const std::vector<std::string>& changes() const { return changes_; }
+    /// Kept counts of facets that a drawing without a structure would choose otherwise: "segments of `ball`: 21, not 20". Empty where they
+    /// are not compared.
+    const std::vector<std::string>& other_counts() const { return other_counts_; }
 
 private:
+    const Decision* kept_decision(const std::string& what) const;
+
     expression::Tape tape_;
     std::vector<double> dimensions_;
     Structure kept_, made_;
-    std::vector<std::string> changes_;
+    bool compares_counts_;
+    std::vector<std::string> changes_, other_counts_;
 };
 
 }  // namespace fettle::core::parts

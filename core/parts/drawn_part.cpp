@@ -124,6 +124,7 @@ Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::s
     part.deviation.in += rounding;
     part.structure = drawing.structure();
     part.changes = drawing.changes();
+    part.other_counts = drawing.other_counts();
     // Whatever was decided on the way: are the triangles those of before?
     const Decision triangles{"triangles", fingerprint(part.mesh)};
     const auto& kept = drawing.kept().decisions;

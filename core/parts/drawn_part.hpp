@@ -24,15 +24,17 @@ struct DrawnPart {
     std::vector<DrawnSurface> surfaces;
     std::vector<Facet> facets;  ///< per triangle of the mesh
     Deviation deviation;
-    Structure structure;               ///< for the next drawing of this part
-    std::vector<std::string> changes;  ///< against the structure that the drawing was given (drawing.hpp)
-    RecordedVertices recorded{};       ///< if it was asked for
+    Structure structure;                    ///< for the next drawing of this part
+    std::vector<std::string> changes;       ///< against the structure that the drawing was given (drawing.hpp)
+    std::vector<std::string> other_counts;  ///< kept of it, where a part drawn by itself would have others (the same); if asked for
+    RecordedVertices recorded{};            ///< if it was asked for
 };
 
 struct DrawnOptions {
     bool jacobian = true;
-    bool record = false;  ///< DrawnPart::recorded
-    bool check = true;    ///< that the mesh is a solid: closed, oriented, without self-intersection (solids/mesh_validity.hpp)
+    bool record = false;          ///< DrawnPart::recorded
+    bool compare_counts = false;  ///< DrawnPart::other_counts
+    bool check = true;            ///< that the mesh is a solid: closed, oriented, without self-intersection (solids/mesh_validity.hpp)
 };
 
 /// Errors: a mesh that is no solid; faults name the features whose facets meet ("`slot 2` and `rim` cross").

@@ -88,10 +88,9 @@ Result<FacetedProfile> faceted(Drawing& drawing, const Profile& profile) {
             const int index = count_of(out.curves);
             Chain chain;
             if (!std::holds_alternative<Line>(segment.curve)) {
-                const auto numbers = drawing.decision(
-                    "segments of " + quoted_curve(segment.feature), [](const std::vector<int>& n) { return n.size() == 1 && n[0] >= 1; },
-                    [&] { return std::vector<int>{facet_count(segment.curve, facets)}; });
-                chain = chain_of(segment.curve, numbers[0], facets.lean);
+                const int count =
+                    drawing.count("segments of " + quoted_curve(segment.feature), [&] { return facet_count(segment.curve, facets); });
+                chain = chain_of(segment.curve, count, facets.lean);
             }
             out.curves.push_back({segment.curve, segment.feature, chain.out, chain.in, chain.proven});
             if (chain.through_start) add_point(polygon, start_of(segment.curve), index);

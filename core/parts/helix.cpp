@@ -13,13 +13,11 @@ namespace fettle::core::parts {
 namespace {
 
 int steps_of(Drawing& drawing, const std::string& name, double radius, double angle) {
-    return drawing.decision(
-        "steps of the turn of " + quoted_profile(name), [](const std::vector<int>& n) { return n.size() == 1 && n[0] >= 1; },
-        [&] {
-            // A turn's worth of segments for each turn.
-            const double turns = std::abs(angle) / full_turn, a_turn = segments_of(drawing.facets, radius, full_turn);
-            return std::vector<int>{std::max(1, static_cast<int>(std::ceil(turns * a_turn - 1e-9)))};
-        })[0];
+    return drawing.count("steps of the turn of " + quoted_profile(name), [&] {
+        // A turn's worth of segments for each turn.
+        const double turns = std::abs(angle) / full_turn, a_turn = segments_of(drawing.facets, radius, full_turn);
+        return std::max(1, static_cast<int>(std::ceil(turns * a_turn - 1e-9)));
+    });
 }
 
 }  // namespace

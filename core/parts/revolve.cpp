@@ -125,10 +125,9 @@ Result<Solid> turned_solid(Drawing& drawing, const Profile& profile, const Numbe
         return Error{
             ErrorCode::out_of_range, name,
             quoted_profile(name) + " is turned by " + format_quantity(sweep, "deg", 4) + ": it must be more than 0 and less than 360 deg"};
-    const auto numbers = drawing.decision(
-        "segments of the turn of " + quoted_profile(name), [](const std::vector<int>& n) { return n.size() == 1 && n[0] >= 1; },
-        [&] { return std::vector<int>{segments_of(drawing.facets, farthest, sweep)}; });
-    const Turn turn = angle != nullptr ? part_turn(*from, *angle, numbers[0], lean) : whole_turn(numbers[0]);
+    const int count =
+        drawing.count("segments of the turn of " + quoted_profile(name), [&] { return segments_of(drawing.facets, farthest, sweep); });
+    const Turn turn = angle != nullptr ? part_turn(*from, *angle, count, lean) : whole_turn(count);
     const std::size_t stations = turn.stations.size();
 
     SolidBuilder builder;

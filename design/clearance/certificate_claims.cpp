@@ -46,24 +46,41 @@ bool moves(const core::stepper::Trajectory& trajectory, int body) {
     return false;
 }
 
+const char* const of_path_alone = "about the path as stored, between whose nodes the joints may put the bodies elsewhere";
+
 // A certificate of a motion that neither has joints nor says that the path as stored is what it is of: what its bounds of moving bodies
 // are worth is known only where the source has no joints.
 void doubt_bounds(const core::stepper::Trajectory& trajectory, CheckedCertificate& checked) {
-    for (Claim& claim : checked.claims) claim.is_of_bodies = !moves(trajectory, claim.a) && !moves(trajectory, claim.b);
+    for (Claim& claim : checked.claims)
+        if (moves(trajectory, claim.a) || moves(trajectory, claim.b)) claim.doubt = of_path_alone;
     checked.notes.emplace_back(
         "it has no joints, and does not state that it is about the path as stored: nothing is proven about bodies that move and that "
         "joints hold; make it anew");
 }
 
-// Is the source still that of the certificate? Nothing to tell if it is.
+// Is the source still that of the certificate?
 struct SourceCheck {
-    bool stale = false;
-    std::string note;
+    std::string source{};    // that it was compared with; empty: with none
+    std::string fault{};     // it is stale
+    std::string note{};      // what is to be told beside that
     bool has_joints = true;  // as far as is known
 };
 
+bool states_its_domain(const Certificate& certificate) { return certificate.linkage || certificate.toleranced; }
+
+// What ranges or tolerances state, nothing has, as far as is known.
+void doubt_domain(CheckedCertificate& checked) {
+    const char* const what = checked.certificate->toleranced ? "the tolerances and the joints' ranges" : "the joints' ranges";
+    for (Claim& claim : checked.claims)
+        claim.doubt =
+            std::string("about ") + what + " that the certificate states itself: no scene or design at hand is known to have them";
+    checked.notes.push_back(std::string("what it proves is of ") + what +
+                            " that it states itself, and of no scene or design: --source FILE says of which it is to be");
+}
+
 // The design as made, over what the certificate is.
-SourceCheck check_toleranced_source(const Certificate& certificate, const std::string& source, const reading::InputOptions& input) {
+SourceCheck check_toleranced_source(const Certificate& certificate, const std::string& source, const std::string& name,
+                                    const reading::InputOptions& input) {
     SubjectOptions options;
     options.path = source;
     options.tolerances = true;
@@ -73,45 +90,50 @@ SourceCheck check_toleranced_source(const Certificate& certificate, const std::s
     const Result<Subject> subject = read_subject(options, input);
     if (!subject) {
         const Error& error = subject.errors().front();
-        return {true, "stale: " + certificate.source + ", which it was made from, can no longer be read within tolerances: " + error.where +
-                          ": " + error.message};
+        return {name, "stale: " + name + ", which it was made from, can no longer be read within tolerances: " + error.where + ": " +
+                          error.message};
     }
     if (core::records::geometry_hash(subject->model) != certificate.geometry_hash)
-        return {true, "stale: the meshes of " + certificate.source + " have changed since"};
-    if (same_toleranced(*subject->toleranced, *certificate.toleranced)) return {};
-    return {true, "stale: the tolerances of " + certificate.source + ", its formulas, joints or start poses have changed since"};
+        return {name, "stale: the meshes of " + name + " have changed since"};
+    if (same_toleranced(*subject->toleranced, *certificate.toleranced)) return {name};
+    return {name, "stale: the tolerances of " + name + ", its formulas, joints or start poses have changed since"};
 }
 
-SourceCheck check_source(const Certificate& certificate, const std::string& path, reading::InputOptions input) {
-    if (certificate.source.empty()) return {};
-    const std::filesystem::path source = file_of_certificate(path, certificate.source);
+// @param asked  a scene or design in place of the one that the certificate names
+SourceCheck check_source(const Certificate& certificate, const std::string& path, const std::string& asked, reading::InputOptions input) {
+    const std::string& name = asked.empty() ? certificate.source : asked;
+    if (name.empty())
+        return {.note = certificate.exports.empty() ? "it names no scene or design that it was made from: it is about the meshes and start "
+                                                      "poses, and the path, of the trajectory alone"
+                                                    : ""};
+    const std::filesystem::path source = asked.empty() ? file_of_certificate(path, name) : std::filesystem::path(asked);
     const std::string untold = ": it cannot be determined whether its meshes have changed since";
-    if (!std::filesystem::exists(source)) return {false, certificate.source + ", which it was made from, is not there" + untold};
+    if (!std::filesystem::exists(source)) return {.note = name + ", which it was made from, is not there" + untold};
     input.check_start = false;
-    if (certificate.toleranced) return check_toleranced_source(certificate, source.string(), input);
+    if (certificate.toleranced) return check_toleranced_source(certificate, source.string(), name, input);
     const Result<reading::LoadedModel> loaded = reading::load_model(source.string(), input);
     if (!loaded) {
         const Error& error = loaded.errors().front();
         const std::string why = error.where + ": " + error.message;
         // A file that is not found may be elsewhere (--mesh-dir), a program may not be allowed to run: neither says that something changed.
-        if (error.code == ErrorCode::file_not_found || error.code == ErrorCode::unsupported) return {false, why + untold};
-        return {true, "stale: " + certificate.source + ", which it was made from, can no longer be read: " + why};
+        if (error.code == ErrorCode::file_not_found || error.code == ErrorCode::unsupported) return {.note = why + untold};
+        return {name, "stale: " + name + ", which it was made from, can no longer be read: " + why};
     }
     if (core::records::geometry_hash(loaded->model) != certificate.geometry_hash)
-        return {true, "stale: the meshes of " + certificate.source + " have changed since"};
+        return {name, "stale: the meshes of " + name + " have changed since"};
     if (certificate.joints) {
         const auto joints = core::clearance::ideal_joints(loaded->model, core::stepper::undriven_bodies(loaded->model));
-        if (joints && same_joints(*joints, *certificate.joints)) return {};
-        return {true, "stale: the joints or motors of " + certificate.source + " have changed since"};
+        if (joints && same_joints(*joints, *certificate.joints)) return {name};
+        return {name, "stale: the joints or motors of " + name + " have changed since"};
     }
-    if (certificate.motion && loaded->model.mechanism.rows.empty()) return {false, "", false};
+    if (certificate.motion && loaded->model.mechanism.rows.empty()) return {.source = name, .has_joints = false};
     if (certificate.motion && certificate.is_of_path)
-        return {false, "its bounds hold for the path as stored, between whose nodes joints may part"};
-    if (!certificate.linkage) return {};
+        return {name, "", "its bounds hold for the path as stored, between whose nodes joints may part"};
+    if (!certificate.linkage) return {name};
     const auto ranges = core::clearance::joint_ranges(loaded->model);
     const bool same_start = core::records::path_hash(core::clearance::as_assembled(loaded->model)) == certificate.path_hash;
-    if (ranges && ranges->linkage == *certificate.linkage && same_start) return {};
-    return {true, "stale: the joints of " + certificate.source + ", their limits or the start poses have changed since"};
+    if (ranges && ranges->linkage == *certificate.linkage && same_start) return {name};
+    return {name, "stale: the joints of " + name + ", their limits or the start poses have changed since"};
 }
 
 std::vector<CheckedExport> check_exports(const Certificate& certificate, const std::string& path) {
@@ -140,7 +162,7 @@ std::string note_of(const CheckedExport& exported) {
 
 core::clearance::PairStatus verdict(const Claim& claim, double minimum) {
     using core::clearance::PairStatus;
-    if (!claim.is_of_bodies) return PairStatus::undecided;
+    if (!claim.doubt.empty()) return PairStatus::undecided;
     if (claim.lower >= minimum && claim.lower > 0 && are_apart(claim.solids)) return PairStatus::clear;
     return claim.upper < minimum ? PairStatus::violated : PairStatus::undecided;
 }
@@ -173,7 +195,7 @@ const char* to_string(CertificateStatus status) {
 }
 
 CheckedCertificate check_certificate_file(const std::string& path, const core::records::StoredTrajectory& stored,
-                                          const reading::InputOptions& input) {
+                                          const reading::InputOptions& input, const std::string& asked_source) {
     CheckedCertificate checked;
     auto read = core::certificate::read_certificate(path);
     for (const Error& error : read.errors()) checked.faults.push_back({error.where, error.message});
@@ -190,11 +212,11 @@ CheckedCertificate check_certificate_file(const std::string& path, const core::r
         stale = true;
         checked.faults.push_back({where, message});
     };
-    const SourceCheck source = check_source(certificate, path, input);
-    if (source.stale)
-        add_stale("/source", source.note);
-    else if (!source.note.empty())
-        checked.notes.push_back(source.note);
+    const SourceCheck source = check_source(certificate, path, asked_source, input);
+    checked.source = source.source;
+    if (!source.fault.empty()) add_stale("/source", source.fault);
+    if (!source.note.empty()) checked.notes.push_back(source.note);
+    if (source.source.empty() && states_its_domain(certificate)) doubt_domain(checked);
     checked.exports = check_exports(certificate, path);
     for (const CheckedExport& exported : checked.exports) {
         if (exported.status == ExportStatus::changed)

@@ -21,7 +21,7 @@ struct Claim {
     double lower = 0, upper = 0;  ///< [m], of joints met at all times where the certificate has joints
     core::certificate::Solids solids = core::certificate::Solids::unproven;
     std::optional<double> minimum = {};  ///< [m] that the certificate says is required
-    bool is_of_bodies = true;  ///< false: of the path as stored, and it is not known whether joints have the bodies elsewhere between nodes
+    std::string doubt = {};  ///< why it need not hold of the bodies that are asked about: then it is undecided; empty: nothing does
 };
 
 /// Clear, violated or undecided, of a pair whose claims are proven.
@@ -49,13 +49,17 @@ struct CheckedCertificate {
     long leaves = 0;                                            ///< of its trees
     std::vector<Claim> claims;
     std::vector<std::array<int, 2>> uncovered;  ///< pairs of bodies
+    std::string source;                         ///< with which it was compared; empty: with none
     std::vector<CheckedExport> exports;
     std::vector<std::string> notes;
 };
 
+/// A certificate over ranges of joints or tolerances proves something of those that it states itself: of no scene, unless one is at hand
+/// that has them. Its claims are in doubt then.
 /// @param path    of the certificate
 /// @param stored  the path that it is about
+/// @param source  the scene or design that it is to be about; empty: the one that it names
 CheckedCertificate check_certificate_file(const std::string& path, const core::records::StoredTrajectory& stored,
-                                          const reading::InputOptions& input);
+                                          const reading::InputOptions& input, const std::string& source = {});
 
 }  // namespace fettle::design::clearance

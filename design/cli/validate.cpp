@@ -123,20 +123,23 @@ Verdict validate_model(const std::string& path, FileKind kind, const CommonOptio
 }
 
 struct ValidateArguments {
-    std::string path, unit, trajectory, minimum;
+    std::string path, unit, trajectory, source, minimum;
 };
 
 int run_validate(const ValidateArguments& options, const CommonOptions& common, Console& console) {
     const std::string& path = options.path;
     const FileKind kind = file_kind(path);
     if (kind == FileKind::certificate && options.unit.empty())
-        return validate_certificate({path, options.trajectory, options.minimum}, common, console);
+        return validate_certificate({path, options.trajectory, options.source, options.minimum}, common, console);
     Errors not_taken;
     if (!options.unit.empty() && kind != FileKind::mesh)
         not_taken.push_back({ErrorCode::inconsistent, "--unit", "is for meshes; this file states its own unit"});
-    for (const auto& [option, value] : {std::pair{"--minimum", options.minimum}, {"--trajectory", options.trajectory}})
+    for (const auto& [option, value] :
+         {std::pair{"--minimum", options.minimum}, {"--trajectory", options.trajectory}, {"--source", options.source}})
         if (!value.empty() && kind != FileKind::certificate)
-            not_taken.push_back({ErrorCode::inconsistent, option, std::string("is for a certificate; use fettle clearance")});
+            not_taken.push_back(
+                {ErrorCode::inconsistent, option,
+                 std::string("is for a certificate") + (option == std::string_view("--source") ? "" : "; use fettle clearance")});
     if (!not_taken.empty()) return console.input_errors(not_taken);
     if (core::records::is_poses_file(path))
         return console.input_errors(
@@ -172,6 +175,8 @@ Command add_validate(CommandLine& program, const CommonOptions& common) {
     app.option("--unit", options->unit, "Unit of a mesh that states none: mm, um, cm, m, in, ft");
     app.option("--trajectory", options->trajectory,
                "For a certificate: the path that it is about (default: FILE's name, .trajectory.json)");
+    app.option("--source", options->source,
+               "For a certificate: the scene or design that it is to be about (default: the one that it names)");
     app.option("--minimum", options->minimum,
                "For a certificate: do its bounds meet this clearance, per side, with its unit: 0.3mm (default: the minima that it states)");
     app.closing_words(

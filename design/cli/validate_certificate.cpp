@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/cli/validate_certificate.hpp"
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/rounded_lengths.hpp"
@@ -11,6 +12,7 @@
 #include "fettle/design/clearance/certificate_claims.hpp"
 #include "fettle/design/clearance/certificate_files.hpp"
 #include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/certificate_domain.hpp"
 #include "fettle/design/cli/inputs.hpp"
 
 namespace fettle::design::cli {
@@ -24,10 +26,9 @@ using clearance::Claim;
 using clearance::ExportStatus;
 using core::base::RoundedLengths;
 using core::base::Towards;
-using core::certificate::Certificate;
-using core::certificate::is_over_ranges;
 using core::clearance::PairStatus;
 using core::model::Model;
+using core::records::StoredTrajectory;
 
 Json name_of(const Model& model, int body) {
     const bool known = body >= 0 && body < count_of(model.bodies);
@@ -78,8 +79,6 @@ std::string claims_text(const CheckedCertificate& checked, const Model& model, c
     return text;
 }
 
-const char* const of_path_alone = "about the path as stored, between whose nodes the joints may put the bodies elsewhere";
-
 // Against the minimum; without one, what is proven of the two bodies.
 Check check_of(const Claim& pair, const std::string& name, const RoundedLengths& lengths, const std::optional<double>& minimum,
                const std::string& file) {
@@ -89,11 +88,11 @@ Check check_of(const Claim& pair, const std::string& name, const RoundedLengths&
         check.rule = to_string(status);
         check.outcome = to_check(status);
         check.message += "; required " + required_text(*required, lengths);
-    } else if (!pair.is_of_bodies || !are_apart(pair.solids)) {
+    } else if (!pair.doubt.empty() || !are_apart(pair.solids)) {
         check.rule = "undecided";
         check.outcome = CheckOutcome::undecided;
     }
-    if (!pair.is_of_bodies) check.message += std::string("; ") + of_path_alone;
+    if (!pair.doubt.empty()) check.message += "; " + pair.doubt;
     return check;
 }
 
@@ -105,26 +104,18 @@ Result<std::optional<double>> read_minimum(const std::string& text) {
     return std::optional<double>(*length);
 }
 
-const char* about(const Certificate& certificate) {
-    if (certificate.toleranced && certificate.toleranced->duration > 0) return "over the prescribed motion, within tolerances";
-    if (certificate.toleranced)
-        return is_over_ranges(*certificate.toleranced) ? "over all positions of the joints, within tolerances"
-                                                       : "as assembled, within tolerances";
-    if (certificate.linkage) return "over all positions of the joints";
-    if (!certificate.motion) return "as assembled";
-    if (certificate.joints) return "over the motion, for joints met at all times";
-    return certificate.is_of_path ? "over the motion, for the path as stored" : "over the motion";
-}
-
 std::string name_of_pair(const std::array<int, 2>& pair, const Model& model) { return claim_name({pair[0], pair[1]}, model); }
 
 const char* word(ExportStatus status) {
     return status == ExportStatus::same ? "same" : status == ExportStatus::changed ? "changed" : "not there";
 }
 
-Json checked_json(const CheckedCertificate& checked, const Model& model, const std::optional<double>& minimum) {
+Json checked_json(const CheckedCertificate& checked, const StoredTrajectory& stored, const std::optional<double>& minimum) {
+    const Model& model = stored.model;
     Json json = Json::object();
     if (!checked.certificate) return json;
+    json["source"] = checked.source.empty() ? Json() : Json(checked.source);
+    json["domain"] = domain_json(*checked.certificate, stored.trajectory);
     if (!checked.exports.empty()) json["exports"] = Json::array();
     for (const auto& exported : checked.exports)
         json["exports"].push_back({{"file", exported.file}, {"status", word(exported.status)}, {"rounding", exported.rounding}});
@@ -139,7 +130,7 @@ Json checked_json(const CheckedCertificate& checked, const Model& model, const s
 
 // Of an accepted certificate.
 std::string accepted_text(const CheckedCertificate& checked, const Model& model, const std::optional<double>& minimum) {
-    std::string text = formatted("every claim is proven, in %ld pieces, %s:\n", checked.leaves, about(*checked.certificate)) +
+    std::string text = formatted("every claim is proven, in %ld pieces, %s:\n", checked.leaves, domain_name(*checked.certificate)) +
                        claims_text(checked, model, minimum);
     std::vector<std::string> uncovered;
     for (const auto& pair : checked.uncovered) uncovered.push_back(name_of_pair(pair, model));
@@ -167,18 +158,22 @@ void tell_checks(const CheckedCertificate& checked, const Model& model, const st
 int validate_certificate(const CertificateQuestion& question, const CommonOptions& common, Console& console) {
     const Result<std::optional<double>> minimum = read_minimum(question.minimum);
     if (!minimum) return console.input_errors(minimum.errors());
+    if (!question.source.empty() && !std::filesystem::exists(question.source))
+        return console.input_errors({{ErrorCode::file_not_found, question.source, "no such file"}});
     const std::string trajectory = question.trajectory.empty() ? clearance::certificate_trajectory(question.path) : question.trajectory;
     const auto stored = core::records::read_trajectory(trajectory);
     if (!stored) return console.input_errors(stored.errors());
-    CheckedCertificate checked = clearance::check_certificate_file(question.path, *stored, input_options(common));
+    CheckedCertificate checked = clearance::check_certificate_file(question.path, *stored, input_options(common), question.source);
     const bool accepted = checked.status == CertificateStatus::accepted;
     if (!accepted)
         for (Claim& claim : checked.claims) claim.minimum.reset();  // bounds that are not proven are not judged
     const std::optional<double> asked = accepted ? *minimum : std::nullopt;
     Json json{{"status", to_string(checked.status)}, {"kind", "certificate"}, {"trajectory", trajectory}};
-    json.update(checked_json(checked, stored->model, asked));
+    json.update(checked_json(checked, *stored, asked));
     std::string text = question.path + ": " + console.coloured(to_string(checked.status), accepted) + " for " + trajectory + "\n";
     for (const auto& fault : checked.faults) text += "  " + fault.where + ": " + fault.message + "\n";
+    if (checked.certificate)
+        text += domain_text(*checked.certificate, stored->trajectory, RoundedLengths(answers::unit_name(checked.certificate->length_unit)));
     if (accepted) text += accepted_text(checked, stored->model, asked);
     int code = accepted ? exit_done : exit_violated;
     if (const auto worst = worst_of(checked.claims, asked)) {

@@ -17,6 +17,12 @@ Result<RecordedShape> Shape::recorded(const std::vector<double>& /*values*/) con
     return Error{ErrorCode::unsupported, "shape", "a program makes the part: its vertices are no formulas of its dimensions"};
 }
 
+Result<RemadeShape> Shape::remade(const std::vector<double>& values) const {
+    Result<core::geometry::Mesh> made = mesh(values);
+    if (!made) return made.errors();
+    return RemadeShape{*std::move(made), {}};
+}
+
 std::vector<std::string> Shape::remarks(const std::vector<double>& /*values*/, const std::vector<bool>& /*wanted*/) const { return {}; }
 
 std::vector<double> drawn_values(const Shape& shape) {

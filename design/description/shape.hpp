@@ -31,6 +31,13 @@ struct RecordedShape {
     std::vector<std::array<int, 3>> vertices;  ///< of the mesh: nodes of x, y and z
 };
 
+/// A part within tolerances, and why it is none of those that the part as drawn stands for.
+struct RemadeShape {
+    core::geometry::Mesh mesh;  ///< with as many facets as the part as drawn
+    std::vector<std::string>
+        other_facets;  ///< where it has others if it is drawn by itself, a sentence each: "segments of `ball`: 21, not 20"
+};
+
 class Shape {
 public:
     virtual ~Shape() = default;
@@ -60,6 +67,9 @@ public:
     /// is made (numbers of facets, how solids cut each other) stays as it is there. Errors: those of at(); unsupported, where vertices are
     /// no formulas, as here.
     virtual Result<RecordedShape> recorded(const std::vector<double>& values) const;
+
+    /// The part at these values, compared with the one that is drawn by itself there. Errors: those of at().
+    virtual Result<RemadeShape> remade(const std::vector<double>& values) const;
 
     /// What is to be said of the part at these dimensions: how its derivatives were found, and how exact they are. A sentence each.
     /// @param wanted  As of differentiated().

@@ -75,7 +75,7 @@ Number3 DeviatingNumbers::vector(const std::string& pointer, const Vector3& valu
     return out;
 }
 
-std::vector<std::string> DeviatingNumbers::tolerances_of(const std::vector<Number>& numbers) const {
+std::set<int> DeviatingNumbers::deviations_of(const std::vector<Number>& numbers) const {
     std::set<int> found;
     std::vector<bool> reached(nodes().size(), false);
     for (const Number& x : numbers)
@@ -86,8 +86,12 @@ std::vector<std::string> DeviatingNumbers::tolerances_of(const std::vector<Numbe
         if (node.operation == core::expression::Operation::input) found.insert(node.operands[0]);
         for (int i = 0; i < core::expression::operand_count(node.operation); ++i) reached[node.operands[static_cast<size_t>(i)]] = true;
     }
+    return found;
+}
+
+std::vector<std::string> DeviatingNumbers::tolerances_of(const std::vector<Number>& numbers) const {
     std::vector<std::string> names;
-    for (const int k : found) names.push_back("`" + deviations_[k].of + "`");
+    for (const int k : deviations_of(numbers)) names.push_back("`" + deviations_[k].of + "`");
     return names;
 }
 

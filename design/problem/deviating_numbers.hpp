@@ -5,6 +5,7 @@
 
 #include <array>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,8 @@ public:
     /// Which tolerances these follow from: "`a` and `b` move", "`a` moves".
     std::string movers_of(const std::vector<Number>& numbers) const;
     std::string names_of(const std::vector<Number>& numbers) const;
+    /// The same by their numbers.
+    std::set<int> deviations_of(const std::vector<Number>& numbers) const;
 
     /// The node that holds a number; constants have one each.
     int node_of(const Number& x);

@@ -111,14 +111,16 @@ private:
         drawn_.insert(i);
     }
 
-    // The part at some ends of its tolerances, as it is made there and as the formulas have it.
+    // The part at the base and at some ends of its tolerances, as it is made there, as the formulas have it, and with the facets that it is
+    // made of as designed.
     void compare_parts() {
         for (const int i : drawn_) {
-            std::vector<int> matter;
-            for (int k = 0; k < count_of(out_.deviations); ++k)
-                if (reaches(i, k)) matter.push_back(k);
-            std::vector<std::vector<double>> ends;
+            const auto designed = remade(i, std::vector<double>(out_.deviations.size(), 0));
+            if (!designed) continue;
+            const std::set<int> found = numbers_.deviations_of(dimensions_of(i));
+            const std::vector<int> matter(found.begin(), found.end());
             const std::vector<double> base = core::clearance::base_deviations(out_);
+            std::vector<std::vector<double>> ends{base};
             for (const int k : matter)
                 for (const double end : {out_.deviations[k].lower, out_.deviations[k].upper}) {
                     ends.push_back(base);
@@ -132,26 +134,13 @@ private:
                 }
             }
             for (const auto& at : ends)
-                if (!compare(i, at)) break;
+                if (!compare(i, at, designed->other_facets)) break;
         }
     }
 
-    bool reaches(int body, int deviation) const {
-        std::vector<bool> reached(out_.nodes.size(), false);
-        for (size_t k = 0; k < reached.size(); ++k) {
-            const core::expression::Node& node = out_.nodes[k];
-            reached[k] = node.operation == core::expression::Operation::input && node.operands[0] == deviation;
-            for (int j = 0; j < core::expression::operand_count(node.operation); ++j)
-                if (reached[node.operands[static_cast<size_t>(j)]]) reached[k] = true;
-        }
-        const auto& vertices = out_.bodies[body].vertices;
-        return std::any_of(vertices.begin(), vertices.end(),
-                           [&](const NodePoint& v) { return reached[v[0]] || reached[v[1]] || reached[v[2]]; });
-    }
-
-    bool compare(int i, const std::vector<double>& deviations) {
+    // Nothing: an error told why.
+    std::optional<description::RemadeShape> remade(int i, const std::vector<double>& deviations) {
         const Shape& shape = *description::shape_of(design_, i);
-        const std::string& name = model_.bodies[i].name;
         VectorX d = Eigen::Map<const VectorX>(deviations.data(), static_cast<Eigen::Index>(deviations.size()));
         const VectorX p = description::with_deviations(design_, tolerances_, d);
         const std::vector<std::string> names = description::names_of(design_.parameters);
@@ -160,32 +149,39 @@ private:
             const std::string pointer = body_pointer(i) + "/shape/dimensions/" + core::scene::escaped(dimension.name);
             values.push_back(value_at(pointer, scene_.bodies[i].shape->dimensions.at(dimension.name), p, names));
         }
-        const Result<core::geometry::Mesh> mesh = shape.mesh(values);
-        if (!mesh) {
-            for (Error error : mesh.errors()) {
-                error.where = "body " + name + ": " + error.where;
-                error.message = "within the tolerances it cannot be made: " + error.message;
-                errors_.push_back(std::move(error));
-            }
-            return false;
+        Result<description::RemadeShape> made = shape.remade(values);
+        if (made) return *std::move(made);
+        for (Error error : made.errors()) {
+            error.where = "body " + model_.bodies[i].name + ": " + error.where;
+            error.message = "within the tolerances it cannot be made: " + error.message;
+            errors_.push_back(std::move(error));
         }
-        if (turns_about_its_middle(i) && centre_moves(i, *mesh)) {
+        return std::nullopt;
+    }
+
+    bool compare(int i, const std::vector<double>& deviations, const std::vector<std::string>& facets_as_designed) {
+        const auto there = remade(i, deviations);
+        if (!there) return false;
+        if (turns_about_its_middle(i) && centre_moves(i, there->mesh)) {
             errors_.push_back(
-                {ErrorCode::unsupported, "body " + name,
+                {ErrorCode::unsupported, "body " + model_.bodies[i].name,
                  "its prescribed motion turns it about its centre of mass, which tolerances move: give it a `reference_point`"});
             return false;
         }
         const core::clearance::MadeBodies made(out_, deviations);
         const Matrix3X& nominal = model_.bodies[i].mesh.vertices;
-        bool same = mesh->vertices.cols() == nominal.cols();
+        bool same = there->other_facets == facets_as_designed && there->mesh.vertices.cols() == nominal.cols();
         if (same) {
             const Matrix3X vertices = made.vertices(i, nominal).colwise() + model_.bodies[i].reference_point;
-            same = (vertices - mesh->vertices).cwiseAbs().maxCoeff() <= allowed_mismatch * nominal.cwiseAbs().maxCoeff();
+            same = (vertices - there->mesh.vertices).cwiseAbs().maxCoeff() <= allowed_mismatch * nominal.cwiseAbs().maxCoeff();
         }
         if (same) return true;
-        errors_.push_back({ErrorCode::unsupported, "body " + name,
-                           "its part is made of other facets at an end of its tolerances than as designed: what holds for the one is not "
-                           "known of the other; say the number of facets (`segments`), or make the tolerances smaller"});
+        const std::string which = there->other_facets.empty() ? "" : " (" + core::base::joined(there->other_facets) + ")";
+        errors_.push_back(
+            {ErrorCode::unsupported, "body " + model_.bodies[i].name,
+             "its part is made of other facets at an end of its tolerances than as designed" + which +
+                 ": what holds for the one is not known of the other; let a circle have another number of them (\"counts\": "
+                 "{\"segments\": 49} of the shape), of which no arc has just a whole number, or make the tolerances smaller"});
         return false;
     }
 

@@ -304,6 +304,10 @@ void bind_clearance(py::module_& module) {
         module, "Certificate", "The proof of clearances as data: over a path, as assembled, or over ranges of joints.")
         .def(py::init<>())
         .def_readonly("motion", &Certificate::motion)
+        .def_readwrite(
+            "source", &Certificate::source,
+            "The scene or design that it was made from, as seen from the folder that it is written to, so that `fettle validate` "
+            "can compare it with that; empty: none.")
         .def(
             "write", [](const Certificate& self, const Path& path) { raise_if_any(core::certificate::write_certificate(path, self)); },
             py::arg("path"))

@@ -98,6 +98,12 @@ Result<description::RecordedShape> FilePart::recorded(const std::vector<double>&
     return description::RecordedShape{std::move(drawn->recorded.nodes), std::move(drawn->recorded.vertices)};
 }
 
+Result<description::RemadeShape> FilePart::remade(const std::vector<double>& values) const {
+    Result<DrawnPart> drawn = file_.drawn(values, facets_, structure_, {.jacobian = false, .compare_counts = true});
+    if (!drawn) return drawn.errors();
+    return description::RemadeShape{std::move(drawn->mesh), std::move(drawn->other_counts)};
+}
+
 Result<core::geometry::Mesh> FilePart::mesh(const std::vector<double>& values) const {
     if (values == description::drawn_values(*this)) return drawn_;
     Result<DrawnPart> drawn = file_.drawn(values, facets_, structure_, {.jacobian = false});

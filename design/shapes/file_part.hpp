@@ -37,6 +37,7 @@ public:
     Result<description::ShapeInstance> at(const std::vector<double>& values) const override;
     Result<core::geometry::Mesh> mesh(const std::vector<double>& values) const override;
     Result<description::RecordedShape> recorded(const std::vector<double>& values) const override;
+    Result<description::RemadeShape> remade(const std::vector<double>& values) const override;
     /// Those of the part as drawn are kept while they hold; where a plane face has to be cut into other triangles, it is.
     bool has_fixed_triangles() const override { return false; }
     bool is_always_solid() const override { return true; }  ///< what is drawn is checked

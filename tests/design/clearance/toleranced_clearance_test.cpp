@@ -258,6 +258,25 @@ TEST_CASE("What cannot be proven within tolerances is refused by name", "[tolera
         const std::string more = replaced(design, R"("width": "+-0.1 mm")", R"("width": "+-12 mm")");
         CHECK_THAT(fault_of(scene, more, true), Catch::Contains("within the tolerances it cannot be made"));
     }
+    SECTION("parts that are made of other facets at an end") {
+        // 20 segments of the ball's arc turn by 150 degrees just: with a thinner neck it would have 21.
+        const char* const stud = R"json({"fettle_scene": 1, "units": "mm", "variables": {"neck": "2.5 mm"}, "bodies": [
+            {"name": "stud", "type": "static", "shape": {"part": "ball_stud", "dimensions": {"neck_radius": "= neck"}}},
+            {"name": "box", "type": "static", "position": [30, 0, 0],
+             "shape": {"part": "box", "dimensions": {"size_x": 2, "size_y": 2, "size_z": 2}}}]})json";
+        const auto design_of = [](const std::string& deviation) {
+            return R"json({"fettle_design": 1, "scene": "x.scene.json", "units": "mm",
+                "parameters": [{"name": "neck", "lower": 2, "upper": 3}], "objective": [{"type": "mass", "bodies": ["stud"]}],
+                "tolerances": {"neck": )json" +
+                   deviation + "}}";
+        };
+        CHECK_THAT(fault_of(stud, design_of(R"("+-0.01 mm")"), false),
+                   Catch::Contains("body stud: its part is made of other facets") && Catch::Contains("segments of `ball`: 21, not 20"));
+        CHECK(fault_of(stud, design_of(R"({"lower": 0, "upper": 0.01})"), false).empty());
+        CHECK_THAT(fault_of(stud, design_of(R"({"lower": -0.02, "upper": -0.01})"), false), Catch::Contains("21, not 20"));
+        const std::string other = replaced(stud, R"("part": "ball_stud",)", R"("part": "ball_stud", "counts": {"segments": 49},)");
+        CHECK(fault_of(other, design_of(R"("+-0.01 mm")"), false).empty());
+    }
     SECTION("more than eight that matter") {
         std::string many = R"("width": "+-0.1 mm")";
         for (const char* place : {"post/shape/dimensions/size_y", "post/shape/dimensions/size_z", "fore/shape/dimensions/size_z",
@@ -267,6 +286,29 @@ TEST_CASE("What cannot be proven within tolerances is refused by name", "[tolera
         const PairClearance found = certified(folder.subject(false), "fore", "post");
         CHECK(found.status == PairStatus::undecided);
         CHECK_THAT(found.reason, Catch::Contains("tolerances matter for the two; at most 8") && Catch::Contains("`post_at`"));
+    }
+}
+
+// Which went on for 4 million bounds for a gap of a nanometre.
+TEST_CASE("Within tolerances a search ends where the minimum is decided", "[toleranced]") {
+    Folder folder(two_bars, bars_design);
+    const Subject subject = folder.subject(true);
+    const auto judged = [&](double minimum, bool proof) {
+        Question question;
+        question.pairs.pairs = "fore:post";
+        question.pairs.minimum = minimum;
+        question.proof = proof;
+        return judge_clearances(subject, question)->pairs.front().least;
+    };
+    for (const bool proof : {false, true}) {
+        const PairClearance far = judged(1e-7, proof), near = judged(30e-3, proof);
+        INFO(far.lower << " " << far.upper << " " << far.bounds << ", " << near.lower << " " << near.upper << " " << near.bounds);
+        CHECK(far.status == PairStatus::clear);
+        CHECK(far.bounds < 50'000);
+        CHECK(far.upper - far.lower <= 0.2 * far.lower);
+        CHECK(near.status == PairStatus::violated);
+        CHECK(near.bounds < 50'000);
+        CHECK(near.complete);
     }
 }
 

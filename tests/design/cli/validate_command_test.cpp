@@ -179,4 +179,74 @@ TEST_CASE("validate: a part file is a part") {
     CHECK(run("validate --json " + file).json().at("kind") == "part");
 }
 
+// Of a certificate of each kind: what it is about, in text and JSON, and what it is worth without the file that it was made from.
+TEST_CASE("validate: a certificate says over what it is, and of which scene") {
+    Folder folder;
+    const std::string scene =
+        folder.write("arm.scene.json", R"json({"fettle_scene": 1, "units": "mm", "timestep": 0.1, "variables": {"far": "40 mm"},
+        "bodies": [
+          {"name": "arm", "density": 1000, "position": [10, 0, 0], "shape": {"part": "box", "dimensions": {"size_x": 20, "size_y": 4, "size_z": 4}}},
+          {"name": "post", "type": "static", "position": ["= far", 0, 0], "shape": {"part": "box", "dimensions": {"size_x": 4, "size_y": 4, "size_z": 4}}}],
+        "joints": [{"name": "elbow", "type": "revolute", "b": "arm", "point": [0, 0, 0], "axis": [0, 0, 1], "limits": [-50, 30]}],
+        "motors": [{"name": "drive", "joint": "elbow", "angle": {"times": [0, 0.5], "values": [0, 20]}}]})json");
+    const std::string design = folder.write("arm.design.json", R"json({"fettle_design": 1, "scene": "arm.scene.json", "units": "mm",
+        "parameters": [{"name": "far", "lower": 30, "upper": 50}], "objective": [{"type": "mass", "bodies": ["arm"]}],
+        "tolerances": {"far": {"lower": -0.25, "upper": 0.125}}})json");
+    struct Kind {
+        std::string name, file, options, over;
+        std::vector<std::string> lines;
+        bool states_its_domain;
+    };
+    const std::string elbow = "joints: elbow -50 to 30 deg\n", far = "tolerances: far -0.25 to +0.125 mm\n";
+    const std::vector<Kind> kinds{
+        {"assembled", scene, "", "as assembled", {}, false},
+        {"path", scene, "--kinematic --steps 5", "over the motion, for joints met at all times", {"motion: ", " steps, 0.5 s\n"}, false},
+        {"ranges", scene, "--ranges", "over all positions of the joints", {elbow}, true},
+        {"tolerances", design, "--tolerances", "as assembled, within tolerances", {far}, true},
+        {"both", design, "--tolerances --ranges", "over all positions of the joints, within tolerances", {far, elbow}, true},
+        {"prescribed",
+         design,
+         "--tolerances --kinematic --time 0.5",
+         "over the prescribed motion, within tolerances",
+         {far, "prescribed motion: 0.5 s from the start\n", "joints: elbow "},
+         true}};
+    for (const Kind& kind : kinds) {
+        INFO(kind.name);
+        const std::string file = folder.file(kind.name + ".certificate.json");
+        REQUIRE(run("clearance " + kind.file + " " + kind.options + " --pairs arm:post --minimum 1mm --certificate " + file).code == 0);
+        const Answer text = run("validate " + file + " --minimum 1mm"), answer = run("validate " + file + " --minimum 1mm --json");
+        CHECK(text.code == 0);
+        CHECK(text.says(kind.over));
+        for (const std::string& line : kind.lines) CHECK(text.says(line));
+        const Json domain = answer.json()["domain"];
+        CHECK(domain["over"] == kind.over);
+        CHECK(answer.json()["source"] == (kind.file == scene ? "arm.scene.json" : "arm.design.json"));
+        if (kind.name == "both") {
+            CHECK(domain["tolerances"] == Json::array({{{"of", "far"}, {"lower", -0.25e-3}, {"upper", 0.125e-3}}}));
+            CHECK(domain["joints"][0]["joint"] == "elbow");
+            CHECK(domain["joints"][0]["low"].get<double>() == Approx(-50 * M_PI / 180));
+        }
+        // Without its source it is a proof of nothing but what it states itself.
+        Json unbound = Json::parse(contents(file));
+        unbound.erase("source");
+        const std::string path = " --trajectory " + folder.file(kind.name + ".trajectory.json") + " --minimum 1mm",
+                          bare = folder.write("bare.certificate.json", unbound.dump()) + path;
+        const Answer alone = run("validate " + bare), of_scene = run("validate " + bare + " --source " + kind.file + " --json");
+        CHECK(alone.code == (kind.states_its_domain ? 2 : 0));
+        CHECK(alone.says("accepted"));
+        CHECK(alone.says(kind.states_its_domain ? "of no scene or design: --source FILE" : "it names no scene or design"));
+        CHECK(run("validate " + bare + " --json").json()["source"].is_null());
+        CHECK(of_scene.code == 0);
+        CHECK(of_scene.json()["source"] == kind.file);
+        unbound["source"] = "gone.scene.json";  // nor of what is not there
+        CHECK(run("validate " + folder.write("bare.certificate.json", unbound.dump()) + path).code == (kind.states_its_domain ? 2 : 0));
+    }
+    // What the scene says now is not what was proven.
+    folder.write("arm.scene.json", fettle::tests::support::replaced(contents(scene), "[-50, 30]", "[-50, 31]"));
+    CHECK(run("validate " + folder.file("ranges.certificate.json")).says("stale: the joints of arm.scene.json"));
+    CHECK(run("validate " + folder.file("both.certificate.json")).says("stale: the tolerances of arm.design.json"));
+    CHECK(run("validate " + folder.file("ranges.certificate.json") + " --source nowhere.json").code == 3);
+    CHECK(run("validate " + scene + " --source " + scene, true).says("--source: is for a certificate"));
+}
+
 }  // namespace fettle::design::cli::validate_command_test

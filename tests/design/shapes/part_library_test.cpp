@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include "fettle/core/parts/solid_booleans.hpp"
@@ -113,6 +114,42 @@ PartFile part(const std::string& name, const Counts& counts = {}) {
     for (const Error& error : file.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
     REQUIRE(file);
     return *file;
+}
+
+// Of the part alone at these values, and of the part as drawn that is remade there: the same facets? Nothing: neither can be made.
+struct Remade {
+    bool is_same = false;
+    std::vector<std::string> other_facets;
+};
+std::optional<Remade> remade(const FilePart& shape, const Values& values) {
+    std::map<std::string, double> given;
+    for (std::size_t k = 0; k < values.size(); ++k) given[shape.dimensions()[k].name] = values[k];
+    const auto alone = FilePart::create(shape.part(), given, shape.options());
+    const auto kept = shape.remade(values);
+    if (!alone || !kept) {
+        CHECK(alone.has_value() == kept.has_value());
+        return std::nullopt;
+    }
+    const Matrix3X& x = description::drawn_mesh(**alone)->vertices;
+    const Matrix3X& y = kept->mesh.vertices;
+    return Remade{x.cols() == y.cols() && (x - y).cwiseAbs().maxCoeff() <= 1e-9 * x.cwiseAbs().maxCoeff(), kept->other_facets};
+}
+
+// Each dimension at both ends of its tolerance, and all of them at once.
+void check_remade(const std::string& part, const std::vector<double>& shares) {
+    const auto shape = *FilePart::create(part);
+    const Values drawn = description::drawn_values(*shape);
+    for (const double share : shares)
+        for (std::size_t k = 0; k <= drawn.size(); ++k) {
+            Values values = drawn;
+            for (std::size_t i = 0; i < drawn.size(); ++i)
+                if (i == k || (k == drawn.size() && (i % 2 == 0) == (share > 0))) values[i] += share * (drawn[i] != 0 ? drawn[i] : 1e-3);
+            INFO(part << ", " << (k < drawn.size() ? shape->dimensions()[k].name : "some") << " at " << 1 + share);
+            const auto found = remade(*shape, values);
+            if (!found) continue;
+            for (const std::string& other : found->other_facets) UNSCOPED_INFO(other);
+            CHECK(found->is_same == found->other_facets.empty());
+        }
 }
 
 }  // namespace
@@ -573,6 +610,25 @@ TEST_CASE("part library: what is asked for by a wrong name") {
     REQUIRE(at);
     CHECK(at->mesh.vertices == (*washer)->mesh(values)->vertices);
     CHECK(at->jacobian.size() == 4);
+}
+
+// The ball's arc is 20 segments just: a neck that is thinner makes it 21.
+TEST_CASE("library: a part within tolerances is told of the facets that it would have by itself") {
+    const auto stud = *FilePart::create("ball_stud");
+    Values values = description::drawn_values(*stud);
+    CHECK(stud->remade(values)->other_facets.empty());
+    values[1] = 2.4875e-3;
+    CHECK(stud->remade(values)->other_facets == std::vector<std::string>{"segments of `ball`: 21, not 20"});
+    CHECK(stud->mesh(values)->vertices.cols() == stud->mesh(description::drawn_values(*stud))->vertices.cols());
+    for (const LibraryPart& part : part_library())
+        if (can_be_drawn(std::string(part.name)) && !takes_long(std::string(part.name)))
+            check_remade(std::string(part.name), {-0.01, 0.01});
+}
+
+TEST_CASE("library: of every part, at both ends of narrow and wide tolerances", "[slow]") {
+    for (const LibraryPart& part : part_library())
+        if (can_be_drawn(std::string(part.name)))
+            check_remade(std::string(part.name), {-0.08, -0.02, -1e-3, -1e-6, 1e-6, 1e-3, 0.02, 0.08});
 }
 
 }  // namespace fettle::design::shapes::part_library_test
