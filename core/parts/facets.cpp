@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "fettle/core/parts/point.hpp"
+
 namespace fettle::core::parts {
 namespace {
 

@@ -172,7 +172,7 @@ TEST_CASE("edges shorter than the tolerance become points, where a step cuts out
                     std::vector<Point2> points = corners;
                     const Vector2 at = value(corners[corner]), along = value(corners[(corner + 1) % 4]) - at;
                     for (int k = tiny; k > 0; --k)
-                        points.insert(points.begin() + static_cast<std::ptrdiff_t>(corner) + 1, constant(at + k * e * along));
+                        points.insert(points.begin() + static_cast<std::ptrdiff_t>(corner) + 1, constant(Vector2(at + k * e * along)));
                     std::rotate(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(start % points.size()), points.end());
                     const auto part = draw(two(points, swapped), {1});
                     INFO("corner " << corner << ", " << tiny << " edges, from " << start << told(part.errors()));
