@@ -176,6 +176,7 @@ Errors StepSolver::unsettled(const core::stepper::Trajectory& trajectory, int t)
 }
 
 Errors StepSolver::factorise(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
+    if (!step.multipliers.allFinite()) return unsolved(trajectory, t);
     if (Errors errors = check_rows(trajectory, t, step); !errors.empty()) return errors;
     if (Errors errors = check_balance(trajectory, t, step); !errors.empty()) return errors;
     if (Errors errors = check_areas(trajectory, t, step); !errors.empty()) return errors;

@@ -423,7 +423,22 @@ private:
         open_.pop_back();
         base::Result<Formula> formula = parse_formula(text, scope_);
         for (const base::Error& error : formula.errors()) fail(name, error.message, error.code);
+        if (formula && is_too_long(*formula)) {
+            if (!is_full_)
+                errors_.push_back({ErrorCode::out_of_range, name,
+                                   "written out over what they follow from, the variables up to this one are more than 1000000 operations "
+                                   "long: let fewer follow from one another"});
+            is_full_ = true;
+            formula = constant_formula(1, formula->dimension);
+        }
         if (formula) scope_.names.push_back(define_(name, std::move(formula).value()));
+    }
+
+    // A chain of n variables is n^2 / 2 operations long.
+    bool is_too_long(const Formula& formula) {
+        constexpr std::size_t most = 1'000'000;
+        length_ += formula.nodes.size();
+        return length_ > most;
     }
 
     void fail(const std::string& name, const std::string& message, ErrorCode code = ErrorCode::inconsistent) {
@@ -436,6 +451,8 @@ private:
     const std::function<Scope::Name(const std::string&, Formula)>& define_;
     std::set<std::string> done_;
     std::vector<std::string> open_;
+    std::size_t length_ = 0;
+    bool is_full_ = false;
     base::Errors errors_;
 };
 

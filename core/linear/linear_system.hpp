@@ -27,11 +27,11 @@ public:
 
     const FreeDofs& dofs() const;
 
-    /// For Newton's method: is H positive definite (where C y = 0)? If not, solve must not be called, but with rows, where is_usable() says
-    /// whether it may. The symbolic factor is kept while the same bodies are coupled.
+    /// For Newton's method: is H positive definite (where C y = 0)? If not, there is nothing to solve with, but with rows, where
+    /// is_usable() says whether there is. The symbolic factor is kept while the same bodies are coupled.
     bool factorise(const BlockHessian& hessian, const RowJacobian& rows = {});
 
-    /// For derivatives: whatever is invertible. @return false: singular to rounding; solve must not be called
+    /// For derivatives: whatever is invertible. @return false: singular to rounding, or not finite; there is nothing to solve with
     bool factorise_any(const BlockHessian& hessian, const RowJacobian& rows = {});
 
     bool is_usable() const;
@@ -43,6 +43,7 @@ public:
 
     /// Once through the factor, all right-hand sides in one pass: for steps and corrections that are checked by what they come to.
     /// @param c  as many columns as r; without rows nothing
+    /// @return NaNs where is_usable() is false: the matrix of what a scene says may be anything
     Solution solve(const MatrixX& r, const MatrixX& c = {}) const;
 
     /// With refinement by the matrix that was factorised: once without rows, which is enough for how stiff contact makes H; with rows,

@@ -85,8 +85,17 @@ const std::vector<ProfileReader::Verb>& ProfileReader::verbs() {
     return all;
 }
 
-std::optional<Error> ProfileReader::size_fault(const Profile& profile, const std::string& where) {
-    return size_of(profile) > most_segments ? std::optional(too_many(where, size_of(profile), most_segments)) : std::nullopt;
+std::optional<Error> ProfileReader::fault_of(const Profile& profile, const std::string& where) {
+    if (size_of(profile) > most_segments) return too_many(where, size_of(profile), most_segments);
+    for (const Loop& loop : profile.loops)
+        for (const parts::Segment& segment : loop.segments)
+            for (const double x : value(parts::end_of(segment.curve)))
+                if (!base::is_usable_number(x)) return out_of_reach(segment.feature, where);
+    return std::nullopt;
+}
+
+std::optional<Error> ProfileReader::fault_of(const std::vector<Profile>& profiles, const std::string& where) {
+    return size_of(profiles) > most_segments ? std::optional(too_many(where, size_of(profiles), most_segments)) : std::nullopt;
 }
 
 ProfilesMaker ProfileReader::repeated(const JsonNode& node, const std::string& name) {

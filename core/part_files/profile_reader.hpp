@@ -43,7 +43,8 @@ private:
     friend ShapeReader;
 
     static const std::vector<Verb>& verbs();
-    static std::optional<Error> size_fault(const parts::Profile& profile, const std::string& where);
+    static std::optional<Error> fault_of(const parts::Profile& profile, const std::string& where);
+    static std::optional<Error> fault_of(const std::vector<parts::Profile>& profiles, const std::string& where);
     ProfilesMaker repeated(const files::JsonNode& node, const std::string& name);
 
     ProfileMaker circle(const files::JsonNode& node, const std::string& name);

@@ -6,6 +6,13 @@ namespace fettle::core::part_files {
 using base::ErrorCode;
 using files::JsonNode;
 
+Error out_of_reach(const std::string& feature, const std::string& where) {
+    return {ErrorCode::not_finite, where,
+            (feature.empty() ? "this" : "`" + feature + "`") +
+                " has points that are no finite numbers, or farther away than 1e30 m: a dimension of it is too large, or too small to "
+                "divide by"};
+}
+
 std::optional<std::string> verb_of(const JsonNode& node, const std::vector<std::string_view>& known, std::string_view what) {
     std::vector<std::string> found;
     for (const std::string_view verb : known)

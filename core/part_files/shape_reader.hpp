@@ -22,13 +22,17 @@ namespace fettle::core::part_files {
 /// Shapes within one another, names looked through, that are drawn; more are a fault.
 inline constexpr int deepest_shape = 200;
 
+/// Of points that are not finite, or farther away than any number of a file.
+Error out_of_reach(const std::string& feature, const std::string& where);
+
 /// The verb of a shape: which of `known` its object has as a key. Fault, and nothing: none, with what was probably meant; several.
 std::optional<std::string> verb_of(const files::JsonNode& node, const std::vector<std::string_view>& known, std::string_view what);
 
 /// @tparam Reader  derives from this, and has
 ///     static const std::vector<Verb>& verbs();
 ///     static Result<Shape> drawn_once(const std::string& name, const Maker& maker, Sheet& sheet);     // of a shape with a name
-///     static std::optional<Error> size_fault(const Shape& shape, const std::string& where);
+///     static std::optional<Error> fault_of(const Shape& shape, const std::string& where);                // too large, not finite
+///     static std::optional<Error> fault_of(const std::vector<Shape>& shapes, const std::string& where);  // before they become one
 ///     ListMaker repeated(const files::JsonNode& node, const std::string& name);                         // the copies of a `repeat`
 template <class Reader, class Shape>
 class ShapeReader {
@@ -55,7 +59,7 @@ public:
             Result<Shape> made = maker(sheet);
             --sheet.depth;
             if (made)
-                if (std::optional<Error> fault = Reader::size_fault(*made, where)) return *std::move(fault);
+                if (std::optional<Error> fault = Reader::fault_of(*made, where)) return *std::move(fault);
             return located(std::move(made), where);
         };
     }
@@ -81,12 +85,13 @@ protected:
             for (const files::JsonNode& element : node.elements()) makers.push_back(read_copies(element, name));
         else if (node.exists())
             makers.push_back(read_copies(node, name));
-        return [makers](Sheet& sheet) -> Result<std::vector<Shape>> {
+        return [makers, where = node.where()](Sheet& sheet) -> Result<std::vector<Shape>> {
             std::vector<Shape> out;
             for (const ListMaker& maker : makers) {
                 Result<std::vector<Shape>> made = maker(sheet);
                 if (!made) return made.errors();
                 out.insert(out.end(), made->begin(), made->end());
+                if (std::optional<Error> fault = Reader::fault_of(out, where)) return *std::move(fault);
             }
             return out;
         };

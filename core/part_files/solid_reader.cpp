@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "fettle/core/base/limits.hpp"
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/parts/helix.hpp"
 #include "fettle/core/parts/revolve.hpp"
 #include "fettle/core/parts/solid_booleans.hpp"
@@ -50,9 +51,26 @@ double vertex_count(const Profile& profile, const parts::Facets& facets) {
     return out;
 }
 
-std::optional<Error> too_fine(const Profile& profile, double layers, const Sheet& sheet, const std::string& where) {
-    if (vertex_count(profile, sheet.drawing.facets) * layers <= most_facets) return std::nullopt;
+std::optional<Error> too_fine(double facets, const std::string& where) {
+    if (facets <= most_facets) return std::nullopt;
     return Error{ErrorCode::out_of_range, where, "this would have more than 500000 facets: take a larger chord, or fewer segments"};
+}
+
+std::optional<Error> too_fine(const Profile& profile, double layers, const Sheet& sheet, const std::string& where) {
+    return too_fine(vertex_count(profile, sheet.drawing.facets) * layers, where);
+}
+
+double circle_segments(const Sheet& sheet, const Number& radius) {
+    return parts::segments_of(sheet.drawing.facets, radius.value, 2 * std::numbers::pi);
+}
+
+Result<parts::Point3> direction_of(const PartPoint3& axis, const Sheet& sheet, const std::string& where) {
+    const parts::Point3 out = axis.at(sheet);
+    const double length = value(out).norm();
+    if (length > 1e-100 && length < 1e100) return out;
+    return Error{
+        ErrorCode::out_of_range, where,
+        "an axis has a direction, of any length that is not nearly 0 or infinite; found a length of " + base::formatted("%.3g", length)};
 }
 
 double whole_turn_segments(const Sheet& sheet, const Profile& profile) {
@@ -102,6 +120,18 @@ const std::vector<SolidReader::Verb>& SolidReader::verbs() {
     return all;
 }
 
+std::optional<Error> SolidReader::fault_of(const Solid& solid, const std::string& where) {
+    for (const parts::Point3& p : solid.vertices)
+        for (const double x : value(p))
+            if (!base::is_usable_number(x)) return out_of_reach({}, where);
+    return std::nullopt;
+}
+
+std::optional<Error> SolidReader::fault_of(const std::vector<Solid>& solids, const std::string& where) {
+    double facets = 0;
+    for (const Solid& solid : solids) facets += static_cast<double>(solid.triangles.size());
+    return too_fine(facets, where);
+}
 Result<Solid> SolidReader::drawn_once(const std::string& name, const SolidMaker& maker, Sheet& sheet) {
     const std::pair key(name, sheet.drawing.facets.lean);
     const auto known = sheet.solids.find(key);
@@ -207,22 +237,29 @@ SolidMaker SolidReader::helix(const JsonNode& node, const std::string& name) {
 
 SolidMaker SolidReader::sphere(const JsonNode& node, const std::string& name) {
     const PartNumber radius = numbers_.length(node["sphere"]);
-    return [=](Sheet& sheet) { return parts::sphere(sheet.drawing, radius.at(sheet), name); };
+    return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
+        const Number r = radius.at(sheet);
+        const double segments = circle_segments(sheet, r);
+        if (const auto error = too_fine(segments * segments, where)) return *error;
+        return parts::sphere(sheet.drawing, r, name);
+    };
 }
 
 SolidMaker SolidReader::cone(const JsonNode& node, const std::string& name) {
     const PartPoint radii = read_point(node["cone"], numbers_);
     const PartNumber height = numbers_.length(node.require("height"));
-    return [=](Sheet& sheet) {
+    return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
         const parts::Point2 r = radii.at(sheet);
+        if (const auto error = too_fine(4.0 * circle_segments(sheet, r.x.value > r.y.value ? r.x : r.y), where)) return *error;
         return parts::cone(sheet.drawing, r.x, r.y, height.at(sheet), name);
     };
 }
 
 SolidMaker SolidReader::torus(const JsonNode& node, const std::string& name) {
     const PartPoint radii = read_point(node["torus"], numbers_);
-    return [=](Sheet& sheet) {
+    return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
         const parts::Point2 r = radii.at(sheet);
+        if (const auto error = too_fine(2 * circle_segments(sheet, r.x + r.y) * circle_segments(sheet, r.y), where)) return *error;
         return parts::torus(sheet.drawing, r.x, r.y, name);
     };
 }
@@ -246,8 +283,10 @@ SolidsMaker SolidReader::repeated(const JsonNode& node, const std::string& name)
         if (static_cast<double>(made->triangles.size()) * count > most_facets)
             return Error{ErrorCode::out_of_range, where, "these copies would have more than 500000 facets in all"};
         if (is_linear) return parts::linear_copies(*made, count, step.at(sheet));
-        if (every) return parts::polar_copies(*made, count, every->at(sheet), axis.at(sheet), about.at(sheet));
-        return parts::polar_copies(*made, count, axis.at(sheet), about.at(sheet));
+        const auto direction = direction_of(axis, sheet, where);
+        if (!direction) return direction.errors();
+        if (every) return parts::polar_copies(*made, count, every->at(sheet), *direction, about.at(sheet));
+        return parts::polar_copies(*made, count, *direction, about.at(sheet));
     };
 }
 
@@ -255,18 +294,14 @@ SolidMaker SolidReader::subtract(const JsonNode& node, const std::string& name) 
     const SolidsMaker list = read_list(node["subtract"], name + " cut");
     const SolidMaker from = read(node.require("from"), name);
     return [=](Sheet& sheet) -> Result<Solid> {
-        Result<Solid> out = from(sheet);
-        if (!out) return out;
+        const Result<Solid> whole = from(sheet);
+        if (!whole) return whole;
         const parts::Lean lean = sheet.drawing.facets.lean;
         sheet.drawing.facets.lean = parts::opposite(lean);
         const Result<std::vector<Solid>> made = list(sheet);
         sheet.drawing.facets.lean = lean;
         if (!made) return made.errors();
-        for (const Solid& solid : *made) {
-            out = parts::difference(sheet.drawing, *out, solid);
-            if (!out) return out;
-        }
-        return out;
+        return parts::difference(sheet.drawing, *whole, *made);
     };
 }
 
@@ -276,7 +311,7 @@ SolidMaker SolidReader::unite(const JsonNode& node, const std::string& name) {
         const Result<std::vector<Solid>> made = list(sheet);
         if (!made) return made.errors();
         if (made->empty()) return Error{ErrorCode::inconsistent, where, "there is nothing here to unite"};
-        return made->size() == 1 ? Result<Solid>(made->front()) : parts::united(sheet.drawing, *made);
+        return parts::united(sheet.drawing, *made);
     };
 }
 
@@ -286,9 +321,7 @@ SolidMaker SolidReader::intersect(const JsonNode& node, const std::string& name)
         const Result<std::vector<Solid>> made = list(sheet);
         if (!made) return made.errors();
         if (made->empty()) return Error{ErrorCode::inconsistent, where, "there is nothing here to intersect"};
-        Result<Solid> out = made->front();
-        for (std::size_t k = 1; k < made->size() && out; ++k) out = parts::intersection(sheet.drawing, *out, (*made)[k]);
-        return out;
+        return parts::intersection(sheet.drawing, *made);
     };
 }
 
@@ -310,9 +343,8 @@ SolidMaker SolidReader::turn(const JsonNode& node, const std::string& name) {
     return [=, where = node.where()](Sheet& sheet) -> Result<Solid> {
         const Result<Solid> made = what(sheet);
         if (!made) return made;
-        const parts::Point3 direction = axis.at(sheet);
-        if (!(value(direction).norm() > 0)) return Error{ErrorCode::out_of_range, where, "an axis has a direction; found [0, 0, 0]"};
-        return parts::turned(*made, direction, by.at(sheet), about.at(sheet));
+        const auto direction = direction_of(axis, sheet, where);
+        return direction ? parts::turned(*made, *direction, by.at(sheet), about.at(sheet)) : Result<Solid>(direction.errors());
     };
 }
 
@@ -332,7 +364,7 @@ SolidMaker SolidReader::repeat(const JsonNode& node, const std::string& name) {
         const Result<std::vector<Solid>> made = copies(sheet);
         if (!made) return made.errors();
         if (made->empty()) return Error{ErrorCode::inconsistent, where, "a part of no copies is nothing"};
-        return made->size() == 1 ? Result<Solid>(made->front()) : parts::united(sheet.drawing, *made);
+        return parts::united(sheet.drawing, *made);
     };
 }
 

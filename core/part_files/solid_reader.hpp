@@ -39,7 +39,8 @@ private:
 
     static const std::vector<Verb>& verbs();
     static Result<parts::Solid> drawn_once(const std::string& name, const SolidMaker& maker, Sheet& sheet);
-    static std::optional<Error> size_fault(const parts::Solid&, const std::string&) { return std::nullopt; }  // each verb looks beforehand
+    static std::optional<Error> fault_of(const parts::Solid& solid, const std::string& where);
+    static std::optional<Error> fault_of(const std::vector<parts::Solid>& solids, const std::string& where);
     SolidsMaker repeated(const files::JsonNode& node, const std::string& name);
     Ends read_ends(const files::JsonNode& node);
 

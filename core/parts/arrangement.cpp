@@ -22,11 +22,18 @@ public:
 
     int find_or_add(const Point2& p) {
         const Vector2 v = value(p);
-        const auto x = static_cast<long long>(std::floor(v.x() / cell_)), y = static_cast<long long>(std::floor(v.y() / cell_));
+        const auto [known, is_new] = exactly_.emplace(std::pair(v.x(), v.y()), -1);  // the same point, always the same node
+        if (is_new) known->second = found_near(p, v);
+        return known->second;
+    }
+
+private:
+    int found_near(const Point2& p, const Vector2& v) {
+        const double x = std::floor(v.x() / cell_), y = std::floor(v.y() / cell_);  // too many for integers, far from the origin
         int best = -1;
         double least = tolerance_;
-        for (long long i = x - 1; i <= x + 1; ++i) {
-            for (long long j = y - 1; j <= y + 1; ++j) {
+        for (const double i : {x - 1, x, x + 1}) {
+            for (const double j : {y - 1, y, y + 1}) {
                 const auto found = cells_.find({i, j});
                 if (found == cells_.end()) continue;
                 for (const int node : found->second) {
@@ -43,10 +50,10 @@ public:
         return count_of(nodes_) - 1;
     }
 
-private:
     std::vector<Point2>& nodes_;
     double tolerance_, cell_;
-    std::map<std::pair<long long, long long>, std::vector<int>> cells_;
+    std::map<std::pair<double, double>, int> exactly_;
+    std::map<std::pair<double, double>, std::vector<int>> cells_;
 };
 
 struct NodeCut {
@@ -103,6 +110,7 @@ Arrangement arranged(std::vector<ArrangedCurve> curves, double tolerance, bool w
             const Point2& p = u == 0 ? start_of(curve) : end_of(curve);
             cuts[k].push_back({{u, u, p}, index.find_or_add(p)});
         }
+        out.starts.push_back(cuts[k].front().node);
     }
     std::vector<Box2> boxes;
     for (const ArrangedCurve& curve : out.curves) {

@@ -28,7 +28,8 @@ struct Piece {
 struct Arrangement {
     std::vector<ArrangedCurve> curves;
     std::vector<Point2> nodes;
-    std::vector<Piece> pieces;  ///< by curve, each along it
+    std::vector<int> starts;    ///< per curve: the node that it starts at
+    std::vector<Piece> pieces;  ///< by curve, each along it; of one that is shorter than the tolerance there is none
     double tolerance = 0;       ///< what is nearer than this is the same [m]
 
     Curve curve_of(const Piece& piece) const;

@@ -24,6 +24,11 @@ struct Overloaded : Visitors... {
 template <class... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
+// Of what is counted; the least where that is no number.
+int whole_number(double count, int least) {
+    return static_cast<int>(std::min<double>(most_facets, std::max<double>(least, std::ceil(count))));
+}
+
 double cross_of(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 double sweep_value(const Arc& arc) {
@@ -338,7 +343,7 @@ double turning(const Curve& curve) {
 
 int sample_count(const Curve& curve) {
     if (std::holds_alternative<Line>(curve)) return 1;
-    return std::max(is_general(curve) ? 12 : 3, static_cast<int>(std::ceil(turning(curve) * 36 / full_turn)));
+    return whole_number(turning(curve) * 36 / full_turn, is_general(curve) ? 12 : 3);
 }
 
 double sampled_length(const Curve& curve) {
@@ -483,15 +488,15 @@ Curve placed(const Curve& curve, const Placement2& placement) {
 int facet_count(const Curve& curve, const Facets& facets) {
     if (std::holds_alternative<Line>(curve)) return 1;
     if (const auto* arc = std::get_if<Arc>(&curve)) return segments_of(facets, arc->radius.value, sweep_value(*arc));
-    if (!(facets.chord > 0)) return std::max(1, static_cast<int>(std::ceil(facets.segments * turning(curve) / full_turn - 1e-6)));
+    if (!(facets.chord > 0)) return whole_number(facets.segments * turning(curve) / full_turn - 1e-6, 1);
     bool proven = true;
     const double least = std::sqrt(bend_over(curve, 0, 1, proven) / (8 * facets.chord));
-    int count = std::clamp(static_cast<int>(std::ceil(least - 1e-9)), 1, most_facets);
+    int count = whole_number(least - 1e-9, 1);
     // More where the proven bound is not yet within the chord; the bound falls with the square of the count.
     for (int k = 0; k < 3; ++k) {
         const auto deviation = law_deviation(curve, count);
         if (!deviation || deviation->distance <= facets.chord) break;
-        count = std::clamp(static_cast<int>(std::ceil(count * 1.02 * std::sqrt(deviation->distance / facets.chord))), count, most_facets);
+        count = whole_number(count * 1.02 * std::sqrt(deviation->distance / facets.chord), count);
     }
     return count;
 }

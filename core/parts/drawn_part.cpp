@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "fettle/core/base/units.hpp"
+#include "fettle/core/parts/fault_words.hpp"
 #include "fettle/core/solids/mesh_validity.hpp"
 
 namespace fettle::core::parts {
@@ -103,9 +103,7 @@ Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::s
         if (faults.empty())
             for (const auto& [a, b] : crossing()) {
                 const Vector3 p = part.mesh.vertices.col(part.mesh.triangles[a][0]);
-                faults.push_back({ErrorCode::mesh_invalid, name,
-                                  features_of(solid, a, b) + " near (" + format_length(p.x(), "mm", 4) + ", " +
-                                      format_length(p.y(), "mm", 4) + ", " + format_length(p.z(), "mm", 4) + ")"});
+                faults.push_back({ErrorCode::mesh_invalid, name, features_of(solid, a, b) + " near " + place(p)});
                 if (faults.size() > 1 && faults.back().message.substr(0, faults.back().message.find(" near")) ==
                                              faults[faults.size() - 2].message.substr(0, faults[faults.size() - 2].message.find(" near")))
                     faults.pop_back();

@@ -134,20 +134,14 @@ struct Step {
 
 // The rim of one of the two, from the arrangement's nodes.
 Rim cut_rim(const Arrangement& arrangement, const std::vector<Loop>& loops, std::size_t first_source, const std::vector<int>& vertex) {
-    std::vector<std::vector<int>> chains(arrangement.curves.size());
-    for (const Piece& piece : arrangement.pieces) {
-        auto& chain = chains[piece.source];
-        if (chain.empty()) chain.push_back(vertex[piece.from]);
-        chain.push_back(vertex[piece.to]);
-    }
+    std::vector<std::vector<int>> chains;  // of an edge shorter than the tolerance: a point
+    for (const int start : arrangement.starts) chains.push_back({vertex[start]});
+    for (const Piece& piece : arrangement.pieces) chains[piece.source].push_back(vertex[piece.to]);
     Rim rim;
     std::size_t source = first_source;
     for (const Loop& loop : loops) {
         std::vector<std::vector<int>> edges;
         for (std::size_t k = 0; k < loop.segments.size(); ++k) edges.push_back(chains[source++]);
-        // An edge shorter than the tolerance has become a point: that of its neighbours.
-        for (std::size_t k = 0; k < edges.size(); ++k)
-            if (edges[k].empty()) edges[k].push_back(edges[(k + edges.size() - 1) % edges.size()].back());
         rim.push_back(std::move(edges));
     }
     return rim;
@@ -207,6 +201,11 @@ Result<Step> add_step(Drawing& drawing, const Level& below, const Level& above, 
     if (bounding(arrangement, a, b, Combination::intersect).empty())
         return Error{ErrorCode::inconsistent, name_above,
                      quoted_profile(name_above) + " does not stand on " + quoted_profile(name_below) + ", the layer below it"};
+    double moved = 0;  // corners that became one
+    for (std::size_t k = 0; k < arrangement.curves.size(); ++k)
+        moved = std::max(moved,
+                         (value(start_of(arrangement.curves[k].segment.curve)) - value(arrangement.nodes[arrangement.starts[k]])).norm());
+    builder.add_rounding(moved);
     std::vector<int> vertex;
     for (const Point2& p : arrangement.nodes) vertex.push_back(builder.add_vertex({p.x, p.y, below.z}));
     if (auto errors = add_step_face(drawing, arrangement, bounding(arrangement, a, b, Combination::subtract), vertex, below.z, true,

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "fettle/core/parts/point.hpp"
+
 namespace fettle::core::parts {
 namespace {
 
@@ -20,11 +22,11 @@ Lean opposite(Lean lean) {
 int segments_of(const Facets& facets, double radius, double angle) {
     angle = std::abs(angle);
     const bool whole = angle >= full_turn * (1 - 1e-12);
-    if (!(facets.chord > 0)) return std::max(whole ? 3 : 1, static_cast<int>(std::ceil(facets.segments * angle / full_turn - 1e-9)));
+    const auto counted = [](double count) { return static_cast<int>(std::min(most_segments, std::max(1.0, std::ceil(count - 1e-9)))); };
+    if (!(facets.chord > 0)) return std::max(whole ? 3 : 1, counted(facets.segments * angle / full_turn));
     // r (1 / cos(half) - 1) <= chord, the larger of the two deviations; a flat turns by at most 120 degrees.
-    const double half = std::min(std::acos(radius / (radius + facets.chord)), std::numbers::pi / 3);
-    const double count = std::clamp(std::ceil(angle / (2 * half) - 1e-9), 1.0, most_segments);
-    const int least = static_cast<int>(count);
+    const double half = std::min(std::numbers::pi / 3, std::acos(radius / (radius + facets.chord)));
+    const int least = counted(angle / (2 * half));
     return whole ? std::max(4, (least + 3) / 4 * 4) : least;
 }
 

@@ -18,5 +18,8 @@ inline std::string quoted_profile(const std::string& feature) { return quoted_or
 
 inline std::string millimetres(double metres) { return base::format_length(metres, "mm", 4); }
 inline std::string place(const Vector2& p) { return "(" + millimetres(p.x()) + ", " + millimetres(p.y()) + ")"; }
+inline std::string place(const Vector3& p) {
+    return "(" + millimetres(p.x()) + ", " + millimetres(p.y()) + ", " + millimetres(p.z()) + ")";
+}
 
 }  // namespace fettle::core::parts

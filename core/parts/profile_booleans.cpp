@@ -47,7 +47,8 @@ std::vector<ArrangedCurve> curves_beside(const Profile& profile, const Number& d
             whole[k] = beside(segment.curve, distance);
             if (!whole[k]) continue;
             // A curve that bends more than the distance allows crosses itself: in parts it is cut there.
-            const int parts = is_general(segment.curve) ? std::max(6, static_cast<int>(std::ceil(turning(segment.curve) / 0.4))) : 1;
+            const int parts =
+                is_general(segment.curve) ? std::max(6, static_cast<int>(std::ceil(std::min(1e6, turning(segment.curve)) / 0.4))) : 1;
             Cut from{0, 0, start_of(*whole[k])};
             for (int i = 1; i <= parts; ++i) {
                 const double u = static_cast<double>(i) / parts;

@@ -6,18 +6,17 @@
 #include <map>
 #include <optional>
 
-#include "fettle/core/geometry/box_sweep.hpp"
-#include "fettle/core/geometry/overlapping_boxes.hpp"
-#include "fettle/core/geometry/predicates.hpp"
+#include "fettle/core/parts/aligned_solids.hpp"
+#include "fettle/core/parts/cut_situation.hpp"
+#include "fettle/core/parts/merged_faces.hpp"
 #include "fettle/core/parts/solid_cut.hpp"
-#include "fettle/core/solids/point_in_solid.hpp"
 
 namespace fettle::core::parts {
 namespace {
 
 using geometry::Mesh;
 using Kind = VertexOrigin::Kind;
-using Corners = std::array<Vector3, 3>;
+using Corners = TriangleCorners;
 
 // Its first feature that is not the flat end of another.
 std::string name_of(const Solid& solid) {
@@ -34,85 +33,6 @@ Mesh plain_mesh(const Solid& solid) {
     Matrix3X vertices(3, solid.vertices.size());
     for (std::size_t v = 0; v < solid.vertices.size(); ++v) vertices.col(v) = value(solid.vertices[v]);
     return geometry::make_mesh({}, std::move(vertices), solid.triangles);
-}
-
-Corners corners_of(const Mesh& mesh, int triangle) {
-    const auto& t = mesh.triangles[triangle];
-    return {Vector3(mesh.vertices.col(t[0])), Vector3(mesh.vertices.col(t[1])), Vector3(mesh.vertices.col(t[2]))};
-}
-
-// Which sides of each of two triangles meet the other: six bits; 0 if they have no point in common.
-int meeting_sides(const Corners& a, const Corners& b) {
-    int bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (geometry::segment_intersects_triangle(a[k], a[(k + 1) % 3], b)) bits |= 1 << k;
-        if (geometry::segment_intersects_triangle(b[k], b[(k + 1) % 3], a)) bits |= 8 << k;
-    }
-    return bits;
-}
-
-// All that decides how two meshes cut each other, but for where: which sides go through which triangles, and which shells that do not meet
-// the other mesh are inside of it.
-std::vector<int> situation_of(const Mesh& a, const Mesh& b) {
-    const int count_a = count_of(a.triangles);
-    std::vector<geometry::Box> boxes;
-    for (const Mesh* mesh : {&a, &b}) {
-        for (std::size_t t = 0; t < mesh->triangles.size(); ++t) {
-            const Corners c = corners_of(*mesh, static_cast<int>(t));
-            boxes.push_back({c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2])});
-        }
-    }
-    const auto pairs = geometry::overlapping_pairs(boxes, [&](int i, int j) {
-        return i < count_a && j >= count_a && meeting_sides(corners_of(a, i), corners_of(b, j - count_a)) != 0;
-    });
-    std::vector<int> out{count_of(pairs)};
-    std::vector<char> met_a(a.shell_names.size(), 0), met_b(b.shell_names.size(), 0);
-    for (const auto& [i, j] : pairs) {
-        out.insert(out.end(), {i, j - count_a, meeting_sides(corners_of(a, i), corners_of(b, j - count_a))});
-        met_a[a.triangle_shell[i]] = 1;
-        met_b[b.triangle_shell[j - count_a]] = 1;
-    }
-    const auto add_shells = [&](const Mesh& mesh, const std::vector<char>& met, const Mesh& other) {
-        std::vector<char> done(met);
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-            const auto shell = static_cast<std::size_t>(mesh.triangle_shell[t]);
-            if (done[shell]) continue;
-            done[shell] = 1;
-            out.push_back(solids::point_in_solid(mesh.vertices.col(mesh.triangles[t][0]), other.vertices, other.triangles) ? 1 : 0);
-        }
-    };
-    add_shells(a, met_a, b);
-    add_shells(b, met_b, a);
-    return out;
-}
-
-// Of meshes that do not meet: whole shells.
-SolidCut shells_of(const Mesh& a, const Mesh& b, Combination combination) {
-    SolidCut cut;
-    const auto add = [&](const Mesh& mesh, const Mesh& other, bool of_a) {
-        std::map<int, bool> is_kept;
-        std::map<int, int> index;
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-            const int shell = mesh.triangle_shell[t];
-            if (!is_kept.contains(shell)) {
-                const bool inside = solids::point_in_solid(mesh.vertices.col(mesh.triangles[t][0]), other.vertices, other.triangles);
-                is_kept[shell] = inside == (combination == Combination::intersect || (combination == Combination::subtract && !of_a));
-            }
-            if (!is_kept[shell]) continue;
-            CutTriangle out{{}, of_a, static_cast<int>(t)};
-            for (std::size_t k = 0; k < 3; ++k) {
-                const int v = mesh.triangles[t][k];
-                const auto [place, is_new] = index.emplace(v, count_of(cut.vertices));
-                if (is_new) cut.vertices.push_back({of_a ? Kind::vertex_of_a : Kind::vertex_of_b, v, v, 0});
-                out.corners[k] = place->second;
-            }
-            if (combination == Combination::subtract && !of_a) std::swap(out.corners[1], out.corners[2]);
-            cut.triangles.push_back(out);
-        }
-    };
-    add(a, b, true);
-    add(b, a, false);
-    return cut;
 }
 
 void pack(const SolidCut& cut, std::vector<int>& out) {
@@ -188,14 +108,20 @@ Solid frozen(const Mesh& mesh) {
     return out;
 }
 
+std::vector<Vector3> points_of(const SolidCut& cut, const Mesh& a, const Mesh& b) {
+    std::vector<Vector3> out;
+    for (const Point3& p : vertices_of(cut, frozen(a), frozen(b))) out.push_back(value(p));
+    return out;
+}
+
 Vector3 normal_of(const Corners& c) { return (c[1] - c[0]).cross(c[2] - c[0]); }
 
 // Does every triangle of a kept cut still face the way of the one that it is a part of?
 bool faces_the_same_way(const SolidCut& cut, const Mesh& a, const Mesh& b, Combination combination) {
-    const auto vertices = vertices_of(cut, frozen(a), frozen(b));
+    const std::vector<Vector3> points = points_of(cut, a, b);
     for (const CutTriangle& t : cut.triangles) {
         Corners c;
-        for (std::size_t k = 0; k < 3; ++k) c[k] = value(vertices[t.corners[k]]);
+        for (std::size_t k = 0; k < 3; ++k) c[k] = points[t.corners[k]];
         const double sign = combination == Combination::subtract && !t.of_a ? -1 : 1;
         if (!(sign * normal_of(c).dot(normal_of(corners_of(t.of_a ? a : b, t.triangle))) > 0)) return false;
     }
@@ -260,10 +186,66 @@ Deviation combined_deviation(const Deviation& a, const Deviation& b, Combination
     return out;
 }
 
-Result<Solid> combined(Drawing& drawing, const Solid& a, const Solid& b, Combination combination) {
-    const Mesh mesh_a = plain_mesh(a), mesh_b = plain_mesh(b);
-    const std::vector<int> situation = situation_of(mesh_a, mesh_b);
+// Flat surfaces are one face each.
+FacedMesh faced(const Solid& solid) {
+    FacedMesh out{plain_mesh(solid), {}};
+    for (const Facet& facet : solid.facets)
+        out.face.push_back(solid.surfaces[facet.surface].kind == SurfaceKind::plane ? facet.surface : -1);
+    return out;
+}
+
+double largest_coordinate(const Mesh& a, const Mesh& b) {
+    return std::max(a.vertices.cwiseAbs().maxCoeff(), b.vertices.cwiseAbs().maxCoeff());
+}
+
+// Vertices, faces and deviation of a combination.
+Solid put_together(const SolidCut& cut, const Solid& a, const Solid& b, Combination combination) {
+    Solid out;
+    out.vertices = vertices_of(cut, a, b);
+    out.surfaces = a.surfaces;
+    const bool subtract = combination == Combination::subtract;
+    for (Surface surface : b.surfaces) {
+        if (subtract) {
+            surface.hollow = !surface.hollow;
+            if (surface.kind == SurfaceKind::plane)
+                for (Number& x : surface.axis) x = -x;
+        }
+        out.surfaces.push_back(std::move(surface));
+    }
+    const int first_of_b = count_of(a.surfaces);
+    for (const CutTriangle& t : cut.triangles) {
+        out.triangles.push_back(t.corners);
+        Facet facet = (t.of_a ? a : b).facets[t.triangle];
+        if (!t.of_a) {
+            facet.surface += first_of_b;
+            if (subtract && facet.side == Side::outside)
+                facet.side = Side::inside;
+            else if (subtract && facet.side == Side::inside)
+                facet.side = Side::outside;
+        }
+        out.facets.push_back(facet);
+    }
+    out.deviation = combined_deviation(a.deviation, b.deviation, combination, drawn_out(cut, out.vertices));
+    return out;
+}
+
+std::optional<Error> unusable(const Solid& solid) {
+    for (const Point3& p : solid.vertices)
+        if (!value(p).allFinite()) return Error{ErrorCode::not_finite, name_of(solid), name_of(solid) + " has corners that are not finite"};
+    return std::nullopt;
+}
+
+Result<Solid> combined(Drawing& drawing, Solid a, Solid b, Combination combination) {
+    for (const Solid* solid : {&a, &b})
+        if (auto error = unusable(*solid)) return *error;
+    align(a, b);
+    const FacedMesh faced_a = faced(a), faced_b = faced(b);
+    const Mesh &mesh_a = faced_a.mesh, &mesh_b = faced_b.mesh;
     const std::string names = name_of(a) + " and " + name_of(b);
+    const double rounding = 4 * usual_rounding(largest_coordinate(mesh_a, mesh_b));
+    std::vector<int> situation = situation_of(mesh_a, mesh_b);
+    const bool apart = situation.front() == 0 && !(can_cut_solids() && touch(mesh_a, mesh_b, rounding));
+    situation.push_back(apart ? 1 : 0);
     Errors errors;
     const auto numbers = drawing.decision(
         "cut of " + names,
@@ -274,15 +256,17 @@ Result<Solid> combined(Drawing& drawing, const Solid& a, const Solid& b, Combina
         },
         [&] {
             std::vector<int> out = situation;
-            if (situation.front() == 0) {
+            if (apart) {
                 pack(shells_of(mesh_a, mesh_b, combination), out);
                 return out;
             }
-            auto cut = cut_solids(mesh_a, mesh_b, combination);
-            if (cut)
-                pack(*cut, out);
-            else
+            auto cut = cut_solids(faced_a, faced_b, rounding, combination);
+            if (cut) {
+                const std::vector<Vector3> points = points_of(*cut, mesh_a, mesh_b);
+                pack(with_merged_faces(std::move(*cut), faced_a.face, faced_b.face, points, rounding), out);
+            } else {
                 errors = cut.errors();
+            }
             return out;
         });
     for (Error& error : errors) {
@@ -296,35 +280,12 @@ Result<Solid> combined(Drawing& drawing, const Solid& a, const Solid& b, Combina
         return Error{ErrorCode::mesh_invalid, names,
                      combination == Combination::subtract ? "nothing is left of " + name_of(a) + " when " + name_of(b) + " is cut away"
                                                           : names + " have nothing in common"};
-    Solid out;
-    out.vertices = vertices_of(*cut, a, b);
-    out.surfaces = a.surfaces;
-    const bool subtract = combination == Combination::subtract;
-    for (Surface surface : b.surfaces) {
-        if (subtract) {
-            surface.hollow = !surface.hollow;
-            if (surface.kind == SurfaceKind::plane)
-                for (Number& x : surface.axis) x = -x;
-        }
-        out.surfaces.push_back(std::move(surface));
-    }
-    const int first_of_b = count_of(a.surfaces);
-    for (const CutTriangle& t : cut->triangles) {
-        out.triangles.push_back(t.corners);
-        Facet facet = (t.of_a ? a : b).facets[t.triangle];
-        if (!t.of_a) {
-            facet.surface += first_of_b;
-            if (subtract && facet.side == Side::outside)
-                facet.side = Side::inside;
-            else if (subtract && facet.side == Side::inside)
-                facet.side = Side::outside;
-        }
-        out.facets.push_back(facet);
-    }
-    const double largest = std::max(mesh_a.vertices.cwiseAbs().maxCoeff(), mesh_b.vertices.cwiseAbs().maxCoeff());
+    Solid out = put_together(*cut, a, b, combination);
+    if (unusable(out))
+        return Error{ErrorCode::mesh_invalid, names,
+                     names + " cut each other at so small an angle that where is lost to rounding: make them flush, or steeper"};
     const double steepness = least_steepness(*cut, mesh_a, mesh_b), of_corners = std::max(a.rounding, b.rounding);
-    out.rounding = steepness < 1 ? (usual_rounding(largest) + of_corners) / std::max(steepness, 1e-300) : of_corners;
-    out.deviation = combined_deviation(a.deviation, b.deviation, combination, drawn_out(*cut, out.vertices));
+    out.rounding = steepness < 1 ? (rounding / 4 + of_corners) / std::max(steepness, 1e-300) : of_corners;
     return out;
 }
 
@@ -333,19 +294,74 @@ Result<Solid> combined(Drawing& drawing, const Solid& a, const Solid& b, Combina
 bool has_solid_booleans() { return can_cut_solids(); }
 
 Result<Solid> united(Drawing& drawing, const Solid& a, const Solid& b) { return combined(drawing, a, b, Combination::unite); }
+Result<Solid> difference(Drawing& drawing, const Solid& a, const Solid& b) { return combined(drawing, a, b, Combination::subtract); }
+Result<Solid> intersection(Drawing& drawing, const Solid& a, const Solid& b) { return combined(drawing, a, b, Combination::intersect); }
 
-Result<Solid> united(Drawing& drawing, const std::vector<Solid>& solids) {
-    if (solids.empty()) return Error{ErrorCode::inconsistent, {}, "a union of no solids is empty"};
-    Solid out = solids.front();
-    for (std::size_t k = 1; k < solids.size(); ++k) {
-        auto next = united(drawing, out, solids[k]);
-        if (!next) return next;
-        out = std::move(*next);
+namespace {
+
+// The order does not matter to what comes out, but to what stands in between, which may be no solid: it is then tried later.
+bool may_work_later(const Errors& errors) { return can_cut_solids() && errors.size() == 1 && errors[0].code == ErrorCode::unsupported; }
+
+Result<Solid> one_after_another(Drawing& drawing, Solid out, std::vector<Solid> others, Combination combination) {
+    while (!others.empty()) {
+        std::vector<Solid> left;
+        Errors refused;
+        for (Solid& other : others) {
+            auto next = combined(drawing, out, other, combination);
+            if (next) {
+                out = std::move(*next);
+            } else if (may_work_later(next.errors())) {
+                if (left.empty()) refused = next.errors();
+                left.push_back(std::move(other));
+            } else {
+                return next;
+            }
+        }
+        if (left.size() == others.size()) return refused;
+        others = std::move(left);
     }
     return out;
 }
 
-Result<Solid> difference(Drawing& drawing, const Solid& a, const Solid& b) { return combined(drawing, a, b, Combination::subtract); }
-Result<Solid> intersection(Drawing& drawing, const Solid& a, const Solid& b) { return combined(drawing, a, b, Combination::intersect); }
+}  // namespace
+
+// Neighbours first, then what they became: each is looked at as often as the number can be halved.
+Result<Solid> united(Drawing& drawing, const std::vector<Solid>& solids) {
+    if (solids.empty()) return Error{ErrorCode::inconsistent, {}, "a union of no solids is empty"};
+    std::vector<Solid> left = solids;
+    for (bool goes_on = true; goes_on && left.size() > 1;) {
+        goes_on = false;
+        std::vector<Solid> next;
+        for (std::size_t k = 0; k < left.size(); k += 2) {
+            if (k + 1 == left.size()) {
+                next.push_back(std::move(left[k]));
+                break;
+            }
+            auto both = united(drawing, left[k], left[k + 1]);
+            if (both) {
+                next.push_back(std::move(*both));
+                goes_on = true;
+            } else if (may_work_later(both.errors())) {
+                next.push_back(std::move(left[k]));
+                next.push_back(std::move(left[k + 1]));
+            } else {
+                return both;
+            }
+        }
+        left = std::move(next);
+    }
+    Solid first = std::move(left.front());
+    left.erase(left.begin());
+    return one_after_another(drawing, std::move(first), std::move(left), Combination::unite);
+}
+
+Result<Solid> difference(Drawing& drawing, const Solid& a, const std::vector<Solid>& cut) {
+    return one_after_another(drawing, a, cut, Combination::subtract);
+}
+
+Result<Solid> intersection(Drawing& drawing, const std::vector<Solid>& solids) {
+    if (solids.empty()) return Error{ErrorCode::inconsistent, {}, "an intersection of no solids is nothing"};
+    return one_after_another(drawing, solids.front(), {solids.begin() + 1, solids.end()}, Combination::intersect);
+}
 
 }  // namespace fettle::core::parts

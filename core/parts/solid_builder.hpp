@@ -55,6 +55,9 @@ public:
     /// A bound of curves against their polygons: the whole part's is the largest.
     void add_deviation(double out, double in, bool proven = true) { solid_.deviation.add({out, in, proven, proven}); }
 
+    /// Vertices stand so far from where they are drawn (Solid::rounding).
+    void add_rounding(double distance) { solid_.rounding = std::max(solid_.rounding, distance); }
+
     const Point3& vertex(int k) const { return solid_.vertices[k]; }
     Solid take() { return std::move(solid_); }
 

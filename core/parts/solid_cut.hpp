@@ -9,6 +9,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/geometry/mesh.hpp"
 #include "fettle/core/parts/arrangement.hpp"
+#include "fettle/core/parts/flat_faces.hpp"
 
 namespace fettle::core::parts {
 
@@ -41,8 +42,9 @@ struct SolidCut {
 /// Whether this build can cut: CGAL was there when it was configured.
 bool can_cut_solids();
 
-/// Contract: both are closed, outward oriented, without self-intersection. Errors: unsupported without CGAL; results whose surface touches
-/// itself along edges, which no mesh of a solid can say; `where` is empty.
-Result<SolidCut> cut_solids(const geometry::Mesh& a, const geometry::Mesh& b, Combination combination);
+/// Corners of flat faces are taken to be where the faces' planes meet, exactly (flat_faces.hpp); no farther than `rounding` from where they
+/// are given. Contract: both are outward oriented, without self-intersection. Errors: unsupported without CGAL; results whose surface
+/// touches itself along edges, which no mesh of a solid can say; surfaces that are not closed; `where` is empty.
+Result<SolidCut> cut_solids(const FacedMesh& a, const FacedMesh& b, double rounding, Combination combination);
 
 }  // namespace fettle::core::parts

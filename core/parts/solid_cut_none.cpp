@@ -6,7 +6,7 @@ namespace fettle::core::parts {
 
 bool can_cut_solids() { return false; }
 
-Result<SolidCut> cut_solids(const geometry::Mesh&, const geometry::Mesh&, Combination) {
+Result<SolidCut> cut_solids(const FacedMesh&, const FacedMesh&, double, Combination) {
     return Error{
         ErrorCode::unsupported,
         {},

@@ -52,7 +52,8 @@ public:
 
     void run() {
         for (const auto& loop : region_.loops)
-            for (const int p : loop) insert(p);
+            for (const int p : loop)
+                if (triangle_of_[index(p)] < 0) insert(p);
         for (const auto& loop : region_.loops)
             for (std::size_t k = 0; k < loop.size(); ++k) constrain(loop[k], loop[(k + 1) % loop.size()]);
     }

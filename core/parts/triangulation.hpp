@@ -11,7 +11,8 @@
 
 namespace fettle::core::parts {
 
-/// Loops of point indices with the region to their left: outlines counter-clockwise, holes clockwise. Every point is in one loop, once.
+/// Loops of point indices with the region to their left: outlines counter-clockwise, holes clockwise. Every point is in a loop; in several,
+/// or in one more than once, where loops touch.
 struct PlaneRegion {
     std::vector<Vector2> points;
     std::vector<std::vector<int>> loops;

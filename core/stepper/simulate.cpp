@@ -9,13 +9,13 @@
 #include "fettle/core/base/stop.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/model/row_choice.hpp"
+#include "fettle/core/scene/step_count.hpp"
 #include "fettle/core/stepper/step.hpp"
-#include "fettle/core/stepper/step_count.hpp"
 
 namespace fettle::core::stepper {
 int step_count(const model::Model& model, const SimulationOptions& options) {
     if (options.steps >= 0) return options.steps;
-    return model.end_time >= 0 ? step_count(model.end_time, model.timestep) : default_step_count;
+    return model.end_time >= 0 ? scene::step_count(model.end_time, model.timestep).value() : scene::default_step_count;
 }
 
 const char* to_string(SimulationStatus status) {

@@ -7,7 +7,8 @@
 
 namespace fettle::core::stepper {
 
-/// How many steps that is for a model: those asked for, else those of its end time (step_count.hpp), else 1000.
+/// How many steps that is for a model: those asked for, else those of its end time (scene/step_count.hpp), else 1000.
+/// Contract: they can be counted, as check_scene finds.
 int step_count(const model::Model& model, const SimulationOptions& options);
 
 /// Deterministic: the same bits for any number of threads, in one run or in several (options.resume; their reports and outputs are joined).

@@ -12,10 +12,10 @@
 #include "fettle/core/model/start_check.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/scene/step_count.hpp"
 #include "fettle/core/stepper/jointed_motion.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/core/stepper/simulate.hpp"
-#include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/clearance/mesh_parts.hpp"
 #include "fettle/design/problem/toleranced_bodies.hpp"
@@ -181,11 +181,17 @@ std::vector<std::string> notes_of_tolerances(const core::certificate::Toleranced
     return notes;
 }
 
+Result<int> steps_of(const SubjectOptions& options, const core::model::Model& model, int own) {
+    if (options.steps >= 0 || !(options.time >= 0)) return options.steps >= 0 ? options.steps : own;
+    Result<int> steps = core::scene::step_count(options.time, model.timestep);
+    return steps ? steps : Error{ErrorCode::out_of_range, "--time", steps.errors().front().message};
+}
+
 // Of a motion without dynamics [s].
 double duration_of(const SubjectOptions& options, const core::model::Model& model, int design_steps) {
     if (options.time >= 0) return options.time;
     if (options.steps < 0 && model.end_time > 0) return model.end_time;
-    const int steps = options.steps >= 0 ? options.steps : design_steps > 0 ? design_steps : core::stepper::default_step_count;
+    const int steps = options.steps >= 0 ? options.steps : design_steps > 0 ? design_steps : core::scene::default_step_count;
     return steps * model.timestep;
 }
 
@@ -356,18 +362,17 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
     if (subject.ranges) return subject;
     const auto& bodies = subject.model.bodies;
     const bool all_scripted = std::all_of(bodies.begin(), bodies.end(), core::stepper::is_scripted);
-    const int steps = options.steps >= 0  ? options.steps
-                      : options.time >= 0 ? core::stepper::step_count(options.time, subject.model.timestep)
-                                          : loaded->steps;
+    const Result<int> steps = steps_of(options, subject.model, loaded->steps);
+    if (!steps) return steps.errors();
     if (!options.poses.empty()) {
         const Errors errors = take_poses(options, subject);
         if (!errors.empty()) return errors;
         mark_as_scripted(subject);
     } else if (options.kinematic && !subject.model.mechanism.rows.empty()) {
-        Errors errors = take_joints(options, steps, subject);
+        Errors errors = take_joints(options, *steps, subject);
         if (!errors.empty()) return errors;
     } else if (options.kinematic || (options.motion && all_scripted)) {
-        subject.trajectory = core::stepper::follow_scripts(subject.model, steps);
+        subject.trajectory = core::stepper::follow_scripts(subject.model, *steps);
         subject.source = SubjectSource::scripted;
         const auto held = core::stepper::held_bodies(subject.model);
         if (!held.empty())
@@ -378,7 +383,7 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
         Errors errors = core::model::check_start(subject.model);
         for (Error& error : errors) error.where = options.path + ": " + error.where;
         if (!errors.empty()) return errors;
-        simulate(steps, watch, subject);
+        simulate(*steps, watch, subject);
     } else {
         subject.trajectory = core::clearance::as_assembled(subject.model);
     }

@@ -12,11 +12,11 @@
 #include "fettle/core/records/continuation.hpp"
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/scene/step_count.hpp"
 #include "fettle/core/stepper/balance.hpp"
 #include "fettle/core/stepper/branch_warnings.hpp"
 #include "fettle/core/stepper/simulate.hpp"
 #include "fettle/core/stepper/split_path.hpp"
-#include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/answers/growing_tables.hpp"
 #include "fettle/design/answers/growing_trajectory.hpp"
@@ -263,9 +263,12 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
     const core::model::Model& model = loaded->model;
     tell_warnings(console, loaded->warnings, options.path);
     core::stepper::SimulationOptions simulate_options;
-    simulate_options.steps = options.steps >= 0  ? options.steps
-                             : options.time >= 0 ? core::stepper::step_count(options.time, model.timestep)
-                                                 : loaded->steps;
+    simulate_options.steps = options.steps >= 0 ? options.steps : loaded->steps;
+    if (options.time >= 0) {
+        const Result<int> steps = core::scene::step_count(options.time, model.timestep);
+        if (!steps) return console.input_errors({{ErrorCode::out_of_range, "--time", steps.errors().front().message}});
+        simulate_options.steps = *steps;
+    }
     std::optional<Writing> writing;
     clearance::PathProver prover(model, interrupted);
     const bool adds_nodes = !options.joint_gap.empty();  // the path is another one then

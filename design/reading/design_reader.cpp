@@ -15,8 +15,8 @@
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/scene/place.hpp"
+#include "fettle/core/scene/step_count.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/stepper/step_count.hpp"
 #include "fettle/design/description/made_design.hpp"
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/quantities/worst.hpp"
@@ -447,7 +447,9 @@ private:
     }
 
     static int steps_of(const core::scene::Scene& scene) {
-        return scene.end_time ? core::stepper::step_count(*scene.end_time, scene.timestep) : core::stepper::default_step_count;
+        if (!scene.end_time) return core::scene::default_step_count;
+        const Result<int> steps = core::scene::step_count(*scene.end_time, scene.timestep);
+        return steps ? *steps : core::scene::default_step_count;  // check_scene tells
     }
 
     void read_simulation(const JsonNode& node) {

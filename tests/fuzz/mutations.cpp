@@ -15,11 +15,12 @@ namespace {
 
 constexpr std::size_t largest = 1 << 16;
 
-constexpr std::array<std::string_view, 24> odd_words = {
+constexpr std::array<std::string_view, 30> odd_words = {
     "0",    "-1",          "1e308",      "-1e308",      "1e-320",     "nan",
     "inf",  "2147483647",  "2147483648", "-2147483648", "4294967295", "18446744073709551616",
     "null", "true",        "\"\"",       "[]",          "{}",         "\"0.3mm\"",
-    "1.5",  "99999999999", "0.1e",       "\"..\"",      "\xff\xfe",   "\\u0000"};
+    "1.5",  "99999999999", "0.1e",       "\"..\"",      "\xff\xfe",   "\\u0000",
+    "1e9",  "1e-9",        "1e30",       "1e-300",      "1e15",       "1e-15"};
 constexpr std::array<std::uint32_t, 8> odd_integers = {0, 1, 0x7f, 0xff, 0x7fff, 0x7fffffff, 0x80000000, 0xffffffff};
 
 bool is_of_number(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '+' || c == 'e'; }

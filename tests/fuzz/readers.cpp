@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -24,6 +25,7 @@
 #include "fettle/core/solids/mesh_judgement.hpp"
 #include "fettle/core/solids/mesh_repair.hpp"
 #include "fettle/core/solids/mesh_validity.hpp"
+#include "fettle/design/clearance/read_subject.hpp"
 #include "fettle/design/coupons/coupon_form.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
@@ -32,6 +34,7 @@
 #include "fettle/design/report/exploration_report.hpp"
 #include "fettle/design/report/report_folder.hpp"
 #include "fettle/design/report/search_curves.hpp"
+#include "fettle/design/shapes/part_library.hpp"
 #include "fettle/design/studies/history.hpp"
 #include "fettle/design/urdf/urdf_parser.hpp"
 #include "fettle/design/urdf/urdf_scene.hpp"
@@ -52,7 +55,7 @@ class Scratch {
 public:
     Scratch() {
         fs::create_directory(folder_.path / "run");
-        for (const char* beside : {"obj/parts.obj", "design/slider.json", "scene/shapes.json"})
+        for (const char* beside : {"obj/parts.obj", "design/slider.json", "scene/shapes.json", "scene/lever.json"})
             fs::copy_file(corpus() / beside, folder_.path / fs::path(beside).filename());
         fs::copy_file(corpus() / "scene/shapes.json", folder_.path / "follower.scene.json");
         fs::copy_file(corpus() / "obj/parts.obj", folder_.path / "tetrahedron.obj");
@@ -187,6 +190,42 @@ void read_part(std::string_view bytes) {
     core::parts::Facets coarse;
     coarse.segments = 8;
     (void)part->drawn(values, coarse);
+    // And one dimension far from what the file says, which one and how far by the file's size.
+    if (values.empty()) return;
+    values[bytes.size() % values.size()] *= std::pow(10.0, static_cast<double>(bytes.size() / 7 % 61) - 30);
+    (void)part->drawn(values, coarse);
+}
+
+/// A part of the library, which the first byte chooses, with dimensions far from the usual: two bytes each, a power of ten and a factor.
+void draw_library_part(std::string_view bytes) {
+    const auto byte = [&](std::size_t k) { return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0U; };
+    const auto& library = design::shapes::part_library();
+    const auto part = core::part_files::PartFile::parse(std::string(library[byte(0) % library.size()].text), "library.part.json");
+    if (!part) throw std::runtime_error("a part of the library cannot be read");
+    std::vector<double> values;
+    for (const auto& dimension : part->dimensions()) {
+        const std::size_t k = 1 + 2 * values.size();
+        const int power = static_cast<signed char>(byte(k));
+        const double factor = 1 + static_cast<signed char>(byte(k + 1)) / 64.0;  // from -1 to 3
+        values.push_back((dimension.value == 0 ? 1e-3 * (factor - 1) : dimension.value * factor) * std::pow(10.0, power / 4.0));
+    }
+    core::parts::Facets coarse;
+    coarse.segments = 8;
+    const auto drawn = part->drawn(values, coarse);
+    if (!drawn && drawn.errors().empty()) throw std::runtime_error("a refusal without words");
+    if (drawn && !drawn->mesh.vertices.allFinite()) throw std::runtime_error("corners that are not finite");
+}
+
+/// A design's tolerances, as far as they are recorded on its parts and joints.
+void read_tolerances(std::string_view bytes) {
+    design::clearance::SubjectOptions options;
+    options.path = scratch().write("b.design.json", bytes);
+    options.tolerances = true;
+    for (const bool kinematic : {false, true}) {
+        options.kinematic = kinematic;
+        options.steps = kinematic ? 3 : -1;
+        (void)design::clearance::read_subject(options, {});
+    }
 }
 
 void read_expression(std::string_view bytes) {
@@ -242,6 +281,8 @@ const std::vector<Reader>& readers() {
         {"coupon", read_form},
         {"expression", read_expression},
         {"part", read_part},
+        {"library", draw_library_part},
+        {"tolerances", read_tolerances},
         {"ccd", read_ccd},
         {"result", read_result},
         {"exploration", read_exploration},

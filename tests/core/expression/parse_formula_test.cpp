@@ -154,6 +154,23 @@ TEST_CASE("variables that use one another stay as short as what they compute") {
     CHECK(formula.inputs == std::vector<std::string>{"a", "b"});
 }
 
+TEST_CASE("variables that follow from one another without end are refused, not written out") {
+    for (const int count : {1000, 8000}) {
+        std::map<std::string, std::string> texts{{"v0", "a"}};
+        for (int k = 1; k < count; ++k) texts["v" + std::to_string(k)] = "v" + std::to_string(k - 1) + " + " + std::to_string(k) + " mm";
+        Scope chain = scope();
+        std::size_t length = 0;
+        const auto errors = define_variables(texts, chain, [&](const std::string& name, Formula formula) {
+            length += formula.nodes.size();
+            return Scope::Name{name, formula.dimension, std::move(formula)};
+        });
+        CHECK(errors.size() == (count > 1000 ? 1 : 0));
+        if (!errors.empty()) CHECK(errors.front().message.find("more than 1000000 operations long") != std::string::npos);
+        CHECK(length < 1'100'000);
+        CHECK(same(chain.find("v" + std::to_string(count - 1))->dimension, powers_of(Dimension::length)));
+    }
+}
+
 TEST_CASE("inputs are replaced by formulas, and stay where they are not") {
     const Formula formula = parsed("a * n + b");
     const Formula replaced = substituted(formula, {{"a", parsed("b + c")}, {"n", constant_formula(2)}});

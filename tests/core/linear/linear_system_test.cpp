@@ -98,6 +98,11 @@ TEST_CASE("a singular matrix has no factor", "[linear_system]") {
         h.diagonal.assign(bodies, Matrix6::Identity());
         h.diagonal.back()(5, 5) = 0;
         CHECK_FALSE(system.factorise_any(h));
+        CHECK_FALSE(system.is_usable());
+        CHECK(system.solve(VectorX::Ones(system.dofs().count)).y.array().isNaN().all());  // told by numbers, not by an assertion
+        h.diagonal.back()(5, 5) = std::numeric_limits<double>::infinity();
+        CHECK_FALSE(system.factorise_any(h));
+        CHECK(system.solve_refined(h, {}, VectorX::Ones(system.dofs().count)).y.array().isNaN().all());
     }
 }
 

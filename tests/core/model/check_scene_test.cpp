@@ -150,6 +150,18 @@ TEST_CASE("A time step of more than a day is refused: it is in seconds", "[model
     }
 }
 
+TEST_CASE("More time steps than can be counted are refused", "[model]") {
+    scene::Scene scene = scene_of({box_body("cube", {0, 0, 0}, {0.1, 0.1, 0.1})});
+    scene.timestep = 1e-9;
+    scene.end_time = 2;
+    CHECK(build_model(scene));
+    scene.end_time = 3;
+    const base::Error error = only_error(build_model(scene));
+    CHECK(error.code == ErrorCode::out_of_range);
+    CHECK(error.where == "a.scene.json#/end_time");
+    CHECK(contains(error.message, "3 s in time steps of 1e-09 s are more than 2147483647 steps"));
+}
+
 TEST_CASE("Real meshes: tolerated with warnings, refused when strict", "[model]") {
     scene::Body twins = box_body("twins", {0, 0, 0}, {1, 1, 1});
     twins.mesh = tests::joined(twins.mesh, tests::box_mesh({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));

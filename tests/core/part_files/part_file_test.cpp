@@ -180,6 +180,23 @@ TEST_CASE("part file: what asks for too much, or for itself, ends") {
     CHECK(fault_of_drawing(R"("solid": {"extrude": {"together": [{"repeat": {"together": [)" + thousand +
                            R"(]}, "count": 1000, "step": [0, 0.01]}]}, "to": 1})")
               .find("at most 100000") != std::string::npos);
+    // Before what is too large is put together: a union of unions of twice as much, copies of copies of copies.
+    const std::string few = R"("facets": {"segments": 12}, )";
+    std::string doubled = R"("s0": {"sphere": 1})";
+    for (int k = 1; k < 60; ++k)
+        doubled += ", \"s" + std::to_string(k) + R"(": {"union": ["s)" + std::to_string(k - 1) + R"(", {"move": "s)" +
+                   std::to_string(k - 1) + R"(", "by": [)" + std::to_string(3LL << std::min(k, 40)) + ", 0, 0]}]}";
+    CHECK(fault_of_drawing(few + R"("solids": {)" + doubled + R"(}, "solid": "s59")").find("more than 500000 facets") != std::string::npos);
+    CHECK(fault_of_drawing(R"("solid": {"repeat": {"repeat": {"repeat": {"sphere": 1}, "count": 100, "step": [3, 0, 0]}, "count": 100,
+        "step": [0, 3, 0]}, "count": 100, "step": [0, 0, 3]})")
+              .find("more than 500000 facets") != std::string::npos);
+    for (const char* round : {R"({"sphere": 1e6})", R"({"cone": [1e6, 0], "height": 1})", R"({"torus": [1e6, 1e5]})"})
+        CHECK(fault_of_drawing(R"("facets": {"chord": 1e-8}, "solid": )" + std::string(round)).find("more than 500000 facets") !=
+              std::string::npos);
+    CHECK(fault_of_drawing(R"("solid": {"repeat": {"sphere": 1}, "count": 3, "axis": [0, 0, 0]})").find("an axis has a direction") !=
+          std::string::npos);
+    CHECK(fault_of_drawing(R"("solid": {"extrude": {"circle": "= wide * 1e30 * 1e30"}, "to": 1})").find("farther away than 1e30 m") !=
+          std::string::npos);
     std::string nested = R"({"circle": 1})";
     for (int k = 0; k < 60; ++k) nested = R"({"move": )" + nested + R"(, "by": [0, 0]})";
     CHECK(reading_faults(part(R"("solid": {"extrude": )" + nested + R"(, "to": 1})")).empty());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/core/parts/extrude.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -152,6 +153,43 @@ TEST_CASE("layers that cross, share sides or are the same") {
     const auto other = draw(cross, {4e-3, 2e-3, 1e-3, 0.3e-3}, {}, first->structure);
     REQUIRE(other);
     CHECK_FALSE(other->changes.empty());
+}
+
+TEST_CASE("edges shorter than the tolerance become points, where a step cuts outlines: at their start, in a row, all of them") {
+    const double e = 1e-10;
+    const auto two = [](const std::vector<Point2>& above, bool swapped) {
+        return [above, swapped](Drawing& drawing, const std::vector<Number>& d) -> Result<Solid> {
+            const Profile wide = *filled(rectangle({}, 200, 200, "wide")), small = *filled(polygon(above, "small"));
+            return stacked(drawing,
+                           {{swapped ? small : wide, 0, d[0], {}, {}, {}}, {swapped ? wide : small, d[0], 2.0 * d[0], {}, {}, {}}});
+        };
+    };
+    const std::vector<Point2> corners{{1, 1}, {10, 1}, {10, 10}, {1, 10}};
+    for (std::size_t corner = 0; corner < 4; ++corner)
+        for (const int tiny : {1, 2, 3, 7})
+            for (std::size_t start = 0; start < 4 + static_cast<std::size_t>(tiny); ++start)
+                for (const bool swapped : {false, true}) {
+                    std::vector<Point2> points = corners;
+                    const Vector2 at = value(corners[corner]), along = value(corners[(corner + 1) % 4]) - at;
+                    for (int k = tiny; k > 0; --k)
+                        points.insert(points.begin() + static_cast<std::ptrdiff_t>(corner) + 1, constant(Vector2(at + k * e * along)));
+                    std::rotate(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(start % points.size()), points.end());
+                    const auto part = draw(two(points, swapped), {1});
+                    INFO("corner " << corner << ", " << tiny << " edges, from " << start << told(part.errors()));
+                    REQUIRE(part);
+                    CHECK(volume(*part) == Approx(40000 + 81).epsilon(1e-9));
+                    CHECK(tests::support::fault_of_solid(part->mesh) == "");
+                    CHECK(part->deviation.out >= e);  // corners are moved together, which is told
+                }
+    // An outline that is nothing beside the other: whatever it is, it ends.
+    for (const double size : {1e-5, 1e-7, 1e-9})
+        for (const bool swapped : {false, true}) {
+            const auto part = draw(two({{1, 1}, {1 + size, 1}, {1 + size, 1 + size}, {1, 1 + size}}, swapped), {1});
+            if (part)
+                CHECK(tests::support::fault_of_solid(part->mesh) == "");
+            else
+                CHECK_FALSE(part.errors().front().message.empty());
+        }
 }
 
 TEST_CASE("an extrusion that cannot be says why") {

@@ -2,14 +2,16 @@
 /// How many time steps a duration takes: the one rule, for simulations, scripts, designs and the command line.
 #pragma once
 
-namespace fettle::core::stepper {
+#include "fettle/core/base/result.hpp"
+
+namespace fettle::core::scene {
 
 /// Steps of a scene that does not say how long.
 inline constexpr int default_step_count = 1000;
 
 /// The least number of steps that cover `duration` [s]: 1 s takes four steps of 0.3 s. What exceeds a whole number by 1e-9 or less is that
 /// number, so that a duration of 100 h takes 100 steps whatever its rounding; a duration above 0 takes one at least.
-/// Contract: duration >= 0, timestep > 0. At most the largest int.
-int step_count(double duration, double timestep);
+/// Errors: more than the largest int (out_of_range, without a place). Contract: duration >= 0, timestep > 0.
+base::Result<int> step_count(double duration, double timestep);
 
-}  // namespace fettle::core::stepper
+}  // namespace fettle::core::scene

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+/// How two meshes lie to each other, before one cuts the other (solid_booleans.hpp).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fettle/core/geometry/mesh.hpp"
+#include "fettle/core/parts/solid_cut.hpp"
+
+namespace fettle::core::parts {
+
+using TriangleCorners = std::array<Vector3, 3>;
+TriangleCorners corners_of(const geometry::Mesh& mesh, int triangle);
+
+/// All that decides how two meshes cut each other, but for where: how many triangles meet, which sides of them go through which, and which
+/// shells that do not meet the other mesh are inside of it.
+std::vector<int> situation_of(const geometry::Mesh& a, const geometry::Mesh& b);
+
+/// Of meshes that do not meet: would they, but for rounding?
+bool touch(const geometry::Mesh& a, const geometry::Mesh& b, double rounding);
+
+/// Of meshes that do not meet: whole shells.
+SolidCut shells_of(const geometry::Mesh& a, const geometry::Mesh& b, Combination combination);
+
+}  // namespace fettle::core::parts

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include "fettle/core/scene/step_count.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/units.hpp"
+
+namespace fettle::core::scene {
+
+base::Result<int> step_count(double duration, double timestep) {
+    FETTLE_ASSERT(duration >= 0 && timestep > 0, "a duration and a time step");
+    constexpr int most = std::numeric_limits<int>::max();
+    const double steps = std::ceil(duration / timestep - 1e-9);
+    if (steps < most) return static_cast<int>(std::max(steps, duration > 0 ? 1.0 : 0.0));
+    return base::Error{base::ErrorCode::out_of_range,
+                       {},
+                       base::format_quantity(duration, "s", 4) + " in time steps of " + base::format_quantity(timestep, "s", 4) +
+                           " are more than " + std::to_string(most) + " steps: take a shorter time, or a larger time step"};
+}
+
+}  // namespace fettle::core::scene
