@@ -3,6 +3,7 @@
 #pragma once
 
 #include "fettle/core/clearance/element_pair.hpp"
+#include "fettle/core/clearance/pair_clearance.hpp"
 #include "fettle/core/clearance/piece_tree.hpp"
 #include "fettle/core/clearance/segment_bound.hpp"
 

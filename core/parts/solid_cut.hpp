@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How two closed meshes cut each other, and where every vertex and triangle of their combination is from. Exact, on plain numbers: no
-/// coordinate of it is used, so that vertices can be computed on recorded numbers (solid_booleans.hpp).
+/// How two closed meshes cut each other, and where every vertex and triangle of their combination is from. Exact, on plain numbers.
+/// Parts use no coordinate of it, so that vertices can be computed on recorded numbers (solid_booleans.hpp).
 #pragma once
 
 #include <array>
@@ -35,14 +35,15 @@ struct CutTriangle {
 
 struct SolidCut {
     std::vector<VertexOrigin> vertices;
+    std::vector<Vector3> points;  ///< of the vertices, rounded; empty of a cut that was written down
     std::vector<CutTriangle> triangles;
 };
 
 /// Whether this build can cut: CGAL was there when it was configured.
 bool can_cut_solids();
 
-/// Contract: both are closed, outward oriented, without self-intersection. Errors: unsupported without CGAL; results whose surface touches
-/// itself along edges, which no mesh of a solid can say; `where` is empty.
+/// Contract: both are closed, outward oriented, without self-intersection. Errors: unsupported without CGAL; meshes, and results, whose
+/// surface touches itself, which no mesh of a solid can say; `where` is empty.
 Result<SolidCut> cut_solids(const geometry::Mesh& a, const geometry::Mesh& b, Combination combination);
 
 }  // namespace fettle::core::parts

@@ -129,6 +129,8 @@ bool can_cut_solids() { return true; }
 Result<SolidCut> cut_solids(const geometry::Mesh& mesh_a, const geometry::Mesh& mesh_b, Combination combination) {
     const int triangles_a = count_of(mesh_a.triangles);
     ExactMesh a = exact_mesh(mesh_a, 0), b = exact_mesh(mesh_b, triangles_a), result;
+    if (a.number_of_faces() != mesh_a.triangles.size() || b.number_of_faces() != mesh_b.triangles.size())
+        return Error{ErrorCode::unsupported, {}, "one of the two meshes touches itself at a vertex or along an edge"};
     Record record;
     record.mesh_a = &mesh_a;
     record.mesh_b = &mesh_b;
@@ -171,6 +173,8 @@ Result<SolidCut> cut_solids(const geometry::Mesh& mesh_a, const geometry::Mesh& 
                 const auto origin = record.by_point.find(result.point(v));
                 FETTLE_ASSERT(origin != record.by_point.end(), "every vertex of a combination of solids is from somewhere");
                 cut.vertices.push_back(origin->second);
+                const auto& p = result.point(v);
+                cut.points.emplace_back(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
             }
             if (k < 3) triangle.corners[k++] = place->second;
         }
