@@ -169,6 +169,25 @@ std::string length_text(double metres, double length_unit, int digits) {
     return format_length(metres, unit.empty() ? "m" : unit, digits);
 }
 
+bool matches_pattern(std::string_view pattern, std::string_view text) {
+    std::size_t p = 0, t = 0, star = std::string_view::npos, taken = 0;  // by the last star
+    while (t < text.size()) {
+        if (p < pattern.size() && pattern[p] == '*') {
+            star = p++;
+            taken = t;
+        } else if (p < pattern.size() && pattern[p] == text[t]) {
+            ++p;
+            ++t;
+        } else if (star != std::string_view::npos) {
+            p = star + 1;
+            t = ++taken;
+        } else {
+            return false;
+        }
+    }
+    return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
 std::string formatted(const char* format, ...) {
     va_list arguments, again;
     va_start(arguments, format);

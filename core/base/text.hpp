@@ -41,6 +41,9 @@ std::string csv_cell(std::string_view word);
 /// Without the ' that csv_cell began it with; quotes have been taken off before.
 std::string csv_word(std::string_view field);
 
+/// Is the text of this form? `*` stands for any letters, none included.
+bool matches_pattern(std::string_view pattern, std::string_view text);
+
 /// printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 

@@ -30,6 +30,7 @@ protected:
     /// What a certificate is about, beside the bodies.
     virtual void name_box(certificate::Certificate& certificate) const = 0;
 
+    const ClearanceOptions& options() const { return options_; }
     bool is_recorded() const { return certificate_ != nullptr; }
     const PairRequest& request(std::size_t pair) const { return pairs_[pair]; }
     certificate::PairCertificate& record(std::size_t pair) const { return certificate_->pairs[pair]; }

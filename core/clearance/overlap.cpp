@@ -11,12 +11,22 @@
 
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/rounding.hpp"
+#include "fettle/core/clearance/pair_search.hpp"
+#include "fettle/core/clearance/touching.hpp"
 #include "fettle/core/geometry/distance.hpp"
+#include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/core/parts/common_part.hpp"
 
 namespace fettle::core::clearance {
 namespace {
 
+using parts::CommonPart;
+using parts::CutTriangle;
+
 constexpr int most_normals = 200;  // of faces, per body
+constexpr std::size_t most_directions = 64;
+constexpr int most_moves = 12;         // that are tried
+constexpr long most_bounds = 200'000;  // of the distance after a move
 
 // Distance of a point, in the body's frame, to its triangles.
 double distance_to_surface(const Vector3& x, const PieceTree& tree) {
@@ -77,9 +87,39 @@ public:
         stretch_ = norms * norms * rounded_up;
     }
 
-    std::optional<Overlap> run(int cells) {
-        const Box common = common_box();
+    std::optional<Overlap> run(int cells) { return run(cells, common_box()); }
+
+    /// By what the two have in common, whose thickest piece is looked at for the largest ball.
+    std::optional<Overlap> run(int cells, const CommonPart& common) {
+        std::optional<Overlap> overlap;
+        double thickest = 0;
+        for (const CommonPart& piece : pieces_of(common)) {
+            const double thickness = piece.volume() / piece.area();
+            if (!(thickness > thickest)) continue;
+            thickest = thickness;
+            overlap = run(cells, box_of(piece));
+        }
+        if (!overlap) return overlap;
+        const double volume = common.volume(), rounding = 2 * (slack_ + common.moved) * common.area() + 1e-12 * volume;
+        overlap->volume_lower = std::max(0.0, volume - rounding);
+        overlap->volume_upper = volume + rounding;
+        overlap->depth_upper = std::min(overlap->depth_upper, parting_move(common, overlap->depth_upper));
+        return overlap;
+    }
+
+    /// a's mesh where b's is.
+    geometry::Mesh placed_a() const {
+        geometry::Mesh mesh = *a_.tree.mesh;
+        for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) mesh.vertices.col(i) = in_b(a_.tree.mesh->vertices.col(i));
+        return mesh;
+    }
+
+private:
+    std::optional<Overlap> run(int cells, const Box& common) {
         if (!((common.high - common.low).minCoeff() > 0)) return std::nullopt;
+        open_ = {};
+        deep_.clear();
+        within_ = 0;
         Cell root;
         root.center = 0.5 * (common.low + common.high);
         root.half = 0.5 * (common.high - common.low) * rounded_up;
@@ -98,13 +138,21 @@ public:
         return overlap;
     }
 
-private:
     static double volume(const Cell& cell) { return 8 * cell.half.prod(); }
+
+    Vector3 in_b(const Vector3& of_a) const { return at_.rotation_b.transpose() * (at_.rotation_a * of_a + at_.offset); }
+
+    Box box_of(const CommonPart& piece) const {
+        Box box;
+        for (const Vector3& x : piece.points) box.add(x);
+        const Vector3 room = Vector3::Constant(slack_);
+        return {box.low - room, box.high + room};
+    }
 
     Box common_box() const {
         Box of_a, of_b;
         const Matrix3X& x = a_.tree.mesh->vertices;
-        for (Eigen::Index i = 0; i < x.cols(); ++i) of_a.add(at_.rotation_b.transpose() * (at_.rotation_a * x.col(i) + at_.offset));
+        for (Eigen::Index i = 0; i < x.cols(); ++i) of_a.add(in_b(x.col(i)));
         const Matrix3X& y = b_.tree.mesh->vertices;
         for (Eigen::Index i = 0; i < y.cols(); ++i) of_b.add(y.col(i));
         const Vector3 room = Vector3::Constant(slack_);
@@ -207,6 +255,73 @@ private:
         return least;
     }
 
+    struct Move {
+        Vector3 direction;  // of a, in b's frame
+        double length = 0;
+    };
+
+    // Of faces of what they share: a leaves b across b's faces, and draws back from its own.
+    std::vector<Move> likely_moves(const CommonPart& common) const {
+        std::vector<Vector3> directions(1, Vector3::Zero());  // the first is their mean
+        for (const CutTriangle& t : common.triangles) {
+            const Vector3 area = common.area_of(t);
+            const Vector3 out = t.of_a ? Vector3(-area) : area;
+            directions.front() += out;
+            const Vector3 n = unit_direction(out);
+            const bool known = std::any_of(directions.begin() + 1, directions.end(), [&](const Vector3& d) { return d.dot(n) > 1 - 1e-6; });
+            if (!known && n != Vector3::Zero() && directions.size() < most_directions) directions.push_back(n);
+        }
+        directions.front() = unit_direction(directions.front());
+        if (directions.front() == Vector3::Zero()) directions.erase(directions.begin());
+        const std::vector<CommonPart> pieces = pieces_of(common);
+        std::vector<Move> moves;
+        for (const Vector3& n : directions) {
+            double width = 0;
+            for (const CommonPart& piece : pieces) {
+                double low = infinity, high = -infinity;
+                for (const Vector3& x : piece.points) {
+                    low = std::min(low, n.dot(x));
+                    high = std::max(high, n.dot(x));
+                }
+                width = std::max(width, high - low);
+            }
+            moves.push_back({n, width * (1 + 1e-4) + 64 * slack_});
+        }
+        std::sort(moves.begin(), moves.end(), [](const Move& x, const Move& y) { return x.length < y.length; });
+        return moves;
+    }
+
+    // The first of them that is proven to part the two; `known`, if none shorter than that is.
+    double parting_move(const CommonPart& common, double known) const {
+        int tries = 0;
+        for (const Move& move : likely_moves(common)) {
+            if (move.length >= known || ++tries > most_moves) break;
+            if (are_apart_after(move)) return move.length * rounded_up;
+        }
+        return known;
+    }
+
+    bool are_apart_after(const Move& move) const {
+        const Vector3 way = at_.rotation_b * (move.length * move.direction);
+        const kinematics::Pose pose_a{at_.rotation_a, at_.offset + way}, pose_b{at_.rotation_b, Vector3::Zero()};
+        const PairSegment held = pair_held(pose_a, pose_b, a_.tree.radius(), b_.tree.radius());
+        SearchOptions search;
+        search.tolerance = search.enough = 4 * held.slack;
+        search.refuted = held.slack;
+        search.max_evaluations = most_bounds;
+        search.exact_witness = false;
+        const SearchResult found = search_pair(a_.tree, b_.tree, {held}, search);
+        if (found.intersecting || !(found.lower > 2 * held.slack)) return false;
+        const auto is_in = [&](const SolidBody& inner, const SolidBody& outer, const kinematics::Pose& of_inner,
+                               const kinematics::Pose& of_outer) {
+            return std::any_of(inner.solid.samples.begin(), inner.solid.samples.end(), [&](int v) {
+                const Vector3 x = kinematics::world_position(of_inner, inner.tree.mesh->vertices.col(v));
+                return certificate::is_in_material(of_outer.rotation.transpose() * (x - of_outer.position), outer.solid);
+            });
+        };
+        return !is_in(a_, b_, pose_a, pose_b) && !is_in(b_, a_, pose_b, pose_a);
+    }
+
     const SolidBody &a_, &b_;
     Instant at_;
     double slack_;
@@ -222,11 +337,26 @@ private:
 
 bool is_solid(const SolidBody& body) { return body.solid.is_closed && !body.solid.shells.empty(); }
 
+// Of a mesh that winds round nothing twice.
+double volume_of(const geometry::Mesh& mesh) {
+    if (!winds_once(mesh)) return infinity;
+    return std::abs(geometry::solid_moments(mesh.vertices, mesh.triangles)(3, 3)) * (1 + 1e-9);
+}
+
 }  // namespace
 
 std::optional<Overlap> overlap_at(const SolidBody& a, const SolidBody& b, const PairSegment& segment, double s, int cells) {
     if (!is_solid(a) || !is_solid(b)) return std::nullopt;
     return OverlapSearch(a, b, segment, s).run(cells);
+}
+
+std::optional<Overlap> measured_overlap(const SolidBody& a, const SolidBody& b, const PairSegment& segment, double s, int cells) {
+    if (!is_solid(a) || !is_solid(b)) return std::nullopt;
+    OverlapSearch search(a, b, segment, s);
+    if (const auto common = parts::common_part(search.placed_a(), *b.tree.mesh)) return search.run(cells, *common);
+    std::optional<Overlap> overlap = search.run(cells);
+    if (overlap) overlap->volume_upper = std::min({overlap->volume_upper, volume_of(*a.tree.mesh), volume_of(*b.tree.mesh)});
+    return overlap;
 }
 
 }  // namespace fettle::core::clearance

@@ -7,6 +7,7 @@
 
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/clearance/crossing.hpp"
+#include "fettle/core/clearance/overlap.hpp"
 #include "fettle/core/clearance/segment_proof.hpp"
 #include "fettle/core/clearance/touching.hpp"
 
@@ -95,6 +96,7 @@ public:
             look_closer();
             settle();
             look_for_touch();
+            look_at_what_they_share();
         } else {
             decide_solids();
         }
@@ -213,6 +215,16 @@ private:
         result_.solids = Solids::unproven;
     }
 
+    // Of flush or thin parts no edge need pass through a face, nor a ball be found by few cells: what they share is cut.
+    void look_at_what_they_share() {
+        if (!options_.measure_overlap || found_.lower > 0 || result_.is_clash() || result_.touch) return;
+        const Instant at{found_.nearest.segment, found_.nearest.s};
+        const auto overlap = overlap_at(at, cell_budget(), measured_overlap);
+        if (!overlap || !(overlap->depth_lower > default_touch_depth(pair_))) return;
+        known_ = found_.nearest;
+        result_.solids = Solids::overlap;
+    }
+
     // Surfaces that never meet leave one thing to ask, whose answer never changes.
     void decide_solids() {
         result_.solids = certificate::solids_of(pair_.solid_a, pair_.solid_b, pair_start(), found_.lower);
@@ -242,26 +254,27 @@ private:
         return static_cast<int>(std::clamp(1e8 / (triangles + 1), 100.0, 20000.0));
     }
 
-    std::optional<Overlap> overlap_at(const Instant& at, int cells) const {
+    using Measure = std::optional<Overlap>(const SolidBody&, const SolidBody&, const PairSegment&, double, int);
+    std::optional<Overlap> overlap_at(const Instant& at, int cells, Measure measure = clearance::overlap_at) const {
         const PairSegment& segment = pair_.segments[at.segment];
-        auto overlap = clearance::overlap_at({pair_.a, pair_.solid_a}, {pair_.b, pair_.solid_b}, segment, at.s, cells);
+        auto overlap = measure({pair_.a, pair_.solid_a}, {pair_.b, pair_.solid_b}, segment, at.s, cells);
         if (!overlap) return overlap;
         overlap->time = time_of(pair_, at.segment, at.s);
         overlap->center += kinematics::pose_at(segment.b->path, at.s).position;
         return overlap;
     }
 
-    // The deepest of the instants, roughly.
-    std::optional<Instant> deepest() const {
-        std::optional<Instant> where;
-        double depth = -1;
-        for (const Instant& at : instants()) {
-            const auto overlap = overlap_at(at, std::max(cell_budget() / most_instants, 64));
-            if (!overlap || !(overlap->depth_lower > depth)) continue;
-            depth = overlap->depth_lower;
-            where = at;
-        }
-        return where;
+    // At the deepest of the instants, roughly: of thin overlaps, where few cells find no ball, where surfaces are known to meet.
+    std::optional<Overlap> deepest() const {
+        std::vector<std::pair<double, Instant>> found;
+        for (const Instant& at : instants())
+            if (const auto overlap = overlap_at(at, std::max(cell_budget() / most_instants, 64)))
+                found.emplace_back(overlap->depth_lower, at);
+        std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+        constexpr std::size_t most_measured = 3;
+        for (std::size_t i = 0; i < std::min(found.size(), most_measured); ++i)
+            if (auto overlap = overlap_at(found[i].second, cell_budget(), measured_overlap)) return overlap;
+        return std::nullopt;
     }
 
     bool shares_a_ball() {
@@ -296,7 +309,7 @@ private:
             result_.clash_time = result_.witness.time;
         }
         if (!options_.measure_overlap) return;
-        if (const auto at = deepest()) result_.overlap = overlap_at(*at, cell_budget());
+        result_.overlap = deepest();
     }
 
     const PairMotion& pair_;

@@ -10,7 +10,6 @@
 
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/clearance/overlap.hpp"
 
 namespace fettle::core::clearance {
 
@@ -85,6 +84,14 @@ struct Touch {
     bool is_whole = true;  ///< false: there were too many faces to look at all of them, the area is at least so large
 };
 
+/// How far two solids are in each other at one instant (overlap.hpp).
+struct Overlap {
+    double depth_lower = 0, depth_upper = 0;    ///< [m]; depth_lower > 0 proves that the solids overlap
+    double volume_lower = 0, volume_upper = 0;  ///< [m^3]
+    double time = 0;                            ///< [s]
+    Vector3 center = Vector3::Zero();           ///< of the largest ball found in both, world [m]; of no meaning if depth_lower is 0
+};
+
 struct ClearanceOptions {
     double tolerance = 1e-6;                        ///< wanted upper - lower [m]; less will do: answer_is_enough
     bool motion = false;                            ///< over the whole trajectory; false: at poses[0]
@@ -120,7 +127,8 @@ struct PairClearance {
     bool complete = true;  ///< false: budget or should_stop ended the search before its bounds were as near as was wanted
     bool intersecting = false;         ///< the surfaces were found passing through each other, or the solids to share a ball: a clash
     Solids solids = Solids::unproven;  ///< `overlap`: one lies inside the other's material (bounds are then 0), or shares a ball with it
-    std::optional<Overlap> overlap;    ///< of a clash of closed bodies: how deep, the deepest of up to 32 instants looked at
+    std::optional<Overlap> overlap;    ///< of a clash of closed bodies: how deep, the deepest of up to 32 instants looked at; over ranges
+                                       ///< at the witness, within tolerances not known
     std::optional<Touch> touch;        ///< of bodies that touch: then they are no clash
     double clash_not_before = 0;       ///< of a clash: proven, there is none before this time [s]
     double clash_time = 0;             ///< of a clash: when it was found first, to within the tolerance over the speed [s]
@@ -128,6 +136,7 @@ struct PairClearance {
     double sampled = 0;  ///< least distance at the nodes of the path: what a tool that samples would say [m]; infinite if not asked for
     std::vector<MarginInterval> margin;  ///< one per path segment, in order; empty unless asked for
     std::vector<Witness> witnesses;      ///< the first is `witness`; of two with the same instant and points only one
+    bool as_assembled = false;           ///< looked at where the bodies start alone, whatever the others are looked at over
     // Over ranges of joints:
     double tolerance = 0;                 ///< that was asked for, of this pair [m]
     std::vector<int> coordinates;         ///< of the linkage: those that move one body against the other

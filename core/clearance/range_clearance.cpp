@@ -10,6 +10,8 @@
 #include "fettle/core/clearance/box_certification.hpp"
 #include "fettle/core/clearance/pair_certification.hpp"
 #include "fettle/core/clearance/range_search.hpp"
+#include "fettle/core/clearance/shared_ball.hpp"
+#include "fettle/core/clearance/touching.hpp"
 #include "fettle/core/clearance/witness_instant.hpp"
 
 namespace fettle::core::clearance {
@@ -75,11 +77,29 @@ private:
             out.reason = "its numbers are so large that rounding hides the distance";
             return;
         }
-        const RangeSearchResult found = search_ranges(pair, search);
+        RangeSearchResult found = search_ranges(pair, search);
         take_bounds(found, out);
+        const SolidBody a{*shape(out.a).tree, *shape(out.a).solid}, b{*shape(out.b).tree, *shape(out.b).solid};
+        Coordinates at = found.nearest.at;
+        const auto place_of = [&](const Coordinates& u, const auto& use) { use(a, b, held_at(pair, u)); };
+        const bool meets = found.lower == 0 && found.nearest.element_a >= 0 && !found.intersecting;
+        const double touch = default_touch_depth(*a.tree.mesh, *b.tree.mesh);
+        if (meets && find_shared_ball(pair.ranges.low, pair.ranges.high, pair.count, touch, place_of, at)) {
+            found.nearest = nearest_at(pair, at, {});
+            out.solids = Solids::overlap;
+            out.upper = 0;
+        }
         if (found.nearest.element_a >= 0) take_nearest(pair, found, out);
+        if (out.is_clash() && options().measure_overlap) out.overlap = overlap_in_world(pair, a, b, found.nearest.at);
         if (is_recorded()) write_record(pair, found, search, out, record(index));
         finish(index, 0, out);
+    }
+
+    static std::optional<Overlap> overlap_in_world(const ScrewedPair& pair, const SolidBody& a, const SolidBody& b, const Coordinates& at) {
+        constexpr int cells = 8192;
+        auto overlap = measured_overlap(a, b, held_at(pair, at), 0, cells);
+        if (overlap) overlap->center += pose_of(pair.body_b, at).position;
+        return overlap;
     }
 
     void write_record(const ScrewedPair& pair, const RangeSearchResult& found, const BoxSearchOptions& search, PairClearance& out,

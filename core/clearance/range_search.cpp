@@ -143,26 +143,16 @@ private:
 
     // The two elements that are nearest there, taken as an upper bound.
     double distance(const Coordinates& at) {
-        const kinematics::Pose a = pose_of(pair_.body_a, at), b = pose_of(pair_.body_b, at);
-        kinematics::PathSegment held_a, held_b;
-        held_a.base = a.rotation;
-        held_a.position_t0 = a.position;
-        held_b.base = b.rotation;
-        held_b.position_t0 = b.position;
         SearchOptions search;
         search.max_evaluations = 200'000;
         const double known = cells_.result.upper;
         search.tolerance = std::isfinite(known) ? 1e-6 * known + pair_.slack : 1e-6 * (pair_.a.radius() + pair_.b.radius());
         search.enough = known;
         search.seek_intersection = !(known > 64 * pair_.slack);
-        const SearchResult found =
-            search_pair(pair_.a, pair_.b, {pair_segment(held_a, held_b, pair_.a.radius(), pair_.b.radius())}, search);
-        if (found.nearest.segment < 0) return infinity;
-        const BoxBound point(pair_, {at, at});
-        const ElementPairDistance pair =
-            point.distance(pair_.a.elements[found.nearest.element_a].corners, pair_.b.elements[found.nearest.element_b].corners, -1);
-        cells_.take({at, found.nearest.element_a, found.nearest.element_b, pair});
-        return pair.distance;
+        const RangeEncounter found = nearest_at(pair_, at, search);
+        if (found.element_a < 0) return infinity;
+        cells_.take(found);
+        return found.pair.distance;
     }
 
     const ScrewedPair& pair_;
@@ -172,6 +162,18 @@ private:
 void CellBounds::descend() { Descent(pair_, *this).run(); }
 
 }  // namespace
+
+PairSegment held_at(const ScrewedPair& pair, const Coordinates& at) {
+    return pair_held(pose_of(pair.body_a, at), pose_of(pair.body_b, at), pair.a.radius(), pair.b.radius());
+}
+
+RangeEncounter nearest_at(const ScrewedPair& pair, const Coordinates& at, const SearchOptions& search) {
+    const Encounter found = search_pair(pair.a, pair.b, {held_at(pair, at)}, search).nearest;
+    if (found.segment < 0) return {at, -1, -1, {}};
+    const BoxBound point(pair, {at, at});
+    return {at, found.element_a, found.element_b,
+            point.distance(pair.a.elements[found.element_a].corners, pair.b.elements[found.element_b].corners, -1)};
+}
 
 RangeSearchResult search_ranges(const ScrewedPair& pair, const BoxSearchOptions& options) {
     return BoxSearch(CellBounds(pair), options).run();

@@ -5,6 +5,7 @@
 
 #include "fettle/core/clearance/box_search.hpp"
 #include "fettle/core/clearance/range_bound.hpp"
+#include "fettle/core/clearance/search_result.hpp"
 
 namespace fettle::core::clearance {
 
@@ -14,6 +15,10 @@ struct RangeEncounter {
     int element_a = -1, element_b = -1;  ///< -1: none was looked at
     ElementPairDistance pair;            ///< in the world, what moves both bodies left where it starts
 };
+
+/// Both bodies at rest at a configuration, and where they are nearest there; elements of -1 where the budget ends that search at once.
+PairSegment held_at(const ScrewedPair& pair, const Coordinates& at);
+RangeEncounter nearest_at(const ScrewedPair& pair, const Coordinates& at, const SearchOptions& search);
 
 using RangeSearchResult = BoxSearchResult<RangeEncounter>;
 

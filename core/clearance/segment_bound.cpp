@@ -80,15 +80,17 @@ PairSegment pair_segment(const kinematics::PathSegment& a, const kinematics::Pat
     return pair;
 }
 
+PairSegment pair_held(const kinematics::Pose& a, const kinematics::Pose& b, double radius_a, double radius_b) {
+    kinematics::PathSegment held_a, held_b;
+    held_a.base = a.rotation;
+    held_a.position_t0 = a.position;
+    held_b.base = b.rotation;
+    held_b.position_t0 = b.position;
+    return pair_segment(held_a, held_b, radius_a, radius_b);
+}
+
 PairSegment held_at(const PairSegment& segment, double s, double radius_a, double radius_b) {
-    const auto held = [s](const BodySegment& body) {
-        const kinematics::Pose pose = kinematics::pose_at(body.path, s);
-        kinematics::PathSegment path;
-        path.base = pose.rotation;
-        path.position_t0 = pose.position;
-        return path;
-    };
-    return pair_segment(held(*segment.a), held(*segment.b), radius_a, radius_b);
+    return pair_held(kinematics::pose_at(segment.a->path, s), kinematics::pose_at(segment.b->path, s), radius_a, radius_b);
 }
 
 Instant instant_at(const PairSegment& segment, double s) {

@@ -76,6 +76,8 @@ BodySegment body_segment(const kinematics::PathSegment& path);
 PairSegment pair_segment(const BodySegment& a, const BodySegment& b, double radius_a, double radius_b);
 /// Keeps what it is made of.
 PairSegment pair_segment(const kinematics::PathSegment& a, const kinematics::PathSegment& b, double radius_a, double radius_b);
+/// Both bodies at rest.
+PairSegment pair_held(const kinematics::Pose& a, const kinematics::Pose& b, double radius_a, double radius_b);
 /// Both bodies at rest where they are at parameter `s`.
 PairSegment held_at(const PairSegment& segment, double s, double radius_a, double radius_b);
 Instant instant_at(const PairSegment& segment, double s);

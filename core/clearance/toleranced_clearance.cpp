@@ -8,7 +8,9 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/clearance/box_certification.hpp"
 #include "fettle/core/clearance/pair_certification.hpp"
+#include "fettle/core/clearance/shared_ball.hpp"
 #include "fettle/core/clearance/toleranced_search.hpp"
+#include "fettle/core/clearance/touching.hpp"
 #include "fettle/core/clearance/witness_instant.hpp"
 
 namespace fettle::core::clearance {
@@ -20,6 +22,28 @@ using certificate::TolerancedProver;
 using certificate::VariableBox;
 
 constexpr long bounds_a_second = 20'000;
+// Of one set of deviations; the parts refer to each other.
+struct MadeSolid {
+    MadeSolid(int body, const MadeBodies& made, const geometry::Mesh& drawn)
+        : mesh(with_vertices(drawn, made.vertices(body, drawn.vertices))),
+          hierarchy(mesh),
+          tree(make_piece_tree(mesh, hierarchy)),
+          solid(certificate::solid_mesh(mesh)) {}
+    MadeSolid(const MadeSolid&) = delete;
+    MadeSolid& operator=(const MadeSolid&) = delete;
+
+    SolidBody body() const { return {tree, solid}; }
+
+    static geometry::Mesh with_vertices(geometry::Mesh mesh, Matrix3X vertices) {
+        mesh.vertices = std::move(vertices);
+        return mesh;
+    }
+
+    geometry::Mesh mesh;
+    geometry::BodyHierarchy hierarchy;
+    PieceTree tree;
+    certificate::SolidMesh solid;
+};
 
 class TolerancedCertification : public BoxCertification {
 public:
@@ -71,8 +95,29 @@ private:
         const TolerancedSearchResult found = search_toleranced(bodies, search);
         take_bounds(found, out);
         if (found.nearest.element_a >= 0) take_nearest(bodies, found, out);
+        if (found.lower == 0 && found.nearest.element_a >= 0 && !found.intersecting && share_a_ball(bodies, prover, found.nearest.at)) {
+            out.solids = Solids::overlap;
+            out.upper = 0;
+        }
         if (is_recorded()) write_record(bodies, found, search, out, record(index));
         finish(index, mismatch, out);
+    }
+
+    // Somewhere within the tolerances, as made there.
+    bool share_a_ball(const TolerancedBodies& bodies, TolerancedProver& prover, VariableBox::Values at) const {
+        const auto place_of = [&](const VariableBox::Values& values, const auto& use) {
+            const auto dependents = prover.dependents_at(values);
+            if (!dependents) return;
+            const AllValues all = all_values(toleranced_, bodies.pair, values, *dependents);
+            const MadeBodies made(toleranced_, all.deviations);
+            const MadeSolid a(bodies.pair.of_a, made, *bodies.a.mesh), b(bodies.pair.of_b, made, *bodies.b.mesh);
+            use(a.body(), b.body(),
+                pair_held(made.pose(bodies.pair.of_a, all.coordinates), made.pose(bodies.pair.of_b, all.coordinates), a.tree.radius(),
+                          b.tree.radius()));
+        };
+        const VariableBox& box = prover.box();
+        const double touch = default_touch_depth(*bodies.a.mesh, *bodies.b.mesh);
+        return find_shared_ball(box.low, box.high, bodies.pair.variables(), touch, place_of, at);
     }
 
     static void take_nearest(const TolerancedBodies& bodies, const TolerancedSearchResult& found, PairClearance& out) {

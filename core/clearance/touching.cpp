@@ -38,18 +38,6 @@ Vector3 common_direction(const std::vector<Vector3>& normals) {
     return d;
 }
 
-// Do its shells wind round nothing twice: none crosses another or itself, and those within others are cavities, or parts in these? Else
-// a surface may lie in the middle of the material.
-bool winds_once(const geometry::Mesh& mesh) {
-    if (!solids::self_intersections(mesh, 1).empty()) return false;
-    const std::vector<solids::Shell> shells = solids::shells_of(mesh);
-    const auto are_turned = [&](int outwards) {
-        return std::all_of(shells.begin(), shells.end(),
-                           [&](const solids::Shell& shell) { return shell.volume_sign == (shell.depth % 2 == 0 ? outwards : -outwards); });
-    };
-    return are_turned(1) || are_turned(-1);
-}
-
 // Each vertex moved inwards by at most `by`, faces by half of that where the corners are not too sharp.
 geometry::Mesh thinner(const geometry::Mesh& mesh, double by) {
     geometry::Mesh out = mesh;
@@ -150,13 +138,22 @@ double common_area(const std::array<Vector3, 3>& a, const std::array<Vector3, 3>
 
 }  // namespace
 
-double default_touch_depth(const PairMotion& pair) {
-    const auto size = [](const PieceTree& tree) {
-        const Matrix3X& x = tree.mesh->vertices;
-        return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).norm();
+bool winds_once(const geometry::Mesh& mesh) {
+    if (!solids::self_intersections(mesh, 1).empty()) return false;
+    const std::vector<solids::Shell> shells = solids::shells_of(mesh);
+    const auto are_turned = [&](int outwards) {
+        return std::all_of(shells.begin(), shells.end(),
+                           [&](const solids::Shell& shell) { return shell.volume_sign == (shell.depth % 2 == 0 ? outwards : -outwards); });
     };
-    return touch_share * std::max(size(pair.a), size(pair.b));
+    return are_turned(1) || are_turned(-1);
 }
+
+double default_touch_depth(const geometry::Mesh& a, const geometry::Mesh& b) {
+    const auto size = [](const Matrix3X& x) { return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).norm(); };
+    return touch_share * std::max(size(a.vertices), size(b.vertices));
+}
+
+double default_touch_depth(const PairMotion& pair) { return default_touch_depth(*pair.a.mesh, *pair.b.mesh); }
 
 std::optional<double> proven_touch(const PairMotion& pair, const certificate::PairStart& start, double depth, const SearchOptions& search) {
     std::array<bool, 2> order{true, false};  // the simpler one first

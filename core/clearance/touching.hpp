@@ -17,7 +17,12 @@
 
 namespace fettle::core::clearance {
 
+/// Do the shells of a closed mesh wind round nothing twice: none crosses another or itself, and those within others are cavities, or parts
+/// in these? Else a surface may lie in the middle of the material.
+bool winds_once(const geometry::Mesh& mesh);
+
 /// Up to which depth bodies count as touching unless someone says another: a hundred-thousandth of the larger one's size [m].
+double default_touch_depth(const geometry::Mesh& a, const geometry::Mesh& b);
 double default_touch_depth(const PairMotion& pair);
 
 /// Proof that nowhere on the path a ball of the diameter `depth` [m] is in both bodies, where that path begins at `start`.

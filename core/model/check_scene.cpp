@@ -12,6 +12,7 @@
 #include "fettle/core/base/limits.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
+#include "fettle/core/model/ignored_pairs.hpp"
 #include "fettle/core/scene/step_count.hpp"
 #include "fettle/core/solids/mesh_judgement.hpp"
 #include "fettle/core/solids/mesh_validity.hpp"
@@ -395,6 +396,10 @@ SceneCheck check_scene(const scene::Scene& scene, bool check_meshes) {
     check.errors = check_numbers(scene);
     for (const Errors& more : {check_integrator(scene), check_names(scene), check_friction(scene)})
         check.errors.insert(check.errors.end(), more.begin(), more.end());
+    if (auto ignored = ignored_pairs(scene))
+        check.ignored = *std::move(ignored);
+    else
+        check.errors.insert(check.errors.end(), ignored.errors().begin(), ignored.errors().end());
     BodyChecks bodies(check_meshes);
     std::vector<const geometry::Mesh*> meshes;
     meshes.reserve(scene.bodies.size());

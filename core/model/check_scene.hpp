@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
@@ -13,8 +14,9 @@ namespace fettle::core::model {
 struct SceneCheck {
     Errors errors;
     std::vector<std::string> warnings;
-    std::vector<BodyMeasure> measures;  ///< one per body; of a body with errors it means nothing
-    std::vector<std::size_t> shapes;    ///< per body the first whose mesh is the same
+    std::vector<BodyMeasure> measures;         ///< one per body; of a body with errors it means nothing
+    std::vector<std::size_t> shapes;           ///< per body the first whose mesh is the same
+    std::vector<std::pair<int, int>> ignored;  ///< pairs of bodies (ignored_pairs.hpp)
 };
 
 /// By each body's MeshPolicy (scene/scene.hpp): strict asks for perfect solids (solids/mesh_validity.hpp), tolerant takes what does no

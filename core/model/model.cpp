@@ -13,14 +13,18 @@ linear::FreeDofs free_dofs(const Model& model) {
     return out;
 }
 
-bool may_collide(const Model& model, int a, int b) {
-    if (a == b) return false;
+NoContact why_no_contact(const Model& model, int a, int b) {
+    if (a == b) return NoContact::same_body;
     const Body& first = model.bodies[a];
     const Body& second = model.bodies[b];
-    if (first.group >= 0 && first.group == second.group) return false;
-    const auto& joined = model.mechanism.not_colliding;
-    if (!joined.empty() && std::binary_search(joined.begin(), joined.end(), std::pair<int, int>(std::minmax(a, b)))) return false;
-    return first.type == scene::BodyType::dynamic_body || second.type == scene::BodyType::dynamic_body;
+    const auto is_among = [&](const std::vector<std::pair<int, int>>& pairs) {
+        return !pairs.empty() && std::binary_search(pairs.begin(), pairs.end(), std::pair<int, int>(std::minmax(a, b)));
+    };
+    if (is_among(model.ignored)) return NoContact::ignored;
+    if (first.group >= 0 && first.group == second.group) return NoContact::one_group;
+    if (is_among(model.mechanism.not_colliding)) return NoContact::joined;
+    if (first.type != scene::BodyType::dynamic_body && second.type != scene::BodyType::dynamic_body) return NoContact::none_dynamic;
+    return NoContact::none;
 }
 
 }  // namespace fettle::core::model

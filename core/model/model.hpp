@@ -84,6 +84,7 @@ struct Model {
     double contact_damping_time = 0;      ///< T of contact/contact_damping.hpp [s]; 0: none
     Friction friction;
     Mechanism mechanism;
+    std::vector<std::pair<int, int>> ignored;  ///< bodies that the scene wants to pass through each other (a < b), sorted
     scene::Integrator integrator = scene::Integrator::implicit_euler;
     double proximal_weight = 0;     ///< h^2/eps of quasi-static steps [s^2] (choose_proximal_weight.hpp); 0: not quasi-static
     double velocity_tolerance = 0;  ///< [m/s]
@@ -103,10 +104,19 @@ inline double friction_coefficient(const Model& model, int a, int b) {
 /// Where a kinematic body's script has c's frame at `time`: its start pose before, the last pose after (scene::scripted_pose).
 kinematics::Pose scripted_pose(const Body& body, double time);
 
-/// Does contact act between these two? Not on a body with itself, nor within a group (>= 0), nor between what a joint joins, nor where
-/// neither is dynamic: static and kinematic bodies never push each other. By type alone: a dynamic body all of whose coordinates are held
-/// or driven still meets static ones, and is stopped by them.
-bool may_collide(const Model& model, int a, int b);
+/// Why contact does not act between two bodies.
+enum class NoContact {
+    none,         ///< it does
+    same_body,    ///< a body never meets itself
+    ignored,      ///< the scene's `ignore`
+    one_group,    ///< of bodies of one group (>= 0)
+    joined,       ///< a joint joins the two, and does not say that they collide
+    none_dynamic  ///< neither is dynamic: static and kinematic bodies never push each other. By type alone: a dynamic body all of whose
+                  ///< coordinates are held or driven still meets static ones, and is stopped by them
+};
+NoContact why_no_contact(const Model& model, int a, int b);
+
+inline bool may_collide(const Model& model, int a, int b) { return why_no_contact(model, a, b) == NoContact::none; }
 
 /// What is solved for: all that no script prescribes.
 linear::FreeDofs free_dofs(const Model& model);

@@ -13,11 +13,13 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/stop.hpp"
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/body_hierarchy.hpp"
 #include "fettle/core/geometry/distance.hpp"
 #include "fettle/core/geometry/overlapping_boxes.hpp"
 #include "fettle/core/geometry/predicates.hpp"
+#include "fettle/core/model/joint_fit.hpp"
 #include "fettle/core/solids/closure.hpp"
 #include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/core/solids/point_in_solid.hpp"
@@ -233,7 +235,13 @@ public:
         std::string near;
         for (int k = 0; k < 3; ++k) near += (k ? ", " : "") + length(place[k]);
         return {base::ErrorCode::bodies_intersect, "bodies `" + a.name + "` and `" + b.name + "`",
-                "`" + a.name + "` and `" + b.name + "` " + what + ", near (" + near + ") in the world; move or shape them apart"};
+                "`" + a.name + "` and `" + b.name + "` " + what + ", near (" + near +
+                    ") in the world; move or shape them apart, or, if they are not meant to meet, list \"" + a.name + ":" + b.name +
+                    "\" in the scene's `ignore`"};
+    }
+    std::string volume(double cubic_metres) const {
+        const double unit = base::metres_per_unit(unit_).value();
+        return base::formatted("%.3g ", cubic_metres / (unit * unit * unit)) + unit_ + "^3";
     }
     std::string length(double metres) const { return base::format_length(metres, unit_); }
 
@@ -301,19 +309,30 @@ std::vector<std::pair<int, int>> close_bodies(const std::vector<PlacedBody>& bod
     return pairs;
 }
 
+/// Of two bodies that a joint joins: what they share, if no joint between them explains it.
+std::optional<std::string> unexplained_overlap(const Model& model, int a, int b, const Messages& messages) {
+    const base::Result<JoinedOverlap> found = joined_overlap(model, a, b);
+    if (!found || found->explained) return std::nullopt;
+    const std::string name_a = "`" + model.bodies[a].name + "`", name_b = "`" + model.bodies[b].name + "`";
+    return name_a + " and " + name_b + " share " + messages.volume(found->volume) + " of material at the start, which " +
+           base::joined(joints_between(model, a, b)) + " between them does not explain (no pin in its bore); contact never acts between " +
+           "them; shape them apart, or list \"" + model.bodies[a].name + ":" + model.bodies[b].name + "\" in the scene's `ignore`";
+}
+
 /// Adds to the report what there is to say of two bodies.
 void report_pair(const Model& model, std::pair<int, int> pair, const std::vector<PlacedBody>& bodies, const Messages& messages,
                  StartReport& report) {
     const auto [i, j] = pair;
     const PlacedBody &a = bodies[i], &b = bodies[j];
-    const bool grouped = a.body->group >= 0 && a.body->group == b.body->group, collide = may_collide(model, i, j);
-    const bool dynamic = a.body->type == scene::BodyType::dynamic_body || b.body->type == scene::BodyType::dynamic_body;
-    if (!collide && (grouped || dynamic)) return;  // one group, or joined: they may overlap
-    auto error = check_pair(a, b, collide ? model.dmin : 0, messages);
-    if (collide) {
+    const NoContact why = why_no_contact(model, i, j);
+    if (why == NoContact::ignored || why == NoContact::one_group) return;  // they may overlap
+    auto error = check_pair(a, b, why == NoContact::none ? model.dmin : 0, messages);
+    if (why == NoContact::none) {
         const auto doubt = error ? std::nullopt : containment_doubt(a, b);
         if (doubt) report.warnings.push_back(*doubt);
         if (error) report.errors.push_back(std::move(*error));
+    } else if (error && why == NoContact::joined) {
+        if (auto overlap = unexplained_overlap(model, i, j, messages)) report.warnings.push_back(std::move(*overlap));
     } else if (error) {
         report.warnings.push_back(error->message + " (contact never acts between them: neither is dynamic)");
     }

@@ -20,9 +20,10 @@ struct StartReport {
 /// and neither body lies wholly inside the other's material.
 ///   errors: one bodies_intersect error per pair at fault, which names the bodies, two elements (the first intersecting ones found, else
 ///           the closest) and a place in world coordinates, in the model's length_unit. Order: by pair of bodies; the same for any machine.
-///   warnings: pairs that contact never acts on, because neither is dynamic, and that intersect or lie one in the other (bodies of one
-///           group, and dynamic bodies that a joint joins, are meant to); and pairs of which one may lie inside the other, which cannot be
-///           verified where the outer mesh is not closed though meant to be (geometry::is_nearly_closed). At most 20, then a count.
+///   warnings: pairs that contact never acts on and that intersect or lie one in the other: because neither is dynamic, or because a joint
+///           joins them, unless it explains what they share (joint_fit.hpp). Bodies of one group, and pairs that the scene ignores, are
+///           meant to. And pairs of which one may lie inside the other, which cannot be verified where the outer mesh is not closed though
+///           meant to be (geometry::is_nearly_closed). At most 20, then a count.
 /// Contract: hierarchies built.
 StartReport report_start(const Model& model);
 

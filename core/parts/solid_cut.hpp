@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How two closed meshes cut each other, and where every vertex and triangle of their combination is from. Exact, on plain numbers: no
-/// coordinate of it is used, so that vertices can be computed on recorded numbers (solid_booleans.hpp).
+/// How two closed meshes cut each other, and where every vertex and triangle of their combination is from. Exact, on plain numbers.
+/// Parts use no coordinate of it, so that vertices can be computed on recorded numbers (solid_booleans.hpp).
 #pragma once
 
 #include <array>
@@ -36,6 +36,7 @@ struct CutTriangle {
 
 struct SolidCut {
     std::vector<VertexOrigin> vertices;
+    std::vector<Vector3> points;  ///< of the vertices, rounded; empty of a cut that was written down
     std::vector<CutTriangle> triangles;
 };
 

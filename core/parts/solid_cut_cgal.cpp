@@ -317,7 +317,11 @@ Result<SolidCut> cut_solids(const FacedMesh& faced_a, const FacedMesh& faced_b, 
             const auto origin = record.by_point.find(result.point(v));
             FETTLE_ASSERT(origin != record.by_point.end(), "every vertex of a combination of solids is from somewhere");
             const auto [place, is_new] = index.emplace(&origin->second, count_of(cut.vertices));
-            if (is_new) cut.vertices.push_back(origin->second);
+            if (is_new) {
+                cut.vertices.push_back(origin->second);
+                const auto& p = result.point(v);
+                cut.points.emplace_back(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
+            }
             if (k < 3) triangle.corners[k++] = place->second;
         }
         const int origin = record.of_result[face];

@@ -100,6 +100,7 @@ std::string contact_model(const model::Model& model) {
     if (model.round_reach > 0) part.add(model.round_reach);
     for (const model::FacetSides& sides : model.facet_sides) part.add(sides.a).add(sides.side_a).add(sides.b).add(sides.side_b);
     if (model.contact_damping_time > 0) part.add(model.contact_damping_time);
+    for (const auto& [a, b] : model.ignored) part.add(a).add(b);
     return part.value();
 }
 

@@ -110,6 +110,15 @@ Pose read_pose(const JsonNode& node) {
     return pose;
 }
 
+// Bodies that do not collide.
+std::vector<std::pair<int, int>> read_pairs(const JsonNode& node, std::size_t bodies) {
+    const std::vector<int> numbers = indices(node, 2, bodies);
+    std::vector<std::pair<int, int>> pairs;
+    for (std::size_t i = 0; i < numbers.size(); i += 2) pairs.emplace_back(std::minmax(numbers[i], numbers[i + 1]));
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
 void read_settings(const JsonNode& root, StoredTrajectory& out) {
     out.scene_path = root["scene"].string().value_or("");
     out.model.length_unit = root.require("length_unit").number(stored_lengths).value_or(1);
@@ -147,7 +156,7 @@ std::vector<Pose> read_pose_list(const JsonNode& node, std::size_t count) {
 
 void read_trajectory_header(const JsonNode& root, StoredTrajectory& out) {
     root.allow_keys({format_key, "scene", "geometry_hash", "length_unit", "dhat", "dmin", "time_start", "timestep", "bodies", "joined",
-                     "time", "poses"});
+                     "ignored", "time", "poses"});
     if (!files::is_version(root.require(format_key), format_version)) return;
     read_settings(root, out);
     const JsonNode bodies = root.require("bodies");
@@ -157,10 +166,8 @@ void read_trajectory_header(const JsonNode& root, StoredTrajectory& out) {
     }
     if (std::set<std::string>(out.trajectory.body_names.begin(), out.trajectory.body_names.end()).size() < out.model.bodies.size())
         bodies.fail(ErrorCode::inconsistent, "two bodies have the same name");
-    // Bodies that joints join, which do not collide.
-    const std::vector<int> pairs = indices(root["joined"], 2, out.model.bodies.size());
-    for (std::size_t i = 0; i < pairs.size(); i += 2) out.model.mechanism.not_colliding.emplace_back(std::minmax(pairs[i], pairs[i + 1]));
-    std::sort(out.model.mechanism.not_colliding.begin(), out.model.mechanism.not_colliding.end());
+    out.model.mechanism.not_colliding = read_pairs(root["joined"], out.model.bodies.size());
+    out.model.ignored = read_pairs(root["ignored"], out.model.bodies.size());
     out.trajectory.poses.push_back(read_pose_list(root.require("poses"), out.model.bodies.size()));
     if (out.trajectory.poses[0].size() != out.model.bodies.size()) return;
     for (std::size_t b = 0; b < out.model.bodies.size(); ++b) out.model.bodies[b].pose_start = out.trajectory.poses[0][b];

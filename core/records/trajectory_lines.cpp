@@ -77,6 +77,13 @@ void write_node(JsonWriter& out, const std::vector<ChartPoint>& node) {
     });
 }
 
+void write_pairs(JsonWriter& out, const char* key, const std::vector<std::pair<int, int>>& pairs) {
+    if (pairs.empty()) return;
+    out.key(key);
+    out.list(2 * pairs.size(), ",",
+             [&](std::size_t i) { out.text += std::to_string(i % 2 == 0 ? pairs[i / 2].first : pairs[i / 2].second); });
+}
+
 // The writer breaks lines between keys; strings hold none.
 std::string one_line(JsonWriter out) {
     std::erase(out.text, '\n');
@@ -111,12 +118,8 @@ std::string TrajectoryLines::header(const std::string& scene_path) const {
     }
     out.key("bodies");
     out.list(model_.bodies.size(), ",", [&](std::size_t b) { write_body(out, model_.bodies[b]); });
-    const auto& joined = model_.mechanism.not_colliding;
-    if (!joined.empty()) {
-        out.key("joined");
-        out.list(2 * joined.size(), ",",
-                 [&](std::size_t i) { out.text += std::to_string(i % 2 == 0 ? joined[i / 2].first : joined[i / 2].second); });
-    }
+    write_pairs(out, "joined", model_.mechanism.not_colliding);
+    write_pairs(out, "ignored", model_.ignored);
     if (!trajectory_.times.empty()) {
         out.key("time");
         out.number(trajectory_.times.front());

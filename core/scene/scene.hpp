@@ -171,7 +171,9 @@ struct Scene {
     std::optional<double> velocity_tolerance;  ///< Newton stops below this speed of any point [m/s]; default 1e-2 moving_diagonal / s
     int max_newton_iterations = 3000;
     std::vector<Variable> variables;
-    std::vector<BoundNumber> numbers;   ///< that follow from variables, or from inputs that the reader was given; one for a place
+    std::vector<BoundNumber> numbers;  ///< that follow from variables, or from inputs that the reader was given; one for a place
+    /// "a:b": pairs of bodies that pass through each other and are not judged; `*` stands for any letters ("finger*:palm").
+    std::vector<std::string> ignore;
     std::vector<std::string> warnings;  ///< what a lenient reader accepted
 };
 

@@ -23,7 +23,7 @@ public:
     base::Result<scene::Scene> read() {
         const files::JsonNode root = document_.root();
         root.allow_keys({"$schema", "fettle_scene", "description", "units", "variables", "gravity", "timestep", "end_time", "integrator",
-                         "contact", "materials", "friction", "bodies", "joints", "springs", "dampers", "motors", "loads"});
+                         "contact", "materials", "friction", "bodies", "joints", "springs", "dampers", "motors", "loads", "ignore"});
         root["$schema"].string();
         root["description"].string();
         files::is_version(root["fettle_scene"], 1);
@@ -43,6 +43,7 @@ public:
         read_friction(root["friction"]);
         read_bodies(root.require("bodies"));
         scene_.mechanism = read_mechanism(root, unit_, scene_.bodies, formulas_);
+        for (const files::JsonNode& entry : root["ignore"].elements()) scene_.ignore.push_back(entry.string().value_or(""));
         if (document_.errors().empty()) formulas_.finish(scene_);
         if (!document_.errors().empty()) return document_.errors();
         scene_.warnings = document_.warnings();

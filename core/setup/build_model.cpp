@@ -201,6 +201,7 @@ base::Result<Model> build(const scene::Scene& scene, const BuildOptions& options
     model.contact_damping_time = scene.contact_damping_time;
     model.adaptive_kappa = !options.kappa && !scene.kappa;
     if (errors = check_areas(model); !errors.empty()) return errors;
+    model.ignored = std::move(check.ignored);
     model.warnings = std::move(check.warnings);
     add_round_contact(scene.round_contact, options.facet_sides, model);
     if (model.integrator == scene::Integrator::quasi_static) {

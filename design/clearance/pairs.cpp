@@ -9,6 +9,7 @@
 #include <sstream>
 #include <unordered_map>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/quantities/clearance.hpp"
@@ -22,13 +23,6 @@ namespace fettle::design::clearance {
 namespace {
 
 using core::model::Model;
-
-// `*` stands for any letters, none included.
-bool matches(std::string_view pattern, std::string_view text) {
-    if (pattern.empty()) return text.empty();
-    if (pattern[0] != '*') return !text.empty() && pattern[0] == text[0] && matches(pattern.substr(1), text.substr(1));
-    return matches(pattern.substr(1), text) || (!text.empty() && matches(pattern, text.substr(1)));
-}
 
 std::vector<std::string> split(const std::string& text, char at) {
     std::vector<std::string> parts;
@@ -61,6 +55,7 @@ public:
         require();
         if (!errors_.empty()) return errors_;
         tidy_left_out();
+        tidy_exempt();
         return std::move(selection_);
     }
 
@@ -102,7 +97,7 @@ private:
         Named found;
         found.wildcard = name.find('*') != std::string::npos;
         for (const Unit& unit : among) {
-            if (found.wildcard ? matches(name, unit.name) : unit.name == name) found.units.push_back(unit);
+            if (found.wildcard ? core::base::matches_pattern(name, unit.name) : unit.name == name) found.units.push_back(unit);
         }
         if (!found.units.empty()) return found;
         std::vector<std::string_view> known;
@@ -183,13 +178,16 @@ private:
         PairSpec pair{a, b, minimum.value_or(-1), minimum ? "--pairs" : "", false, 0, named, {}};
         for (const int i : a.bodies) {
             for (const int j : b.bodies) {
-                if (named || is_judged(i, j)) pair.body_pairs.emplace_back(i, j);
+                if (named || is_judged(i, j))
+                    pair.body_pairs.emplace_back(i, j);
+                else if (BodyPairs* exempt = exempt_as(i, j))
+                    exempt->emplace_back(std::minmax(i, j));
             }
         }
         if (pair.body_pairs.empty()) {
             for (const int i : a.bodies)
                 for (const int j : b.bodies)
-                    if (!is_one_group(i, j)) pair.body_pairs.emplace_back(i, j);
+                    if (exempt_as(i, j) == nullptr) pair.body_pairs.emplace_back(i, j);
             if (!pair.body_pairs.empty()) selection_.left_out.push_back(pair);
             return;
         }
@@ -216,18 +214,27 @@ private:
         return a.name < b.name ? a.name + std::string(1, '\0') + b.name : b.name + std::string(1, '\0') + a.name;
     }
 
-    // Of the scene; or joined by a joint that lets the two overlap.
-    bool is_one_group(int i, int j) const {
-        const core::model::Body &x = model_.bodies[i], &y = model_.bodies[j];
-        const auto& joined_bodies = model_.mechanism.not_colliding;
-        return (x.group >= 0 && x.group == y.group) ||
-               std::binary_search(joined_bodies.begin(), joined_bodies.end(), std::pair<int, int>(std::minmax(i, j)));
+    // Where two are listed that the scene does not want to be judged; null: it does.
+    BodyPairs* exempt_as(int i, int j) {
+        switch (core::model::why_no_contact(model_, i, j)) {
+            case core::model::NoContact::ignored:
+                return &selection_.ignored_by_scene;
+            case core::model::NoContact::one_group:
+                return &selection_.one_group;
+            case core::model::NoContact::joined:
+                return &selection_.joined;
+            case core::model::NoContact::none:
+            case core::model::NoContact::same_body:
+            case core::model::NoContact::none_dynamic:
+                break;
+        }
+        return nullptr;
     }
 
     // Patterns of --pairs ask for whatever they match.
-    bool is_judged(int i, int j) const {
+    bool is_judged(int i, int j) {
         if (std::binary_search(wanted_.begin(), wanted_.end(), std::pair<int, int>(std::minmax(i, j)))) return true;
-        if (!options_.pairs.empty() || !moves_) return !is_one_group(i, j);
+        if (!options_.pairs.empty() || !moves_) return exempt_as(i, j) == nullptr;
         return judged_by_default(model_, i, j);
     }
 
@@ -275,6 +282,18 @@ private:
         pairs.erase(std::remove_if(pairs.begin(), pairs.end(), hit), pairs.end());
         auto& out = selection_.left_out;
         out.erase(std::remove_if(out.begin(), out.end(), hit), out.end());
+        std::erase_if(selection_.joined, [&](const std::pair<int, int>& joined) {
+            const PairSpec pair{unit_of(joined.first), unit_of(joined.second), 0, "", false, 0, false, {}};
+            if (!is_of(pair, token)) return false;
+            selection_.ignored.push_back(name_of(model_, joined));
+            return true;
+        });
+    }
+
+    // The row of the report that a body is in.
+    const Unit& unit_of(int body) const {
+        return *std::find_if(units_.begin(), units_.end(),
+                             [&](const Unit& unit) { return std::count(unit.bodies.begin(), unit.bodies.end(), body) > 0; });
     }
 
     // The longest side of the box of a part as it is drawn: the largest part of a group.
@@ -322,6 +341,18 @@ private:
             if (told.insert(key(pair.a, pair.b)).second) once.push_back(std::move(pair));
         }
         selection_.left_out = std::move(once);
+    }
+
+    // Each once, and not what was named in spite of it.
+    void tidy_exempt() {
+        std::set<std::pair<int, int>> judged;
+        for (const PairSpec& pair : selection_.pairs)
+            for (const auto& [a, b] : pair.body_pairs) judged.insert(std::minmax(a, b));
+        for (BodyPairs* pairs : {&selection_.ignored_by_scene, &selection_.one_group, &selection_.joined}) {
+            std::sort(pairs->begin(), pairs->end());
+            pairs->erase(std::unique(pairs->begin(), pairs->end()), pairs->end());
+            std::erase_if(*pairs, [&](const auto& pair) { return judged.count(pair) > 0; });
+        }
     }
 
     const Model& model_;
@@ -423,13 +454,11 @@ Result<PairSelection> select_pairs(const Model& model, const PairOptions& option
 
 bool judged_by_default(const core::model::Model& model, int a, int b) {
     const auto dynamic = [](const core::model::Body& body) { return body.type == core::scene::BodyType::dynamic_body; };
-    if (std::any_of(model.bodies.begin(), model.bodies.end(), dynamic)) return core::model::may_collide(model, a, b);
-    const core::model::Body &first = model.bodies[a], &second = model.bodies[b];
-    if (a == b || (first.group >= 0 && first.group == second.group)) return false;
-    const auto& joined_bodies = model.mechanism.not_colliding;
-    if (std::binary_search(joined_bodies.begin(), joined_bodies.end(), std::pair<int, int>(std::minmax(a, b)))) return false;
+    const core::model::NoContact why = core::model::why_no_contact(model, a, b);
+    if (std::any_of(model.bodies.begin(), model.bodies.end(), dynamic)) return why == core::model::NoContact::none;
+    if (why != core::model::NoContact::none_dynamic) return false;
     const auto still = [](const core::model::Body& body) { return body.type == core::scene::BodyType::static_body; };
-    return !still(first) || !still(second) || std::all_of(model.bodies.begin(), model.bodies.end(), still);
+    return !still(model.bodies[a]) || !still(model.bodies[b]) || std::all_of(model.bodies.begin(), model.bodies.end(), still);
 }
 
 std::vector<std::string> pair_names(const std::vector<PairSpec>& pairs) {
@@ -438,15 +467,40 @@ std::vector<std::string> pair_names(const std::vector<PairSpec>& pairs) {
     return names;
 }
 
-std::vector<std::string> uncovered_pairs(const Model& model, const PairSelection& selection) {
+std::string name_of(const Model& model, const std::pair<int, int>& bodies) {
+    return model.bodies[bodies.first].name + ":" + model.bodies[bodies.second].name;
+}
+
+std::vector<std::string> pair_names(const Model& model, const BodyPairs& pairs) {
+    std::vector<std::string> names;
+    for (const auto& pair : pairs) names.push_back(name_of(model, pair));
+    return names;
+}
+
+BodyPairs uncovered_pairs(const Model& model, const PairSelection& selection) {
     std::set<std::pair<int, int>> covered;
     for (const PairSpec& pair : selection.pairs)
         for (const auto& [a, b] : pair.body_pairs) covered.insert(std::minmax(a, b));
-    std::vector<std::string> list;
+    BodyPairs list;
     const auto count = count_of(model.bodies);
     for (int a = 0; a < count; ++a)
         for (int b = a + 1; b < count; ++b)
-            if (covered.count({a, b}) == 0) list.push_back(model.bodies[a].name + ":" + model.bodies[b].name);
+            if (covered.count({a, b}) == 0) list.emplace_back(a, b);
+    return list;
+}
+
+BodyPairs unexplained_pairs(const Model& model, const BodyPairs& uncovered, const PairSelection& selection) {
+    std::set<std::pair<int, int>> told;
+    for (const BodyPairs* pairs : {&selection.ignored_by_scene, &selection.one_group, &selection.joined})
+        told.insert(pairs->begin(), pairs->end());
+    for (const PairSpec& pair : selection.left_out)
+        for (const auto& [a, b] : pair.body_pairs) told.insert(std::minmax(a, b));
+    BodyPairs list;
+    const std::set<std::string> ignored(selection.ignored.begin(), selection.ignored.end());
+    std::copy_if(uncovered.begin(), uncovered.end(), std::back_inserter(list), [&](const auto& pair) {
+        return told.count(pair) == 0 && ignored.count(name_of(model, pair)) == 0 &&
+               ignored.count(name_of(model, {pair.second, pair.first})) == 0;
+    });
     return list;
 }
 

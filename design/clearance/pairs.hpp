@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// Which pairs `fettle clearance` judges and what it requires of each: --pairs, --ignore, --group, --minimum, --process.
-///   as assembled, or where nothing moves: every pair but those of one group of the scene, whatever types they have, and what a joint joins
-///   over a motion: every pair that may collide; where nothing is dynamic, every pair of which one moves; the others are looked at for a
-///   clash only
+///   as assembled, or where nothing moves: every pair, whatever types they have, but those of one group of the scene, those that the scene
+///   ignores, and those that a joint joins
+///   over a motion: every pair of these that may collide; where nothing is dynamic, every pair of which one moves; the others are looked at
+///   for a clash only
+///   what a joint joins is looked at as assembled alone (joined_pairs.hpp)
 ///   of a design: those that its objective or its constraints are about too, whatever joins them (design_pairs)
 ///   --pairs A:B,C:D      bodies or groups by name; `*` stands for any letters (pin*:plate); A:B=0.4mm has a minimum of its own, and of
 ///                        one without any, where --minimum and --process give none, only the distance is wanted
@@ -47,14 +49,15 @@ struct PairSpec {
     std::vector<std::pair<int, int>> body_pairs;  ///< to measure; first of a, second of b
 };
 
-struct PairSelection {
-    std::vector<PairSpec> pairs;
-    std::vector<std::string> ignored;  ///< "A:B"
-    std::vector<PairSpec> left_out;    ///< neither judged by default nor named: only their clashes are reported
-};
-
 /// Two bodies by their indices, the lesser first; sorted, each once.
 using BodyPairs = std::vector<std::pair<int, int>>;
+
+struct PairSelection {
+    std::vector<PairSpec> pairs;
+    std::vector<std::string> ignored;               ///< "A:B", on request
+    std::vector<PairSpec> left_out;                 ///< neither judged by default nor named: only their clashes are reported
+    BodyPairs ignored_by_scene, one_group, joined;  ///< not judged for these reasons, though nobody named other pairs
+};
 
 /// The bodies whose clearance a design's objective or constraints are about, by themselves or within an expression.
 BodyPairs design_pairs(const description::Design& design);
@@ -84,7 +87,12 @@ bool judged_by_default(const core::model::Model& model, int a, int b);
 /// "A:B" of each.
 std::vector<std::string> pair_names(const std::vector<PairSpec>& pairs);
 
-/// "A:B" of the pairs of bodies that none of the selection's pairs is about.
-std::vector<std::string> uncovered_pairs(const core::model::Model& model, const PairSelection& selection);
+/// "A:B".
+std::string name_of(const core::model::Model& model, const std::pair<int, int>& bodies);
+std::vector<std::string> pair_names(const core::model::Model& model, const BodyPairs& pairs);
+
+/// The pairs of bodies that none of the selection's pairs is about; and those of them of which the selection does not say why.
+BodyPairs uncovered_pairs(const core::model::Model& model, const PairSelection& selection);
+BodyPairs unexplained_pairs(const core::model::Model& model, const BodyPairs& uncovered, const PairSelection& selection);
 
 }  // namespace fettle::design::clearance

@@ -18,6 +18,8 @@ using core::clearance::PairStatus;
 using core::clearance::Solids;
 using core::clearance::Witness;
 
+constexpr const char* one_inside_the_other = "one lies inside the material of the other";
+
 int severity(PairStatus status) {
     switch (status) {
         case PairStatus::violated:
@@ -124,18 +126,17 @@ void sort(std::vector<ReportedPair>& pairs) {
     pairs = std::move(sorted);
 }
 
-// Where every two bodies are of one group, or joined by a joint.
-const char* why_none_is_apart(const core::model::Model& model) {
-    const auto is_grouped = [&](const core::model::Body& body) { return body.group >= 0 && body.group == model.bodies.front().group; };
-    if (std::all_of(model.bodies.begin(), model.bodies.end(), is_grouped)) return "all bodies are of one group";
-    const bool has_groups = std::any_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.group >= 0; });
-    return has_groups ? "the bodies of every pair are of one group, or a joint joins them" : "a joint joins the bodies of every pair";
+// Where every two bodies are of one group, ignored, or joined by a joint.
+const char* why_none_is_apart(const PairSelection& selection) {
+    const bool joined = !selection.joined.empty(), ignored = !selection.ignored_by_scene.empty(), grouped = !selection.one_group.empty();
+    if (joined + ignored + grouped > 1) return "the bodies of every pair are of one group, ignored by the scene, or joined by a joint";
+    return joined ? "a joint joins the bodies of every pair" : ignored ? "the scene ignores every pair" : "all bodies are of one group";
 }
 
 std::string why_none_is_judged(const Subject& subject, const PairSelection& selection) {
     if (subject.model.bodies.size() < 2) return "there are no two bodies";
     if (!selection.ignored.empty()) return "every pair is ignored";
-    if (selection.left_out.empty()) return why_none_is_apart(subject.model);
+    if (selection.left_out.empty()) return why_none_is_apart(selection);
     return std::string("no pair ") + (subject.ranges ? "of bodies may collide" : "may collide in this motion") +
            "; name pairs with --pairs";
 }
@@ -218,11 +219,31 @@ void add_minima(const std::vector<PairMinimum>& required, core::certificate::Cer
             if (std::minmax(pair.a, pair.b) == std::minmax(each.a, each.b)) pair.minimum = each.minimum;
 }
 
+// A row for what is a finding.
+void add_joined(const Subject& subject, std::vector<JoinedPair> joined, ClearanceReport& report) {
+    for (const JoinedPair& each : joined) {
+        if (each.finding != JoinedFinding::clash && each.finding != JoinedFinding::undecided) continue;
+        ReportedPair pair;
+        const auto unit = [&](int body) { return Unit{subject.model.bodies[body].name, {body}, false}; };
+        pair.spec = {unit(each.a), unit(each.b), 0, "", false, 0, false, {{each.a, each.b}}};
+        pair.least = each.clearance;
+        pair.members = {each.clearance};
+        pair.joined_by = joint_text(each);
+        pair.finding = each.finding == JoinedFinding::clash ? Finding::clash : Finding::undecided;
+        if (each.finding == JoinedFinding::clash && each.clearance.solids == Solids::overlap) pair.overlap = one_inside_the_other;
+        pair.least.status = status_of(pair);
+        report.pairs.push_back(std::move(pair));
+    }
+    report.joined = std::move(joined);
+}
+
 // `results`: one per pair of bodies, in the order of the selection.
 ClearanceReport make_report(const Subject& subject, const PairSelection& selection, const std::vector<PairClearance>& results,
-                            bool stopped) {
+                            std::vector<JoinedPair> joined, bool stopped) {
     ClearanceReport report;
     report.ignored = selection.ignored;
+    report.ignored_by_scene = pair_names(subject.model, selection.ignored_by_scene);
+    report.one_group = pair_names(subject.model, selection.one_group);
     report.left_out = pair_names(selection.left_out);
     size_t next = 0;
     const auto set_time = [&](Witness& w) { w.time = core::stepper::time_at(subject.trajectory, w.step, w.segment, w.s); };
@@ -236,14 +257,19 @@ ClearanceReport make_report(const Subject& subject, const PairSelection& selecti
             for (Witness& witness : pair.members.back().witnesses) set_time(witness);
         }
         pair.least = least_of(pair.members);
-        if (pair.least.solids == Solids::overlap) pair.overlap = "one lies inside the material of the other";
+        if (pair.least.solids == Solids::overlap) pair.overlap = one_inside_the_other;
         pair.finding = finding_of(subject, pair, stopped);
         pair.least.status = status_of(pair);
-        if (pair.least.status == PairStatus::violated) report.status = PairStatus::violated;
-        if (pair.least.status == PairStatus::undecided && report.status == PairStatus::clear) report.status = PairStatus::undecided;
         report.pairs.push_back(std::move(pair));
     }
-    report.uncovered = uncovered_pairs(subject.model, selection);
+    add_joined(subject, std::move(joined), report);
+    for (const ReportedPair& pair : report.pairs) {
+        if (pair.least.status == PairStatus::violated) report.status = PairStatus::violated;
+        if (pair.least.status == PairStatus::undecided && report.status == PairStatus::clear) report.status = PairStatus::undecided;
+    }
+    const BodyPairs uncovered = uncovered_pairs(subject.model, selection);
+    report.uncovered = pair_names(subject.model, uncovered);
+    report.unexplained = pair_names(subject.model, unexplained_pairs(subject.model, uncovered, selection));
     report.message = why_not_judged(subject, selection, stopped);
     if (stopped || (!report.message.empty() && report.status == PairStatus::clear)) report.status = PairStatus::undecided;
     sort(report.pairs);
@@ -293,7 +319,8 @@ Result<ClearanceReport> judge_clearances(const Subject& subject, const Question&
         const auto clashes = clashes_of_left_out(subject, options, *selection);
         proven.pairs.insert(proven.pairs.end(), clashes.begin(), clashes.end());
     }
-    ClearanceReport report = make_report(subject, *selection, proven.pairs, question.should_stop());
+    std::vector<JoinedPair> joined = look_at_joined(subject, selection->joined, options);
+    ClearanceReport report = make_report(subject, *selection, proven.pairs, std::move(joined), question.should_stop());
     report.tolerance = options.tolerance;
     report.notes = subject.notes;
     if (question.pairs.minimum && !question.pairs.process.empty())

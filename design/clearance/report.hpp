@@ -11,6 +11,7 @@
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/certificate/certificate.hpp"
 #include "fettle/design/clearance/baseline.hpp"
+#include "fettle/design/clearance/joined_pairs.hpp"
 #include "fettle/design/clearance/pairs.hpp"
 #include "fettle/design/clearance/subject.hpp"
 
@@ -32,8 +33,9 @@ struct ReportedPair {
     core::clearance::PairClearance least;                 ///< of the two bodies that are closest; bounds and status of the whole pair
     std::vector<core::clearance::PairClearance> members;  ///< one per pair of bodies
     Finding finding = Finding::undecided;
-    std::string overlap;  ///< says that one lies inside the other; empty: it does not
-    Change change;        ///< against the baseline
+    std::string overlap;    ///< says that one lies inside the other; empty: it does not
+    std::string joined_by;  ///< "joint j": of a pair that was looked at as assembled alone (joined_pairs.hpp)
+    Change change;          ///< against the baseline
 };
 
 /// Of the parts that the meshes were drawn for, whose round surfaces are round [m].
@@ -46,14 +48,20 @@ struct TrueBounds {
 std::optional<TrueBounds> true_bounds(const Subject& subject, const ReportedPair& pair);
 /// The same of two bodies of a model. Nothing for bodies that touch or pass through each other, too.
 std::optional<TrueBounds> true_bounds(const core::model::Model& model, const core::clearance::PairClearance& pair);
+/// Of a clash that facets may be the cause of: by how much those of the two parts reach beyond the round surfaces that they stand for,
+/// together [m]. Meshes that are no deeper in each other than that may be of parts that are apart; finer facets tell.
+std::optional<double> clash_of_facets(const core::model::Model& model, const core::clearance::PairClearance& pair);
 
 struct ClearanceReport {
-    std::vector<ReportedPair> pairs;  ///< worst first
-    std::vector<std::string> ignored;
-    std::vector<std::string> left_out;   ///< not judged; over a path no clash was found either, and nothing else is reported
-    std::vector<std::string> uncovered;  ///< pairs of bodies that no row is about
-    std::vector<std::string> notes;      ///< the subject's, and what of the question counted for nothing
-    std::string message;                 ///< why nothing was judged, or not to the end; empty: it was
+    std::vector<ReportedPair> pairs;                       ///< worst first
+    std::vector<std::string> ignored;                      ///< on request
+    std::vector<std::string> ignored_by_scene, one_group;  ///< not judged for these reasons
+    std::vector<JoinedPair> joined;                        ///< what a joint joins; findings among them are rows, too
+    std::vector<std::string> left_out;     ///< not judged; over a path no clash was found either, and nothing else is reported
+    std::vector<std::string> uncovered;    ///< pairs of bodies that no row is about
+    std::vector<std::string> unexplained;  ///< those of them that are in none of the lists above: nobody named them
+    std::vector<std::string> notes;        ///< the subject's, and what of the question counted for nothing
+    std::string message;                   ///< why nothing was judged, or not to the end; empty: it was
     std::optional<Baseline> baseline;
     std::optional<core::certificate::Certificate> certificate;  ///< if it was asked for; without pairs: nothing is proven
     double tolerance = 0;                                       ///< [m]

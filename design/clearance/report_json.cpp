@@ -37,6 +37,17 @@ Json witness_json(const Witness& w) {
     return json;
 }
 
+// Of a clash of closed bodies.
+void add_overlap(Json& json, const PairClearance& pair) {
+    if (!pair.overlap) return;
+    const core::clearance::Overlap& overlap = *pair.overlap;
+    json["depth"] = {{"lower", overlap.depth_lower},
+                     {"upper", overlap.depth_upper},
+                     {"time", overlap.time},
+                     {"point", overlap.depth_lower > 0 ? answers::vector_json(overlap.center) : Json()}};
+    json["volume"] = {{"lower", overlap.volume_lower}, {"upper", overlap.volume_upper}};
+}
+
 // Where the least distance is, and how it was found.
 void add_witness(Json& json, const ReportedPair& pair, const Subject& subject, const std::vector<std::string>& names) {
     const PairClearance& least = pair.least;
@@ -54,13 +65,6 @@ void add_witness(Json& json, const ReportedPair& pair, const Subject& subject, c
         if (!least.touch->is_whole) json["touching"]["at_least"] = true;
     }
     if (least.is_clash()) json["clash_not_before"] = least.clash_not_before;
-    if (least.overlap) {
-        json["depth"] = {{"lower", least.overlap->depth_lower},
-                         {"upper", least.overlap->depth_upper},
-                         {"time", least.overlap->time},
-                         {"point", least.overlap->depth_lower > 0 ? answers::vector_json(least.overlap->center) : Json()}};
-        json["volume"] = {{"lower", least.overlap->volume_lower}, {"upper", least.overlap->volume_upper}};
-    }
     if (pair.spec.a.is_group) json["body_a"] = names[least.a];
     if (pair.spec.b.is_group) json["body_b"] = names[least.b];
     json["pose_a"] = pose_json(pose_where_nearest(subject, least, least.a));
@@ -111,7 +115,7 @@ void add_worst_position(Json& json, const ReportedPair& pair, const Subject& sub
     json["complete"] = least.complete;
     json["tolerance"] = least.tolerance;
     json["coordinates"] = coordinates_json(*subject.ranges, least);
-    if (subject.toleranced) {
+    if (subject.toleranced && !least.as_assembled) {
         json["worst_deviations"] = deviations_json(subject, least);
         json["no_influence"] = deviations_without_influence(subject, least);
     }
@@ -124,7 +128,7 @@ void add_worst_position(Json& json, const ReportedPair& pair, const Subject& sub
     json["point_b"] = answers::vector_json(w.point_b);
     json["pose_a"] = pose_json(pose_where_nearest(subject, least, least.a));
     json["pose_b"] = pose_json(pose_where_nearest(subject, least, least.b));
-    json["poses"] = moved_poses(subject, least);
+    json["poses"] = least.as_assembled ? Json::object() : moved_poses(subject, least);
     json["witness"] = {{"feature_a", feature_json(w.kind_a, w.primitive_a)}, {"feature_b", feature_json(w.kind_b, w.primitive_b)}};
 }
 
@@ -157,6 +161,9 @@ Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vect
     } else {
         add_witness(json, pair, subject, names);
     }
+    add_overlap(json, least);
+    if (const auto reach = clash_of_facets(subject.model, least)) json["facets_beyond_round"] = *reach;
+    if (!pair.joined_by.empty()) json["joined_by"] = pair.joined_by;
     if (const auto parts = true_bounds(subject, pair))
         json["true_surfaces"] = {{"lower", parts->lower},
                                  {"upper", std::isfinite(parts->upper) ? Json(parts->upper) : Json()},
@@ -165,6 +172,14 @@ Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vect
     if (!pair.change.word.empty()) json["change"] = pair.change.word;
     if (const auto& before = pair.change.before)
         json["before"] = {{"status", before->status}, {"lower", before->lower}, {"upper", before->upper}};
+    return json;
+}
+
+Json joined_json(const JoinedPair& pair, const std::vector<std::string>& names) {
+    Json json{{"a", names[pair.a]}, {"b", names[pair.b]}, {"joints", pair.joints}, {"found", to_string(pair.finding)}};
+    if (pair.finding == JoinedFinding::apart) json["lower"] = pair.clearance.lower;
+    if (pair.finding == JoinedFinding::undecided && !pair.clearance.reason.empty()) json["reason"] = pair.clearance.reason;
+    add_overlap(json, pair.clearance);
     return json;
 }
 
@@ -207,6 +222,10 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
                                      {"in_is_proven", deviation->in_is_proven}};
     if (!deviations.empty()) json["deviations"] = std::move(deviations);
     json["ignored"] = report.ignored;
+    json["ignored_by_scene"] = report.ignored_by_scene;
+    json["one_group"] = report.one_group;
+    json["joined"] = Json::array();
+    for (const JoinedPair& pair : report.joined) json["joined"].push_back(joined_json(pair, names));
     json["left_out"] = report.left_out;
     json["uncovered"] = report.uncovered;
     json["notes"] = report.notes;

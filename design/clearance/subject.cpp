@@ -111,7 +111,8 @@ bool may_push(const Subject& subject, int a, int b) {
 
 core::kinematics::Pose pose_where_nearest(const Subject& subject, const core::clearance::PairClearance& pair, int body) {
     const core::clearance::Witness& witness = pair.witness;
-    const core::kinematics::Pose pose = subject.toleranced ? core::clearance::pose_at_witness(*subject.toleranced, pair, body)
+    const core::kinematics::Pose pose = pair.as_assembled    ? subject.model.bodies[body].pose_start
+                                        : subject.toleranced ? core::clearance::pose_at_witness(*subject.toleranced, pair, body)
                                         : subject.ranges
                                             ? core::clearance::pose_at_witness(subject.model, *subject.ranges, pair, body)
                                             : core::stepper::pose_at(subject.trajectory, witness.step, witness.segment, witness.s, body);

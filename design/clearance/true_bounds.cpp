@@ -48,6 +48,15 @@ std::optional<TrueBounds> true_bounds(const Subject& subject, const ReportedPair
     return bounds_of(subject.model, pair.members.empty() ? std::span(&pair.least, 1) : std::span(pair.members));
 }
 
+std::optional<double> clash_of_facets(const core::model::Model& model, const PairClearance& pair) {
+    if (!pair.is_clash() || !pair.overlap) return std::nullopt;
+    double reach = 0;
+    for (const int body : {pair.a, pair.b})
+        if (const auto& deviation = model.bodies[body].mesh.deviation) reach += deviation->in;
+    if (!(reach > 0) || pair.overlap->depth_lower > reach) return std::nullopt;
+    return reach;
+}
+
 std::optional<TrueBounds> true_bounds(const core::model::Model& model, const PairClearance& pair) {
     if (pair.is_clash() || pair.touch || pair.is_far) return std::nullopt;
     return bounds_of(model, std::span(&pair, 1));

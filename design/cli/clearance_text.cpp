@@ -73,6 +73,7 @@ std::string position_text(const Subject& subject, const PairClearance& pair, con
         parts.push_back(joint.joint +
                         (joint.is_angle ? formatted(" %.6g deg", value * degrees) : " " + lengths.plain(value) + " " + lengths.unit()));
     });
+    if (pair.as_assembled) return "as assembled";
     if (subject.toleranced)
         for (const clearance::WorstDeviation& d : worst_deviations(subject, pair)) parts.push_back(deviation_text(d));
     return parts.empty() ? subject.toleranced ? "no tolerance matters" : "nothing moves one against the other" : joined(parts);
@@ -82,6 +83,7 @@ std::string position_text(const Subject& subject, const PairClearance& pair, con
 std::string without_influence(const ClearanceReport& report, const Subject& subject) {
     std::string text;
     for (const ReportedPair& pair : report.pairs) {
+        if (pair.least.as_assembled) continue;
         const std::vector<std::string> names = deviations_without_influence(subject, pair.least);
         if (!names.empty()) text += "no influence on " + pair_name(pair) + " (proven): " + joined(names) + "\n";
     }
@@ -97,15 +99,30 @@ std::string touched(const ReportedPair& pair, const Lengths& lengths) {
            (pair.spec.may_touch ? ", accepted" : "");
 }
 
-// "3.9999 to 6.0001 mm deep, 116 to 161 mm^3 shared".
+// "2.31 mm^3", one figure where the bounds agree to a hundredth; else "116 to 161 mm^3", rounded outwards.
+std::string bounds_text(double lower, double upper, const std::string& unit) {
+    if (upper <= 1.01 * lower) return formatted("%.3g ", 0.5 * (lower + upper)) + unit;
+    return (lower > 0 ? formatted("%.3g to ", 0.995 * lower) : std::string("at most ")) + formatted("%.3g ", 1.005 * upper) + unit;
+}
+
+// "0.246 mm deep, 2.31 mm^3 shared".
+std::string overlapped(const core::clearance::Overlap& o, const Lengths& lengths) {
+    const double unit = lengths.metres(), cubed = unit * unit * unit;
+    return bounds_text(o.depth_lower / unit, o.depth_upper / unit, lengths.unit()) + " deep, " +
+           bounds_text(o.volume_lower / cubed, o.volume_upper / cubed, lengths.unit() + "^3") + " shared";
+}
+
 std::string overlapped(const ReportedPair& pair, const Lengths& lengths) {
     if (!pair.least.overlap) return pair.overlap.empty() ? "the surfaces pass through each other" : pair.overlap;
-    const core::clearance::Overlap& o = *pair.least.overlap;
-    const double cubed = lengths.metres() * lengths.metres() * lengths.metres();
-    return (o.depth_lower > 0 ? lengths.down(o.depth_lower) + " to " : std::string("at most ")) + lengths.up(o.depth_upper) + " " +
-           lengths.unit() + " deep, " +
-           (o.volume_lower > 0 ? formatted("%.3g to ", 0.995 * o.volume_lower / cubed) : std::string("at most ")) +
-           formatted("%.3g ", 1.005 * o.volume_upper / cubed) + lengths.unit() + "^3 shared";
+    return overlapped(*pair.least.overlap, lengths);
+}
+
+// Of a clash that round parts need not have.
+std::string by_facets(const ReportedPair& pair, const Subject& subject, const Lengths& lengths) {
+    const auto reach = pair.finding == Finding::clash ? clearance::clash_of_facets(subject.model, pair.least) : std::nullopt;
+    if (!reach) return {};
+    return "facets reach up to " + lengths.rough(*reach) + " " + lengths.unit() +
+           " beyond the round surfaces that they stand for: whether the round parts share material, finer facets tell (\"facets\")";
 }
 
 // Of parts that share material, or touch, a distance says nothing.
@@ -138,7 +155,8 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
                           bound(pair, false).c_str(), console.coloured(status, good).c_str());
         if (subject.motion()) text += formatted("  %.6g", least.is_clash() ? least.clash_time : least.witness.time);
         if (subject.ranges) text += "  " + position_text(subject, least, lengths);
-        if (pair.finding == Finding::clash && !subject.ranges) text += "  " + overlapped(pair, lengths);
+        if (pair.finding == Finding::clash && (!subject.ranges || least.overlap)) text += "  " + overlapped(pair, lengths);
+        if (!pair.joined_by.empty()) text += "  joined by " + pair.joined_by;
         if (least.touch) text += (pair.finding == Finding::touching ? "  " : "  touching ") + touched(pair, lengths);
         if (least.solids == core::clearance::Solids::not_closed) text += std::string("  ") + core::clearance::words(least.solids);
         text += (pair.change.word.empty() ? "" : "  " + pair.change.word) + "\n";
@@ -147,9 +165,12 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
 }
 
 // What is proven: of the distance, or of what the parts share or touch over.
-std::string found_of(const ReportedPair& pair, const Lengths& lengths) {
+std::string found_of(const ReportedPair& pair, const Subject& subject, const Lengths& lengths) {
     const PairClearance& least = pair.least;
-    if (pair.finding == Finding::clash) return "the parts share material: " + overlapped(pair, lengths);
+    if (pair.finding == Finding::clash) {
+        const std::string facets = by_facets(pair, subject, lengths);
+        return "the parts share material: " + overlapped(pair, lengths) + (facets.empty() ? "" : "; " + facets);
+    }
     if (pair.finding == Finding::touching) return "the parts touch " + touched(pair, lengths);
     if (least.is_far) return "at least twice as far apart as is required";
     if (!least.is_bounded) return "no bound is proven" + (least.reason.empty() ? "" : ": " + least.reason);
@@ -185,11 +206,11 @@ std::string clash(const ReportedPair& pair, const Subject& subject, const Length
     if (!least.overlap) return text;
     const core::clearance::Overlap& o = *least.overlap;
     const double cubed = lengths.metres() * lengths.metres() * lengths.metres();
-    text += "   to part them takes a move of at least " + lengths.down(o.depth_lower) + ", " + lengths.up(o.depth_upper) + " " +
-            lengths.unit() + " is enough; they share at least " + formatted("%.3g", 0.995 * o.volume_lower / cubed) + ", at most " +
-            formatted("%.3g", 1.005 * o.volume_upper / cubed) + " " + lengths.unit() + "^3";
+    text += "   to part them takes a move of at least " + lengths.down(o.depth_lower, 3) + ", " + lengths.up(o.depth_upper, 3) + " " +
+            lengths.unit() + " is enough; they share " + bounds_text(o.volume_lower / cubed, o.volume_upper / cubed, lengths.unit() + "^3");
     if (subject.motion()) text += formatted(", at %.6g s", o.time);
-    return text + "\n";
+    const std::string facets = by_facets(pair, subject, lengths);
+    return text + "\n" + (facets.empty() ? "" : "   " + facets + "\n");
 }
 
 // Of round surfaces, which facets stand for.
@@ -345,6 +366,33 @@ std::string positions_csv(const ClearanceReport& report, const Subject& subject,
     return text;
 }
 
+// "not examined: 7 pairs of bodies: a:b, ..."; empty of none.
+std::string pair_list(const std::string& what, const std::vector<std::string>& pairs) {
+    constexpr size_t most = 6;
+    if (pairs.empty()) return {};
+    return what + ": " + core::base::counted(pairs.size(), "pair") +
+           " of bodies: " + joined(std::span(pairs).first(std::min(pairs.size(), most))) + (pairs.size() > most ? ", ...\n" : "\n");
+}
+
+// What was found of bodies that a joint joins, but for findings, which are rows.
+std::string joined_text(const ClearanceReport& report, const Lengths& lengths, const Subject& subject) {
+    using clearance::JoinedFinding;
+    std::vector<std::string> apart, others;
+    for (const clearance::JoinedPair& pair : report.joined) {
+        const std::string name = subject.model.bodies[pair.a].name + ":" + subject.model.bodies[pair.b].name;
+        if (pair.finding == JoinedFinding::apart) apart.push_back(name);
+        if (pair.finding == JoinedFinding::touching) others.push_back(name + " touch");
+        if (pair.finding != JoinedFinding::explained) continue;
+        const auto& overlap = pair.clearance.overlap;
+        others.push_back(name + " share material as a pin and its bore, which " + joint_text(pair) + " explains" +
+                         (overlap ? " (" + overlapped(*overlap, lengths) + ")" : ""));
+    }
+    std::string text;
+    if (!apart.empty()) text += pair_list("joined, so looked at as assembled alone, and apart there", apart);
+    if (!others.empty()) text += "joined, so looked at as assembled alone: " + joined(others) + "\n";
+    return text;
+}
+
 }  // namespace
 
 std::string report_text(const ClearanceReport& report, const Subject& subject, int explain, const Console& console) {
@@ -373,6 +421,8 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, i
     const auto touch = std::find_if(report.pairs.begin(), report.pairs.end(),
                                     [](const ReportedPair& p) { return p.finding == Finding::touching && !p.spec.may_touch; });
     if (touch != report.pairs.end()) text += "touching: faces lie on each other; if they are meant to, " + how_to_accept(*touch) + "\n";
+    for (const ReportedPair& pair : report.pairs)
+        if (const std::string facets = by_facets(pair, subject, lengths); !facets.empty()) text += pair_name(pair) + ": " + facets + "\n";
     for (const auto& [reason, count] : reasons) text += formatted("undecided (%d): ", count) + reason + "\n";
     if (std::any_of(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.finding == Finding::contact; }))
         text += "contact: these push each other, so they are not judged; name a pair with --pairs to judge it\n";
@@ -381,10 +431,8 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, i
                                 : "not judged, because the simulation lets them pass through each other (no clash was found): ") +
                 joined(report.left_out) + "; name them with --pairs\n";
     if (!report.ignored.empty()) text += "ignored: " + joined(report.ignored) + "\n";
-    if (!report.uncovered.empty())
-        text += "not examined: " + core::base::counted(report.uncovered.size(), "pair") +
-                " of bodies: " + joined(std::span(report.uncovered).first(std::min<size_t>(report.uncovered.size(), 6))) +
-                (report.uncovered.size() > 6 ? ", ...\n" : "\n");
+    text += pair_list("ignored by the scene", report.ignored_by_scene) + pair_list("not judged, as of one group", report.one_group) +
+            joined_text(report, lengths, subject) + pair_list("not examined", report.unexplained);
     for (const std::string& note : report.notes) text += "note: " + note + "\n";
     if (report.baseline) text += report.baseline->text();
     if (!report.message.empty()) text += report.message + "\n";
@@ -397,7 +445,7 @@ std::vector<Check> report_checks(const ClearanceReport& report, const Subject& s
     std::vector<Check> checks;
     for (const ReportedPair& pair : report.pairs) {
         const PairClearance& least = pair.least;
-        Check check{pair_name(pair), to_check(least.status), to_string(pair.finding), found_of(pair, lengths),
+        Check check{pair_name(pair), to_check(least.status), to_string(pair.finding), found_of(pair, subject, lengths),
                     file_of_part(subject, pair.spec.a.name, file)};
         if (!pair.spec.required_by.empty()) check.message += "; required " + lengths.plain(least.minimum) + " " + unit + " per side";
         if (pair.finding == Finding::contact) check.message += "; they push each other, so the distance is not judged";

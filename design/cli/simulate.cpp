@@ -24,6 +24,7 @@
 #include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/answers/simulate_json.hpp"
+#include "fettle/design/clearance/left_out.hpp"
 #include "fettle/design/clearance/path_proof.hpp"
 #include "fettle/design/clearance/report_json.hpp"
 #include "fettle/design/cli/answers.hpp"
@@ -174,8 +175,8 @@ Outcome outcome_of(const core::stepper::SimulationReport& report, const clearanc
 }
 
 std::string answer_text(const Outcome& outcome, const Simulation& simulation, const clearance::PathProof& proof, const std::string& out,
-                        double length_unit, const Console& console) {
-    const RoundedLengths lengths(answers::unit_name(length_unit));
+                        const core::model::Model& model, const Console& console) {
+    const RoundedLengths lengths(answers::unit_name(model.length_unit));
     const auto proven = [&](double distance) {
         return "at least " + lengths.fixed(distance, Towards::down) + " " + lengths.unit() + ", proven\n";
     };
@@ -194,6 +195,7 @@ std::string answer_text(const Outcome& outcome, const Simulation& simulation, co
             text += "smallest distance of two bodies over the first " + core::base::counted(static_cast<size_t>(proof.steps), "step") +
                     ": " + proven(*proof.lower);
     }
+    text += clearance::left_out_text(clearance::left_out_of_contact(model));
     if (!out.empty()) text += "trajectory: " + (std::filesystem::path(out) / "trajectory.json").string() + "\n";
     return text;
 }
@@ -220,6 +222,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     if (!outcome.message.empty()) json["message"] = outcome.message;
     json.update(answers::run_json(simulation));
     json.update(clearance::proof_json(proof, run.prover.seconds()));
+    json["left_out"] = clearance::left_out_json(clearance::left_out_of_contact(model));
     answers::add_end(model, simulation, json);
     json["peak_memory_bytes"] = peak_memory_bytes();
     if (!options.poses.empty())
@@ -240,7 +243,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
         console.unwritten(errors);
         written = errors.empty();
     }
-    std::string told = run.about + answer_text(outcome, simulation, proof, written ? options.out : "", model.length_unit, console);
+    std::string told = run.about + answer_text(outcome, simulation, proof, written ? options.out : "", model, console);
     if (balance) told += balance_text(*balance);
     if (run.writing && (written || !writes_out)) run.writing->trajectory.remove();
     if (written && !options.no_report)

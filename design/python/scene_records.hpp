@@ -131,4 +131,5 @@ FETTLE_RECORD(fettle::core::scene::Scene, "Scene", path_field("path", &Type::pat
               field("contact_damping_time", &Type::contact_damping_time), field("friction", &Type::friction),
               field("mechanism", &Type::mechanism), field("integrator", &Type::integrator),
               field("velocity_tolerance", &Type::velocity_tolerance), field("max_newton_iterations", &Type::max_newton_iterations),
-              field("variables", &Type::variables), field("numbers", &Type::numbers), field("warnings", &Type::warnings))
+              field("variables", &Type::variables), field("numbers", &Type::numbers), field("ignore", &Type::ignore),
+              field("warnings", &Type::warnings))

@@ -335,6 +335,7 @@ class Scene(Record):
     max_newton_iterations: int = 3000
     variables: List[Variable] = dataclasses.field(default_factory=list)
     numbers: List[BoundNumber] = dataclasses.field(default_factory=list)  #: that follow from variables
+    ignore: List[str] = dataclasses.field(default_factory=list)  #: "a:b", pairs that pass through each other; * for any letters
     warnings: List[str] = dataclasses.field(default_factory=list)
 
     def body(self, name: str) -> int:

@@ -58,4 +58,17 @@ TEST_CASE("A field of a table is quoted where it must be, and no formula for a s
     }
 }
 
+TEST_CASE("A star stands for any letters, and many of them take no time", "[base]") {
+    CHECK(matches_pattern("pin*", "pin"));
+    CHECK(matches_pattern("*_hand", "left_hand"));
+    CHECK(matches_pattern("a*b*c", "a1b2b3c"));
+    CHECK(matches_pattern("**", ""));
+    CHECK_FALSE(matches_pattern("pin*", "a pin"));
+    CHECK_FALSE(matches_pattern("a*b", "ab c"));
+    CHECK_FALSE(matches_pattern("", "a"));
+    std::string stars;
+    for (int i = 0; i < 1000; ++i) stars += "*a";
+    CHECK_FALSE(matches_pattern(stars + "b", std::string(2000, 'a')));
+}
+
 }  // namespace fettle::core::base::text_test

@@ -235,4 +235,33 @@ TEST_CASE("ranges: 100 random trees, 100,000 sampled combinations", "[ranges][sl
                           << told.str());
 }
 
+TEST_CASE("ranges: flush parts that overlap are a clash, though no edge passes through a face", "[clearance][ranges]") {
+    // A pin on a wheel of radius 60 mm, 2 mm wide, and a post of 3 mm in its way at 33 degrees; both from z = -5 to 5 mm.
+    for (const double low : {-0.15, -3.0})
+        for (const double place : {33.0, -20.0, 40.0}) {
+            const auto at = [](double degrees) {
+                return 0.06 * Vector3(std::cos(degrees * M_PI / 180), std::sin(degrees * M_PI / 180), 0);
+            };
+            scene::Body pin = bar("pin", 0.004, at(0)), post = bar("post", 0.003, at(place));
+            pin.mesh = tests::support::box_mesh({-0.002, -0.001, -0.005}, {0.002, 0.001, 0.005});
+            post.mesh = tests::support::box_mesh({-0.0015, -0.0015, -0.005}, {0.0015, 0.0015, 0.005});
+            post.type = scene::BodyType::static_body;
+            scene::Scene scene = scene_of({pin, post}, 0.01);
+            for (scene::Body& body : scene.bodies) body.group = -1;
+            scene.mechanism.joints = {
+                tests::mechanisms::joint("j", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"pin", -at(0), z_axis})};
+            scene.mechanism.joints[0].forces.limits = {low, 1.5};
+            const PairClearance found = certified(scene, 0, 1, 1e-6);
+            const bool meets = place * M_PI / 180 > low;
+            CAPTURE(low, place, found.lower, found.upper, found.reason);
+            CHECK(found.is_clash() == meets);
+            CHECK(found.status == (meets ? PairStatus::violated : PairStatus::clear));
+            if (!meets) continue;
+            REQUIRE(found.overlap);
+            CHECK(found.overlap->depth_lower > 1e-4);
+            CHECK(found.overlap->volume_upper <= 4e-3 * 2e-3 * 10e-3 * (1 + 1e-6));
+            CHECK(std::abs(found.at[0] - place * M_PI / 180) < 0.06);
+        }
+}
+
 }  // namespace fettle::core::clearance::range_clearance_test

@@ -14,14 +14,24 @@ PROGRAM = pathlib.Path(fettle.__file__).parents[2] / "bin" / "fettle"
 TWO_ARM = EXAMPLES / "two_arm" / "two_arm.scene.json"
 
 
-def plates(places):
+def plates(places, ignore=()):
     """Boxes of 10 mm at these places [m] along x."""
     bodies = []
     for name, x in places.items():
         body = fettle.Body(name, type="static", mesh=box(0.01, 0.01, 0.01), prescribed=fettle.held())
         body.pose.position = [x, 0, 0]
         bodies.append(body)
-    return fettle.build_model(fettle.Scene(bodies=bodies))
+    return fettle.build_model(fettle.Scene(bodies=bodies, ignore=list(ignore)))
+
+
+def test_what_a_scene_ignores_is_listed_and_judged_only_by_name():
+    model = plates({"left": 0, "middle": 0.005, "right": 0.03}, ignore=["mid*:left"])
+    assert not model.may_collide("left", "middle")
+    report = fettle.clearance(model)
+    assert report["ignored_by_scene"] == ["left:middle"] and report["joined"] == [] and len(report.pairs) == 2
+    assert report.status == "clear" and fettle.clearance(model, pairs="left:middle").status == "violated"
+    with pytest.raises(fettle.Error, match="there is no body"):
+        plates({"left": 0, "right": 0.03}, ignore=["lift:right"])
 
 
 def test_groups_patterns_and_minima_of_their_own():

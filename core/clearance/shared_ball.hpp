@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+/// Do two solids overlap somewhere in a box of variables, where a search (box_search.hpp) found that their surfaces meet and no more? The
+/// surfaces of flush parts need not pass through each other for that: no edge of one goes through a face of the other but at its border.
+/// Looked for is a ball in both that is larger than a touch, where the surfaces meet and beside it along each variable: by few cells first,
+/// then, of meshes that are cut soon, by what the two have in common (overlap.hpp).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "fettle/core/clearance/overlap.hpp"
+
+namespace fettle::core::clearance {
+
+/// @param place_of  (const Variables&, use) calls use(SolidBody a, SolidBody b, PairSegment held) with the bodies as they are there
+/// @param at        Where the surfaces meet; becomes the deepest place that was found.
+/// @return          whether a ball of a diameter greater than `touch` [m] was found in both
+template <class Variables, class PlaceOf>
+bool find_shared_ball(const Variables& low, const Variables& high, int variables, double touch, const PlaceOf& place_of, Variables& at) {
+    constexpr std::size_t few_triangles = 2000;
+    constexpr int few_cells = 256;
+    std::vector<Variables> places{at};
+    for (double step = 0.125; step > 1e-5; step *= 0.5)
+        for (std::size_t k = 0; k < static_cast<std::size_t>(variables); ++k)
+            for (const double sign : {-1.0, 1.0}) {
+                places.push_back(at);
+                places.back()[k] = std::clamp(at[k] + sign * step * (high[k] - low[k]), low[k], high[k]);
+            }
+    double deepest = touch;
+    for (const bool exactly : {false, true}) {
+        for (std::size_t i = 0; i < places.size(); ++i)
+            place_of(places[i], [&](const SolidBody& a, const SolidBody& b, const PairSegment& held) {
+                if (exactly && i > 0 && a.tree.mesh->triangles.size() + b.tree.mesh->triangles.size() > few_triangles) return;
+                const auto overlap = (exactly ? measured_overlap : overlap_at)(a, b, held, 0, few_cells);
+                if (!overlap || !(overlap->depth_lower > deepest)) return;
+                deepest = overlap->depth_lower;
+                at = places[i];
+            });
+        if (deepest > touch) return true;
+    }
+    return false;
+}
+
+}  // namespace fettle::core::clearance
