@@ -31,8 +31,7 @@ int run_import(const ImportArguments& arguments, const CommonOptions& common, Co
     const auto robot = urdf::parse_urdf(*text, arguments.path);
     if (!robot) return console.input_errors(robot.errors());
     urdf::ImportOptions options;
-    options.folder = fs::path(arguments.path).parent_path().string();
-    options.mesh_dirs = common.mesh_dirs;
+    options.meshes = {fs::path(arguments.path).parent_path().string(), common.mesh_dirs};
     const std::string name = fs::path(arguments.to).filename().string();
     options.stem = name.substr(0, name.size() - ending.size());
     options.floating = arguments.floating;
