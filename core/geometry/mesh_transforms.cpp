@@ -21,24 +21,23 @@ void turn_triangles(Mesh& mesh) {
     build_connectivity(mesh, edges);
 }
 
-std::vector<Mesh> split_shells(const Mesh& mesh) {
-    if (mesh.triangles.empty()) return {mesh};
-    std::vector<std::vector<Triangle>> triangles(mesh.shell_names.size());
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        triangles[mesh.triangle_shell[t]].push_back(mesh.triangles[t]);
-    }
+std::vector<Mesh> split_parts(const Mesh& mesh, const std::vector<int>& part_of_shell, int count) {
+    std::vector<std::vector<Triangle>> triangles(static_cast<std::size_t>(count));
+    std::vector<std::string> names(triangles.size());
+    for (std::size_t s = part_of_shell.size(); s-- > 0;) names[part_of_shell[s]] = mesh.shell_names[s];
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) triangles[part_of_shell[mesh.triangle_shell[t]]].push_back(mesh.triangles[t]);
     std::vector<Mesh> parts;
     std::vector<int> new_index(mesh.vertices.cols(), -1);
-    for (std::size_t s = 0; s < triangles.size(); ++s) {
+    for (std::size_t part = 0; part < triangles.size(); ++part) {
         std::vector<int> kept;
-        for (const auto& triangle : triangles[s]) kept.insert(kept.end(), triangle.begin(), triangle.end());
+        for (const auto& triangle : triangles[part]) kept.insert(kept.end(), triangle.begin(), triangle.end());
         std::sort(kept.begin(), kept.end());
         kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
         for (std::size_t i = 0; i < kept.size(); ++i) new_index[kept[i]] = static_cast<int>(i);
-        for (auto& triangle : triangles[s]) {
+        for (auto& triangle : triangles[part]) {
             for (int& v : triangle) v = new_index[v];
         }
-        parts.push_back(make_mesh(mesh.shell_names[s], mesh.vertices(Eigen::all, kept), std::move(triangles[s])));
+        parts.push_back(make_mesh(names[part], mesh.vertices(Eigen::all, kept), std::move(triangles[part])));
     }
     return parts;
 }

@@ -15,8 +15,8 @@ void scale_mesh(Mesh& mesh, const Vector3& factors);
 /// Every triangle seen from the other side; edges and shells anew.
 void turn_triangles(Mesh& mesh);
 
-/// One mesh per edge-connected shell, named after it, its vertices in their order; loose edges and points belong to none. A mesh without
-/// triangles stays whole.
-std::vector<Mesh> split_shells(const Mesh& mesh);
+/// One mesh for each of `count` parts, named after its first shell, its vertices in their order; loose edges and points belong to none.
+/// @param part_of_shell  which shells a part has; from 0. Contract: connectivity built, each part has a shell.
+std::vector<Mesh> split_parts(const Mesh& mesh, const std::vector<int>& part_of_shell, int count);
 
 }  // namespace fettle::core::geometry

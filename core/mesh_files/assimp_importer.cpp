@@ -52,7 +52,7 @@ struct Placement {
 
 struct Flat {
     std::vector<double> coordinates;
-    std::vector<std::int32_t> corners, polygon_ends, polygon_names, edges;
+    std::vector<std::int32_t> corners, polygon_ends, polygon_names, edges, points;
     std::vector<std::string> names;
     std::uint64_t placed = 0;  // see most_placed
 };
@@ -81,6 +81,7 @@ void append_mesh(const aiMesh& from, const Placement& placement, Flat& to) {
         // A vertex beyond the mesh's own would be another mesh's: the parent is to see it as beyond all.
         for (unsigned k = 0; k < face.mNumIndices; ++k)
             if (face.mIndices[k] >= from.mNumVertices) throw std::string("a face names a vertex that is not there");
+        if (face.mNumIndices == 1) to.points.push_back(index(face.mIndices[0]));
         if (face.mNumIndices == 2) to.edges.insert(to.edges.end(), {index(face.mIndices[0]), index(face.mIndices[1])});
         if (face.mNumIndices < 3) continue;
         for (unsigned k = 0; k < face.mNumIndices; ++k) to.corners.push_back(index(face.mIndices[mirrored ? face.mNumIndices - 1 - k : k]));
@@ -159,10 +160,10 @@ int write_failure(const std::string& reason, int code) {
 }
 
 int write_mesh(const Flat& mesh) {
-    const ImportHeader header{import_is_mesh,           mesh.coordinates.size() / 3, mesh.corners.size(),
-                              mesh.polygon_ends.size(), mesh.edges.size() / 2,       mesh.names.size()};
+    const ImportHeader header{import_is_mesh,        mesh.coordinates.size() / 3, mesh.corners.size(), mesh.polygon_ends.size(),
+                              mesh.edges.size() / 2, mesh.points.size(),          mesh.names.size()};
     bool good = write_all(&header, sizeof header) && write_list(mesh.coordinates) && write_list(mesh.corners) &&
-                write_list(mesh.polygon_ends) && write_list(mesh.polygon_names) && write_list(mesh.edges);
+                write_list(mesh.polygon_ends) && write_list(mesh.polygon_names) && write_list(mesh.edges) && write_list(mesh.points);
     for (const std::string& name : mesh.names) {
         const auto length = static_cast<std::uint32_t>(name.size());
         good = good && write_all(&length, sizeof length) && write_all(name.data(), name.size());

@@ -75,7 +75,8 @@ std::optional<RawMesh> mesh_of(std::string_view written) {
     RawMesh mesh;
     if (!header || header->mark != import_is_mesh || !bytes.list(header->vertices, mesh.vertices) ||
         !bytes.list(header->corners, mesh.corners) || !bytes.list(header->polygons, mesh.polygon_ends) ||
-        !bytes.list(header->polygons, mesh.polygon_group) || !bytes.list(header->edges, mesh.edges))
+        !bytes.list(header->polygons, mesh.polygon_group) || !bytes.list(header->edges, mesh.edges) ||
+        !bytes.list(header->points, mesh.points))
         return std::nullopt;
     for (std::uint64_t i = 0; i < header->names; ++i) {
         const auto length = bytes.one<std::uint32_t>();
@@ -85,8 +86,8 @@ std::optional<RawMesh> mesh_of(std::string_view written) {
     }
     if (bytes.one<std::uint64_t>() != import_end) return std::nullopt;
     const auto good_end = [&](const geometry::Edge& edge) { return all_in({edge[0], edge[1]}, mesh.vertices.size()); };
-    if (!all_in(mesh.corners, mesh.vertices.size()) || !all_in(mesh.polygon_group, mesh.groups.size()) ||
-        !std::all_of(mesh.edges.begin(), mesh.edges.end(), good_end))
+    if (!all_in(mesh.corners, mesh.vertices.size()) || !all_in(mesh.points, mesh.vertices.size()) ||
+        !all_in(mesh.polygon_group, mesh.groups.size()) || !std::all_of(mesh.edges.begin(), mesh.edges.end(), good_end))
         return std::nullopt;
     std::int64_t last = 0;
     for (const int end : mesh.polygon_ends) {

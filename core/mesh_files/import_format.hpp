@@ -14,6 +14,7 @@ struct ImportHeader {
     std::uint64_t corners = 0;   ///< of all polygons: a vertex index, 32 bits
     std::uint64_t polygons = 0;  ///< one past the last corner, 32 bits; behind all of them the name of each, 32 bits
     std::uint64_t edges = 0;     ///< two vertex indices of 32 bits
+    std::uint64_t points = 0;    ///< a vertex index of 32 bits
     std::uint64_t names = 0;     ///< a length of 32 bits and the characters
 };
 inline constexpr std::uint64_t import_is_mesh = 0x6873656d656c7466, import_is_failure = 0x6c696166656c7466;

@@ -152,6 +152,27 @@ Result<GroupedTriangles> grouped_triangles(const RawMesh& raw, bool weld, const 
     return result;
 }
 
+/// Programs leave vertices behind that nothing uses: they are no part of the solid. A file of vertices alone is a file of points.
+void drop_unused_vertices(RawMesh& raw, std::vector<Triangle>& triangles) {
+    if (raw.corners.empty() && raw.edges.empty() && raw.points.empty()) return;
+    std::erase_if(raw.edges, [&](const geometry::Edge& edge) { return raw.vertices[edge[0]] == raw.vertices[edge[1]]; });
+    std::vector<int> place(raw.vertices.size(), -1);
+    const auto visit_indices = [&](const auto& visit) {
+        for (Triangle& triangle : triangles) std::for_each(triangle.begin(), triangle.end(), visit);
+        for (geometry::Edge& edge : raw.edges) std::for_each(edge.begin(), edge.end(), visit);
+        std::for_each(raw.points.begin(), raw.points.end(), visit);
+    };
+    visit_indices([&](const int vertex) { place[vertex] = 0; });
+    int kept = 0;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+        if (place[i] < 0) continue;
+        raw.vertices[kept] = raw.vertices[i];
+        place[i] = kept++;
+    }
+    raw.vertices.resize(kept);
+    visit_indices([&](int& vertex) { vertex = place[vertex]; });
+}
+
 /// A shell has the name of the object of its first triangle, numbered where the object has several shells; unnamed ones keep "file/3".
 void name_shells(Mesh& mesh, const std::vector<int>& triangle_group, const std::vector<std::string>& groups) {
     FETTLE_ASSERT(mesh.triangles.size() == triangle_group.size(), "one object per triangle");
@@ -203,6 +224,9 @@ Result<Mesh> mesh_of(RawMesh& raw, const std::string& name, const std::string& p
     if (Errors errors = check_numbers(raw, path); !errors.empty()) return errors;
     auto faces = grouped_triangles(raw, options.weld, path);
     if (!faces) return faces.errors();
+    drop_unused_vertices(raw, faces->triangles);
+    if (raw.vertices.empty())
+        return Error{ErrorCode::mesh_invalid, path, "has triangles of no area alone: each has two corners in one place; export it again"};
 
     Matrix3X vertices(3, raw.vertices.size());
     for (std::size_t i = 0; i < raw.vertices.size(); ++i) vertices.col(i) = raw.vertices[i];

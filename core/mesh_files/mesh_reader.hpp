@@ -12,11 +12,12 @@
 ///
 /// Axes are those of the file: up in a glTF file is y.
 ///
-/// What is kept: positions, faces (polygons are cut into triangles), OBJ polylines and two-vertex faces as codimensional edges, vertices
-/// that nothing uses as codimensional points. What is dropped: normals, colours, texture coordinates, materials, STL attributes. All
-/// objects of a file become one mesh; shells are named after their object (`o` or `g` in OBJ, `solid` in STL, in 3MF the object's name,
-/// else "Object_<id>"): "name", or "name/0", "name/1", ... where one object has several shells. From a 3MF everything that its build places
-/// is read, except support.
+/// What is kept: positions, faces (polygons are cut into triangles), polylines and two-vertex faces as codimensional edges, points that the
+/// file names as such (`p` in OBJ, faces of one vertex) and the vertices of a file that has nothing else as codimensional points. What is
+/// dropped: vertices that nothing uses beside faces, edges or points, edges between vertices in one place, normals, colours, texture
+/// coordinates, materials, STL attributes. All objects of a file become one mesh; shells are named after their object (`o` or `g` in OBJ,
+/// `solid` in STL, in 3MF the object's name, else "Object_<id>"): "name", or "name/0", "name/1", ... where one object has several shells.
+/// From a 3MF everything that its build places is read, except support.
 ///
 /// Validity as a solid is solids/mesh_validity.hpp; which part of a scene the mesh is for, scene/scene.hpp.
 #pragma once

@@ -46,7 +46,7 @@ private:
         } else if (key == "l") {
             parse_polyline(words);
         } else if (key == "p") {
-            for (std::size_t i = 1; i < words.size(); ++i) vertex_index(words[i]);  // what nothing else uses is a point anyway
+            for (std::size_t i = 1; i < words.size(); ++i) mesh_.points.push_back(vertex_index(words[i]));
         } else if (key == "o" || key == "g") {
             start_group(words);
         } else if (is_among(key, free_form)) {

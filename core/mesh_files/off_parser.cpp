@@ -75,6 +75,7 @@ private:
             }
             corners.push_back(*vertex);
         }
+        if (corners.size() == 1) mesh_.points.push_back(corners[0]);
         if (corners.size() == 2) mesh_.edges.push_back({corners[0], corners[1]});
         if (corners.size() < 3) return;
         mesh_.corners.insert(mesh_.corners.end(), corners.begin(), corners.end());

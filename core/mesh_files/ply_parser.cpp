@@ -349,8 +349,9 @@ private:
         if (taken.what == Taken::What::vertex) mesh_.vertices.emplace_back(at(0), at(1), at(2));
         if (taken.what == Taken::What::edge) mesh_.edges.push_back({index_of(at(0), "edge"), index_of(at(1), "edge")});
         if (taken.what != Taken::What::face) return;
+        if (corners.size() == 1) mesh_.points.push_back(index_of(corners[0], "face"));
         if (corners.size() == 2) mesh_.edges.push_back({index_of(corners[0], "face"), index_of(corners[1], "face")});
-        if (corners.size() < 3) return;  // a point, which is there anyway
+        if (corners.size() < 3) return;
         for (const double corner : corners) mesh_.corners.push_back(index_of(corner, "face"));
         mesh_.polygon_ends.push_back(count_of(mesh_.corners));
         mesh_.polygon_group.push_back(-1);
@@ -373,8 +374,9 @@ private:
 
     void check_indices() {
         const int count = count_of(mesh_.vertices);
-        for (const int corner : mesh_.corners)
-            if (corner >= count) return fail(ErrorCode::out_of_range, no_vertex(std::to_string(corner), "face"));
+        for (const std::vector<int>* corners : {&mesh_.corners, &mesh_.points})
+            for (const int corner : *corners)
+                if (corner >= count) return fail(ErrorCode::out_of_range, no_vertex(std::to_string(corner), "face"));
         for (const geometry::Edge& edge : mesh_.edges)
             for (const int end : edge)
                 if (end >= count) return fail(ErrorCode::out_of_range, no_vertex(std::to_string(end), "edge"));

@@ -26,6 +26,7 @@ struct RawMesh {
     std::vector<int> polygon_group;     ///< per polygon: index into `groups`, -1 for none
     std::vector<std::string> groups;    ///< objects of the file, as it names them
     std::vector<geometry::Edge> edges;  ///< polylines
+    std::vector<int> points;            ///< vertices that the file names as points
     std::vector<RawItem> items;         ///< of 3MF; else empty: the file is one thing
     double metres_per_unit = 0;         ///< 0: the file does not say
 };

@@ -4,6 +4,7 @@
 #include <expat.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <exception>
 #include <new>
 
@@ -13,6 +14,14 @@ namespace {
 constexpr int deepest = 100, most_attributes = 100;
 /// Fed at once: expat begins anew with what is not complete at the end of a piece, so longer tokens than this are refused.
 constexpr std::size_t piece = 1 << 20;
+
+/// XML allows nothing before its declaration; blanks there are common, and mean nothing.
+std::string_view from_declaration(std::string_view text) {
+    constexpr std::string_view mark = "\xEF\xBB\xBF", declaration = "<?xml";
+    std::string_view rest = text.substr(text.starts_with(mark) ? mark.size() : 0);
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
+    return rest.starts_with(declaration) ? rest : text;
+}
 
 }  // namespace
 
@@ -40,7 +49,10 @@ struct XmlReader::Handlers {
 };
 
 XmlReader::XmlReader(std::string_view text, std::string where)
-    : text_(text), where_(std::move(where)), parser_(XML_ParserCreate(nullptr), XML_ParserFree) {
+    : text_(from_declaration(text)),
+      lines_before_(static_cast<std::uint64_t>(std::count(text.data(), text_.data(), '\n'))),
+      where_(std::move(where)),
+      parser_(XML_ParserCreate(nullptr), XML_ParserFree) {
     if (!parser_) throw std::bad_alloc();
     XML_SetElementHandler(parser_.get(), Handlers::start, Handlers::end);
     XML_SetStartDoctypeDeclHandler(parser_.get(), Handlers::document_type);
@@ -94,7 +106,7 @@ std::vector<std::string_view> XmlReader::attribute_names() const {
     return names;
 }
 
-std::string XmlReader::where() const { return where_ + ":" + std::to_string(XML_GetCurrentLineNumber(parser_.get())); }
+std::string XmlReader::where() const { return where_ + ":" + std::to_string(lines_before_ + XML_GetCurrentLineNumber(parser_.get())); }
 
 void XmlReader::fail(ErrorCode code, const std::string& message) { errors_.push_back({code, where(), message}); }
 

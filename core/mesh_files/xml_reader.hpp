@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// Reads XML that may come from anywhere, by expat: elements and attributes; text between elements is passed over. What is not well formed
-/// is refused, and so is a document type (and with it every entity of a file's own), nesting deeper than 100, more than 100 attributes in a
-/// tag, and a tag, comment or the like of more than a megabyte, so that reading takes linear time. For 3MF, AMF and URDF.
+/// is refused but for blanks before the declaration, and so is a document type (and with it every entity of a file's own), nesting deeper
+/// than 100, more than 100 attributes in a tag, and a tag, comment or the like of more than a megabyte, so that reading takes linear time.
+/// For 3MF, AMF and URDF.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -54,6 +56,7 @@ private:
     void fault(const std::string& message) { fail(ErrorCode::parse, "not valid XML: " + message); }
 
     std::string_view text_;
+    std::uint64_t lines_before_;  ///< its XML declaration
     std::string where_;
     std::shared_ptr<XML_ParserStruct> parser_;
     const std::function<void()>* visit_ = nullptr;

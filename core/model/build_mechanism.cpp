@@ -271,14 +271,15 @@ private:
     void add_coupling(const scene::Joint& from) {
         const Joint *first = find_joint(from.of[0], place_of_part(from)), *second = find_joint(from.of[1], place_of_part(from));
         if (!first || !second) return;
-        const bool fits = turns(first->kind) && turns(second->kind) == (from.kind == JointKind::gear);
+        const bool same = turns(first->kind) == turns(second->kind);
+        const bool fits = from.kind == JointKind::gear ? same : turns(first->kind) && !same;
         if (first == second || !fits)
             return fail(ErrorCode::inconsistent, place_of_part(from),
-                        from.kind == JointKind::gear ? "a gear couples the angles of two different joints"
+                        from.kind == JointKind::gear ? "a gear couples the angles, or the slides, of two different joints"
                                                      : "a rack couples an angle and a slide: a revolute joint, then a prismatic one");
         const std::vector<constraint::RowPart> parts{{first->coordinate, from.ratio}, {second->coordinate, -1}};
         const double constant = from.ratio * value_as_written(first->coordinate) - value_as_written(second->coordinate);
-        const double length = from.kind == JointKind::gear ? lever(second->a, second->b) : 1;
+        const double length = turns(second->kind) ? lever(second->a, second->b) : 1;
         Joint joint;
         joint.name = from.name;
         joint.kind = from.kind;

@@ -18,6 +18,7 @@
 #include "fettle/core/scene/angles.hpp"
 #include "fettle/core/scene/mass_kind.hpp"
 #include "fettle/core/solids/mesh_validity.hpp"
+#include "fettle/core/solids/shells.hpp"
 
 namespace fettle::core::paper_scenes {
 namespace {
@@ -293,7 +294,7 @@ std::vector<FixtureBody> FixtureBodies::read_body(const files::JsonNode& node, d
         return bodies;
     }
     std::size_t part = 0;
-    for (geometry::Mesh& mesh : split ? geometry::split_shells(made(source)) : std::vector<geometry::Mesh>{made(source)}) {
+    for (geometry::Mesh& mesh : split ? solids::split_solids(made(source)) : std::vector<geometry::Mesh>{made(source)}) {
         const MeshMass mass = mass_of(found, part++, [&] { return mesh; });
         bodies.push_back({body, {}});
         scene::Body& last = bodies.back().body;

@@ -41,7 +41,7 @@ public:
     /// Both outlive this object.
     FixtureBodies(files::JsonDocument& document, const scene::ReadOptions& options) : document_(document), options_(options) {}
 
-    /// [element of `list`] One body, or one per facet-connected component (`split_components`); none if it is switched off
+    /// [element of `list`] One body, or one per solid of its mesh (`split_components`; solids/shells.hpp); none if it is switched off
     /// (`enabled`) or nothing useful can be read. Faults go to the document. Call fill() before this object goes.
     /// @param timestep  [s], of the scene.
     std::vector<std::vector<FixtureBody>> read(const files::JsonNode& list, double timestep);

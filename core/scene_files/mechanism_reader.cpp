@@ -240,6 +240,7 @@ private:
     static std::vector<std::string_view> keys_of(scene::JointKind kind) {
         std::vector<std::string_view> keys{"name", "type"};
         keys.insert(keys.end(), info_of(kind).keys.begin(), info_of(kind).keys.end());
+        if (kind == scene::JointKind::revolute || kind == scene::JointKind::prismatic) keys.push_back("urdf");
         return has_coordinate(kind) ? with_forces(keys) : keys;
     }
 
@@ -255,6 +256,7 @@ private:
         if (joint.kind == scene::JointKind::screw) joint.pitch = node.require("pitch").length(unit_).value_or(0);
         if (has_coordinate(joint.kind)) joint.forces = read_forces(node, unit_of(joint.kind));
         joint.collide = node["collide"].boolean().value_or(false);
+        node["urdf"].members();  // what nothing here uses: read where a robot description is written
         if (node["assemble"].exists()) joint.assemble = read_assemble(node["assemble"]);
     }
 

@@ -16,6 +16,7 @@
 #include "fettle/core/scene/angles.hpp"
 #include "fettle/core/scene_files/scene_motion.hpp"
 #include "fettle/core/solids/mesh_repair.hpp"
+#include "fettle/core/solids/shells.hpp"
 
 namespace fettle::core::scene_files {
 namespace {
@@ -49,7 +50,8 @@ const std::vector<std::string_view> body_keys{"name",
                                               "torque",
                                               "damping",
                                               "group",
-                                              "split_components"};
+                                              "split_components",
+                                              "urdf"};
 
 // What to write instead of the key `generator` of version 0.2, whose parts are files now.
 std::string in_place_of_generator(const std::string& name) {
@@ -98,6 +100,7 @@ std::vector<scene::Body> SceneBodies::read(const files::JsonNode& node) {
     node.allow_keys(body_keys);
     if (!node.is_object()) return {body};
     read_name(node.require("name"), body);
+    node["urdf"].members();  // what nothing here uses: read where a robot description is written
     const MeshSource source = read_geometry(node, body);
     settle_mesh(node, source, body);
     const WrittenPose written = read_pose(node, unit_, {});
@@ -395,14 +398,14 @@ std::vector<scene::Body> SceneBodies::components(const files::JsonNode& node, sc
     if (body.reference_point)
         key.fail(ErrorCode::inconsistent, "each component has its own centre of mass; a `reference_point` is of one body");
     Eigen::Index kept = 0;
-    std::vector<geometry::Mesh> parts = geometry::split_shells(body.mesh);
+    std::vector<geometry::Mesh> parts = solids::split_solids(body.mesh);
     std::size_t edges = 0;
     for (const auto& part : parts) {
         kept += part.vertices.cols();
         edges += part.edges.size();
     }
     if (body.mesh.triangles.empty() || kept < body.mesh.vertices.cols() || edges < body.mesh.edges.size()) {
-        key.fail(ErrorCode::inconsistent, "the mesh has edges or points that belong to no triangle, and so to no component");
+        key.fail(ErrorCode::inconsistent, "the mesh has edges or points that belong to no triangle, and so to no solid");
     }
     if (parts.size() == 1) return {std::move(body)};
     std::vector<scene::Body> bodies;

@@ -29,7 +29,8 @@ public:
                 SceneFormulas& formulas)
         : document_(document), options_(options), unit_(unit), densities_(densities), formulas_(formulas) {}
 
-    /// One body, or one per edge-connected component (`split_components`). Faults go to the document; values read after one are never used.
+    /// One body, or one per solid of its mesh (`split_components`; solids/shells.hpp). Faults go to the document; values read after one are
+    /// never used.
     std::vector<scene::Body> read(const files::JsonNode& node);
 
     /// Gives numbers to the groups that have names; after all bodies have been read.

@@ -33,9 +33,12 @@ bool any_may_collide(const core::model::Model& model) {
     return false;
 }
 
+std::string both_names(const core::model::Model& model, int a, int b) {
+    return "\"" + model.bodies[a].name + "\" and \"" + model.bodies[b].name + "\"";
+}
+
 std::string open_pair(const core::model::Model& model, const PairClearance& pair) {
-    const auto name = [&](int body) { return "\"" + model.bodies[body].name + "\""; };
-    const std::string who = name(pair.a) + " and " + name(pair.b);
+    const std::string who = both_names(model, pair.a, pair.b);
     if (pair.intersecting) return who + " pass through each other";
     if (pair.lower > model.dmin) return "of " + who + ": " + core::clearance::why_not_apart(pair.solids);
     const core::base::RoundedLengths lengths(answers::unit_name(model.length_unit));
@@ -50,8 +53,9 @@ struct Judgement {
     double lower = infinity, upper = infinity;  // of the least distance of all
     double settled = infinity;                  // lower bound of what is proven to stay farther apart than dmin
     std::vector<PairRequest> open;              // not proven to stay farther apart than dmin; each pair once
+    std::vector<PairRequest> unverified;        // whose surfaces do, and one may lie in the other, whose mesh is not closed
     std::string reason;                         // of the first of them
-    bool is_final = false;                      // one of them comes as near as dmin, crosses, or may lie in the other: no search tells more
+    bool is_final = false;                      // one of them comes as near as dmin, crosses, or lies in the other: no search tells more
     bool whole = true;                          // no search was cut short
 };
 
@@ -62,8 +66,10 @@ Judgement judge(const core::model::Model& model, const std::vector<PairClearance
         judged.whole = judged.whole && pair.complete;
         judged.lower = std::min(judged.lower, pair.lower);
         judged.upper = std::min(judged.upper, pair.upper);
-        if (pair.lower > model.dmin && core::certificate::are_apart(pair.solids)) {
+        const bool is_unverified = pair.solids == core::clearance::Solids::unverified;
+        if (pair.lower > model.dmin && !pair.intersecting && (is_unverified || core::certificate::are_apart(pair.solids))) {
             judged.settled = std::min(judged.settled, pair.lower);
+            if (is_unverified) judged.unverified.push_back({pair.a, pair.b, 0});
             continue;
         }
         if (judged.reason.empty()) judged.reason = open_pair(model, pair);
@@ -103,6 +109,8 @@ const char* to_string(ProofState state) {
     switch (state) {
         case ProofState::proven:
             return "proven";
+        case ProofState::surfaces:
+            return "surfaces proven";
         case ProofState::nothing:
             return "no pair may collide";
         case ProofState::not_certified:
@@ -110,6 +118,14 @@ const char* to_string(ProofState state) {
             break;
     }
     return "not certified";
+}
+
+// Sorted, each pair once.
+void make_unique(std::vector<PairRequest>& pairs) {
+    const auto key = [](const PairRequest& pair) { return std::pair(pair.a, pair.b); };
+    std::sort(pairs.begin(), pairs.end(), [&](const PairRequest& x, const PairRequest& y) { return key(x) < key(y); });
+    pairs.erase(std::unique(pairs.begin(), pairs.end(), [&](const PairRequest& x, const PairRequest& y) { return key(x) == key(y); }),
+                pairs.end());
 }
 
 // Steps [first, last); of no steps, the start.
@@ -185,6 +201,24 @@ PathProof PathProver::stopped() const {
     return proof;
 }
 
+// Of pairs of which one may lie inside the other, whose mesh is not closed, the surfaces alone.
+PathProof PathProver::proven(double lower, std::vector<PairRequest> unverified, int steps) const {
+    if (unverified.empty()) return {ProofState::proven, lower, {}, steps};
+    make_unique(unverified);
+    const std::size_t others = unverified.size() - 1;
+    return {ProofState::surfaces, lower,
+            "of " + both_names(model_, unverified.front().a, unverified.front().b) +
+                (others > 0 ? " (and " + core::base::counted(others, "more pair") + ")" : "") + ": " +
+                core::clearance::why_not_apart(core::clearance::Solids::unverified),
+            steps};
+}
+
+std::vector<PairRequest> PathProver::unverified() const {
+    std::vector<PairRequest> pairs;
+    for (const Stretch& stretch : stretches_) pairs.insert(pairs.end(), stretch.judged.unverified.begin(), stretch.judged.unverified.end());
+    return pairs;
+}
+
 // Pairs that are left open are searched again, a hundred times closer each time.
 PathProof PathProver::look_closer(const core::stepper::Simulation& simulation) {
     Judgement judged;
@@ -198,17 +232,15 @@ PathProof PathProver::look_closer(const core::stepper::Simulation& simulation) {
         judged.open.insert(judged.open.end(), other.open.begin(), other.open.end());
         tolerance = std::min(tolerance, share * stretch.reach);
     }
-    const auto key = [](const PairRequest& pair) { return std::pair(pair.a, pair.b); };
-    std::sort(judged.open.begin(), judged.open.end(), [&](const PairRequest& x, const PairRequest& y) { return key(x) < key(y); });
-    judged.open.erase(
-        std::unique(judged.open.begin(), judged.open.end(), [&](const PairRequest& x, const PairRequest& y) { return key(x) == key(y); }),
-        judged.open.end());
+    make_unique(judged.open);
+    std::vector<PairRequest> unverified = this->unverified();
     for (int round = 1; !judged.is_final && round < most_rounds; ++round) {
         tolerance *= 1e-2;
         const auto options = proof_options(tolerance, should_stop_);
         judged = judge(model_, core::clearance::certify_clearance(model_, simulation.trajectory, judged.open, options), judged.settled);
         if (!judged.whole && should_stop_()) return stopped();
-        if (judged.open.empty()) return {ProofState::proven, judged.settled, {}, count_of(simulation.trajectory.steps)};
+        unverified.insert(unverified.end(), judged.unverified.begin(), judged.unverified.end());
+        if (judged.open.empty()) return proven(judged.settled, std::move(unverified), count_of(simulation.trajectory.steps));
     }
     PathProof proof = stopped();  // as far as it goes
     return {ProofState::not_certified, judged.lower, judged.reason, proof.steps};
@@ -234,7 +266,7 @@ PathProof PathProver::finished(const core::stepper::Simulation& simulation) {
         for (Stretch& stretch : stretches_)
             if (!tells(stretch) && !prove(simulation, stretch, reach)) return stopped();
     }
-    return {ProofState::proven, lower(), {}, steps};
+    return proven(lower(), unverified(), steps);
 }
 
 PathProof prove_path(const core::model::Model& model, const core::stepper::Simulation& simulation,

@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/stepper/simulation.hpp"
 
 namespace fettle::design::clearance {
 
 enum class ProofState {
     proven,         ///< every pair that may collide stays farther apart than dmin, and neither lies in the other
+    surfaces,       ///< the surfaces of every such pair do; of some pair with a mesh that is not closed it is open whether one lies inside
     nothing,        ///< no two bodies may collide
     not_certified,  ///< of some pair that could not be proven
     stopped         ///< the proof was stopped before it was whole
@@ -22,7 +24,7 @@ const char* to_string(ProofState state);
 struct PathProof {
     ProofState state = ProofState::nothing;
     std::optional<double> lower;  ///< proven least distance over the first `steps` steps [m]; nothing where there are no pairs or no steps
-    std::string reason;           ///< of one that is not proven: the pair and its bounds
+    std::string reason;           ///< of one that is not proven: the pair and its bounds; of surfaces alone: of which pairs
     int steps = 0;                ///< whose path is proven; all of them, unless the proof was stopped or some pair could not be proven
 };
 
@@ -55,6 +57,8 @@ private:
     double first_reach(const core::stepper::Simulation& simulation) const;
     double lower() const;
     PathProof stopped() const;
+    PathProof proven(double lower, std::vector<core::clearance::PairRequest> unverified, int steps) const;
+    std::vector<core::clearance::PairRequest> unverified() const;
     PathProof look_closer(const core::stepper::Simulation& simulation);
     PathProof finished(const core::stepper::Simulation& simulation);
 

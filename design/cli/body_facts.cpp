@@ -10,6 +10,7 @@
 
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
+#include "fettle/core/solids/shells.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 
@@ -27,23 +28,30 @@ const char* type_name(BodyType type) {
 
 Vector3 size_of(const Body& body) { return body.mesh.vertices.rowwise().maxCoeff() - body.mesh.vertices.rowwise().minCoeff(); }
 
-std::optional<double> volume_of(const core::geometry::Mesh& mesh) {
+struct MeshFacts {
+    std::optional<double> volume;
+    int solids = 0;
+};
+
+MeshFacts facts_of(const core::geometry::Mesh& mesh) {
+    MeshFacts facts{std::nullopt, core::solids::solids_of_shells(mesh).count};
     const auto openings = core::geometry::openings(mesh.vertices, mesh.triangles);
-    if (!core::geometry::is_nearly_closed(mesh.vertices, mesh.triangles, openings)) return std::nullopt;
-    return core::geometry::capped_solid_moments(mesh.vertices, mesh.triangles, openings)(3, 3);
+    if (core::geometry::is_nearly_closed(mesh.vertices, mesh.triangles, openings))
+        facts.volume = core::geometry::capped_solid_moments(mesh.vertices, mesh.triangles, openings)(3, 3);
+    return facts;
 }
 
 /// Bodies that share a hierarchy have one mesh, which is measured once.
-std::vector<std::optional<double>> volumes_of(const core::model::Model& model) {
-    std::map<const core::geometry::BodyHierarchy*, std::optional<double>> known;
-    std::vector<std::optional<double>> volumes;
-    volumes.reserve(model.bodies.size());
+std::vector<MeshFacts> facts_of(const core::model::Model& model) {
+    std::map<const core::geometry::BodyHierarchy*, MeshFacts> known;
+    std::vector<MeshFacts> facts;
+    facts.reserve(model.bodies.size());
     for (const Body& body : model.bodies) {
         const auto [entry, fresh] = known.try_emplace(body.hierarchy.get());
-        if (fresh || body.hierarchy == nullptr) entry->second = volume_of(body.mesh);
-        volumes.push_back(entry->second);
+        if (fresh || body.hierarchy == nullptr) entry->second = facts_of(body.mesh);
+        facts.push_back(entry->second);
     }
-    return volumes;
+    return facts;
 }
 
 std::optional<double> mass_of(const Body& body) {
@@ -65,14 +73,15 @@ std::string mass_text(const std::optional<double>& mass) {
 
 Json parts_json(const core::model::Model& model) {
     Json list = Json::array();
-    const std::vector<std::optional<double>> volumes = volumes_of(model);
+    const std::vector<MeshFacts> facts = facts_of(model);
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const Body& body = model.bodies[i];
         const Vector3 size = size_of(body);
         list.push_back({{"name", body.name},
                         {"type", type_name(body.type)},
                         {"size", {size.x(), size.y(), size.z()}},
-                        {"volume", or_null(volumes[i])},
+                        {"solids", facts[i].solids},
+                        {"volume", or_null(facts[i].volume)},
                         {"mass", or_null(mass_of(body))}});
     }
     return list;
@@ -85,15 +94,16 @@ std::string parts_text(const core::model::Model& model) {
     for (const Body& body : model.bodies) widest = std::max(widest, std::min<std::size_t>(body.name.size(), 32));
     std::string text = formatted("  %-*s  %-9s  %-30s  %-14s  %s\n", static_cast<int>(widest), "body", "type",
                                  ("size [" + unit + "]").c_str(), ("volume [" + unit + "^3]").c_str(), "mass");
-    const std::vector<std::optional<double>> volumes = volumes_of(model);
+    const std::vector<MeshFacts> facts = facts_of(model);
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const Body& body = model.bodies[i];
         const Vector3 size = per_metre * size_of(body);
-        const std::optional<double>& volume = volumes[i];
+        const std::optional<double>& volume = facts[i].volume;
         const std::string shown = volume ? formatted("%.5g", *volume * per_metre * per_metre * per_metre) : std::string("open");
-        text += formatted("  %-*s  %-9s  %-30s  %-14s  %s\n", static_cast<int>(widest), body.name.c_str(), type_name(body.type),
+        const std::string several = facts[i].solids > 1 ? "  " + std::to_string(facts[i].solids) + " solids" : "";
+        text += formatted("  %-*s  %-9s  %-30s  %-14s  %s%s\n", static_cast<int>(widest), body.name.c_str(), type_name(body.type),
                           formatted("%.5g x %.5g x %.5g", size.x(), size.y(), size.z()).c_str(), shown.c_str(),
-                          mass_text(mass_of(body)).c_str());
+                          mass_text(mass_of(body)).c_str(), several.c_str());
     }
     return text;
 }

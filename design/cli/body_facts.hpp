@@ -10,8 +10,9 @@
 
 namespace fettle::design::cli {
 
-/// Per body: `name`, `type`, `size` (of its mesh's box in its own frame, [m]), `volume` ([m^3], null unless its mesh is closed or nearly),
-/// `mass` ([kg], null unless dynamic).
+/// Per body: `name`, `type`, `size` (of its mesh's box in its own frame, [m]), `solids` (how many its mesh has, solids/shells.hpp),
+/// `volume`
+/// ([m^3], null unless its mesh is closed or nearly), `mass` ([kg], null unless dynamic).
 nlohmann::ordered_json parts_json(const core::model::Model& model);
 
 /// The same as a table in the file's unit of length; masses in kg, or g below 1 kg.

@@ -7,6 +7,7 @@
 #include "fettle/core/certificate/certificate.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
+#include "fettle/core/solids/shells.hpp"
 #include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/answers/run_folder.hpp"
 #include "fettle/design/clearance/certificate_files.hpp"
@@ -123,6 +124,15 @@ Errors try_files(const ClearanceArguments& options) {
     return {};
 }
 
+/// Of meshes that are one body.
+std::string why_not_two(const Subject& subject) {
+    const std::string remedy = "name a second mesh, a folder of them, or a 3MF with several parts";
+    const int solids = core::solids::solids_of_shells(subject.model.bodies.front().mesh).count;
+    if (solids < 2) return "is one part, and a clearance is between two: " + remedy;
+    return "is one part of " + std::to_string(solids) + " solids, and a clearance is between two parts: in a scene, its body has " +
+           "\"split_components\": true, which makes each solid a body of its own; or " + remedy;
+}
+
 int run_clearance(const ClearanceArguments& options, const CommonOptions& common, Console& console) {
     const Result<AskedLengths> lengths = read_lengths(options);
     if (!lengths) return console.input_errors(lengths.errors());
@@ -141,9 +151,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     const Result<Subject> subject = clearance::read_subject(options.subject, input_options(common), watch);
     if (!subject) return console.input_errors(subject.errors());
     if (!subject->files.empty() && subject->model.bodies.size() < 2)
-        return console.input_errors({{ErrorCode::inconsistent, options.subject.path,
-                                      "is one part, and a clearance is between two: name a second mesh, a folder of them, or a 3MF with "
-                                      "several parts"}});
+        return console.input_errors({{ErrorCode::inconsistent, options.subject.path, why_not_two(*subject)}});
     clearance::Question question;
     question.pairs = options.pairs;
     question.pairs.minimum = lengths->minimum;

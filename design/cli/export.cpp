@@ -10,12 +10,11 @@
 #include "fettle/core/records/geometry_hash.hpp"
 #include "fettle/core/records/path_hash.hpp"
 #include "fettle/core/records/poses_file.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/clearance/certificate_files.hpp"
 #include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/export_mechanism.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/read_files.hpp"
 #include "fettle/design/cli/shown_motion.hpp"
@@ -24,7 +23,6 @@
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 #include "fettle/design/shapes/file_part.hpp"
-#include "fettle/design/urdf/urdf_writer.hpp"
 
 namespace fettle::design::cli {
 
@@ -83,9 +81,10 @@ Result<Plan> plan_of(const ExportArguments& options, const std::string& stem) {
     const std::string name = extension == ".pvd" ? "vtu" : extension.substr(extension.empty() ? 0 : 1);
     plan.one_file = std::find(known.begin(), known.end(), name) != known.end() && !fs::is_directory(to);
     if (!plan.one_file && !extension.empty() && !fs::exists(to))
-        return Error{ErrorCode::unsupported, "--to",
-                     "`" + extension +
-                         "` is not a format; known are .glb .3mf .stl .obj .vtu .pvd .csv .urdf .dxf .svg (a folder's name ends in /)"};
+        return Error{
+            ErrorCode::unsupported, "--to",
+            "`" + extension +
+                "` is not a format; known are .glb .3mf .stl .obj .vtu .pvd .csv .urdf .scene.json .dxf .svg (a folder's name ends in /)"};
     if (!plan.one_file) {
         const auto formats = wanted_formats(options.formats);
         if (!formats) return formats.errors();
@@ -154,42 +153,6 @@ Errors name_in_certificate(const ShownMotion& shown, const std::vector<std::pair
         certificate->exports.push_back(named->front());
     }
     return core::certificate::write_certificate(shown.certificate, *certificate);
-}
-
-/// Of a scene alone: trajectories have no joints.
-int run_export_urdf(const ExportArguments& options, const CommonOptions& common, Console& console) {
-    if (const Errors errors = reading::not_wanted(options.shown.path, file_kind(options.shown.path), "scene"); !errors.empty())
-        return console.input_errors(errors);
-    if (!options.shown.bodies.empty())
-        return console.input_errors(
-            {{ErrorCode::unsupported, "--bodies", "a robot (.urdf) is written whole: its joints need their bodies"}});
-    const Result<core::scene::Scene> scene =
-        core::scene_files::read_scene(options.shown.path, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
-    if (!scene) return console.input_errors(scene.errors());
-    core::setup::BuildOptions build;
-    build.check_start = false;
-    const Result<core::model::Model> model = core::setup::build_model(*scene, build);
-    if (!model) return console.input_errors(model.errors());
-    const auto robot = urdf::robot_of_scene(*scene, *model, fs::path(options.to).stem().string());
-    if (!robot) return console.input_errors(robot.errors());
-    tell_warnings(console, robot->warnings);
-    Json files = Json::array();
-    std::string text;
-    core::files::FilesTogether together;
-    std::vector<NamedFile> written;
-    Errors errors;
-    for (const auto& [name, bytes] : robot->files) {
-        const fs::path path = fs::path(options.to).parent_path() / name;
-        written.push_back({"--to", path.string(), true});
-        if (errors.empty()) errors = together.add(path, bytes);
-        files.push_back({{"file", path.string()}, {"format", "urdf"}, {"bytes", bytes.size()}, {"hash", core::files::hash_of(bytes)}});
-        text += path.string() + "\n";
-    }
-    if (errors.empty()) errors = replaced_inputs(written, common.given);
-    if (errors.empty()) errors = together.take_names();
-    if (!errors.empty()) return console.input_errors(errors);
-    console.result({{"status", "ok"}, {"files", std::move(files)}, {"warnings", robot->warnings}}, text);
-    return exit_done;
 }
 
 /// Plane figures of parts that part files describe.
@@ -266,28 +229,19 @@ int run_export_profiles(const ExportArguments& options, const CommonOptions& com
     }
     const fs::path folder =
         one_file ? (fs::path(options.to).has_parent_path() ? fs::path(options.to).parent_path() : fs::path(".")) : fs::path(options.to);
-    Errors errors = answers::try_output_folder(folder);
-    core::files::FilesTogether together;
-    std::vector<NamedFile> written;
-    Json files = Json::array();
-    std::string text;
-    for (const auto& [name, bytes] : drawings) {
-        const fs::path path = one_file ? fs::path(options.to) : folder / name;
-        written.push_back({"--to", path.string(), true});
-        if (errors.empty()) errors = together.add(path, bytes);
-        files.push_back({{"file", path.string()}, {"format", format}, {"bytes", bytes.size()}, {"hash", core::files::hash_of(bytes)}});
-        text += formatted("%s  %zu bytes\n", path.string().c_str(), bytes.size());
-    }
-    if (errors.empty()) errors = replaced_inputs(written, common.given);
-    if (errors.empty()) errors = together.take_names();
-    if (!errors.empty()) return console.input_errors(errors);
-    console.result({{"status", "ok"}, {"files", std::move(files)}}, text);
-    return exit_done;
+    if (const Errors errors = answers::try_output_folder(folder); !errors.empty()) return console.input_errors(errors);
+    std::vector<std::pair<fs::path, std::string>> files;
+    for (const auto& [name, bytes] : drawings) files.emplace_back(one_file ? fs::path(options.to) : folder / name, bytes);
+    return leave_files(files, format, {}, common, console);
 }
 
 int run_export(const ExportArguments& options, const CommonOptions& common, Console& console) {
     if (!profile_format(options).empty()) return run_export_profiles(options, common, console);
-    if (options.to.ends_with(".urdf")) return run_export_urdf(options, common, console);
+    const bool as_robot = options.to.ends_with(".urdf"), as_scene = options.to.ends_with(".scene.json");
+    if ((as_robot || as_scene) && !options.shown.bodies.empty())
+        return console.input_errors({{ErrorCode::unsupported, "--bodies", "a mechanism is written whole: its joints need their bodies"}});
+    if (as_robot) return export_robot(options.shown.path, options.to, common, console);
+    if (as_scene) return export_scene(options.shown.path, options.to, common, console);
     if (options.in_place && !options.separate())
         return console.input_errors({{ErrorCode::inconsistent, "--in-place", "needs --arrange separate: a file for each part"}});
     if (const Errors errors = arrange_errors(options); !errors.empty()) return console.input_errors(errors);
@@ -349,10 +303,11 @@ int run_export(const ExportArguments& options, const CommonOptions& common, Cons
 
 Command add_export(CommandLine& program, const CommonOptions& common) {
     CommandLine app =
-        program.command("export", "Writes parts and their motion for other programs: glb, 3mf, stl, obj, vtu, csv, urdf, dxf, svg");
+        program.command("export", "Writes parts and their motion for other programs: glb, 3mf, stl, obj, vtu, csv, urdf, scene, dxf, svg");
     auto options = std::make_shared<ExportArguments>();
     add_shown_options(app, options->shown);
-    app.option("--to", options->to, "File, whose extension says the format (.pvd, .vtu: ParaView; .urdf: for a scene), or folder")
+    app.option("--to", options->to,
+               "File, whose extension says the format (.pvd, .vtu: ParaView; .urdf: a scene or design; .scene.json: a design), or folder")
         .required();
     app.option("--format", options->formats, "For a folder: which formats, with commas (default: glb,3mf,stl,obj,vtu,csv)");
     app.option("--arrange", options->arrange,

@@ -34,8 +34,7 @@ int run_import(const ImportArguments& arguments, const CommonOptions& common, Co
         for (urdf::Joint& joint : robot->joints)
             if (!joint.mimics.empty()) joint.lower = joint.upper = std::nullopt;
     urdf::ImportOptions options;
-    options.folder = fs::path(arguments.path).parent_path().string();
-    options.mesh_dirs = common.mesh_dirs;
+    options.meshes = {fs::path(arguments.path).parent_path().string(), common.mesh_dirs};
     const std::string name = fs::path(arguments.to).filename().string();
     options.stem = name.substr(0, name.size() - ending.size());
     options.floating = arguments.floating;

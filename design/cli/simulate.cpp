@@ -166,6 +166,8 @@ Outcome outcome_of(const core::stepper::SimulationReport& report, const clearanc
         case clearance::ProofState::proven:
         case clearance::ProofState::nothing:
             return {"ok", "", exit_done};
+        case clearance::ProofState::surfaces:
+            return {"ok", "no two surfaces pass through each other, which is proven; " + proof.reason, exit_done};
         case clearance::ProofState::stopped:
             return {"interrupted", "every step was simulated; " + proof.reason, exit_undecided};
         case clearance::ProofState::not_certified:
@@ -189,6 +191,8 @@ std::string answer_text(const Outcome& outcome, const Simulation& simulation, co
         text += "smallest distance: none, no two bodies may collide\n";
     } else if (proof.state == clearance::ProofState::proven) {
         text += "smallest distance of two bodies over the path: " + proven(*proof.lower);
+    } else if (proof.state == clearance::ProofState::surfaces) {
+        text += "smallest distance of two surfaces over the path: " + proven(*proof.lower);
     } else {
         text += "smallest distance of two bodies over the path: not certified\n";
         if (proof.state == clearance::ProofState::stopped && proof.lower)

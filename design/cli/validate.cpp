@@ -12,6 +12,7 @@
 #include "fettle/core/solids/mesh_judgement.hpp"
 #include "fettle/core/solids/mesh_repair.hpp"
 #include "fettle/core/solids/mesh_validity.hpp"
+#include "fettle/core/solids/shells.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/body_facts.hpp"
@@ -73,12 +74,17 @@ Verdict validate_mesh_file(const std::string& path, const std::string& unit, boo
     verdict.facts["vertices"] = mesh->vertices.cols();
     verdict.facts["triangles"] = mesh->triangles.size();
     verdict.facts["shells"] = mesh->shell_names;
+    const int solids = core::solids::solids_of_shells(*mesh).count;
+    verdict.facts["solids"] = solids;
     verdict.facts["unit"] = has_unit ? Json("mm") : Json(nullptr);
     verdict.facts["size"] = {size.x(), size.y(), size.z()};
     verdict.facts["volume"] = volume;
     verdict.text =
         formatted("  size %.6g x %.6g x %.6g%s, volume %.6g%s\n", size.x(), size.y(), size.z(), has_unit ? " mm" : "", volume,
                   has_unit ? " mm^3" : "; the file states no unit: in a scene it is that of `mesh_unit` or `units`, here of --unit");
+    if (solids > 1)
+        verdict.text += "  " + std::to_string(solids) + " solids that do not hang together: one body in a scene, or with " +
+                        "\"split_components\": true one each\n";
     return verdict;
 }
 

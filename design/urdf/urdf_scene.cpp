@@ -2,121 +2,30 @@
 #include "fettle/design/urdf/urdf_scene.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
+#include <unordered_map>
 
 #include "fettle/core/files/unique_names.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_transforms.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
 #include "fettle/core/mesh_files/mesh_writer.hpp"
 #include "fettle/core/scene/inertial.hpp"
-#include "fettle/design/shapes/file_part.hpp"
+#include "fettle/design/urdf/joint_starts.hpp"
+#include "fettle/design/urdf/robot_notes_json.hpp"
 
 namespace fettle::design::urdf {
 
 namespace {
 
-namespace fs = std::filesystem;
 using core::geometry::Mesh;
 using core::kinematics::Pose;
 using core::scene::Inertial;
 using Json = nlohmann::ordered_json;
 
 constexpr double default_density = 1000;
-constexpr int sphere_rounds = 3;  // of an octahedron cut in four: 512 triangles
-
-/// Vertices on the sphere.
-Mesh sphere_mesh(double radius) {
-    std::vector<Vector3> vertices{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    std::vector<core::geometry::Triangle> triangles{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-    for (int round = 0; round < sphere_rounds; ++round) {
-        std::map<std::array<int, 2>, int> middles;
-        const auto middle = [&](int a, int b) {
-            const auto [found, added] = middles.insert({{std::min(a, b), std::max(a, b)}, count_of(vertices)});
-            if (added) vertices.push_back((vertices[a] + vertices[b]).normalized());
-            return found->second;
-        };
-        std::vector<core::geometry::Triangle> finer;
-        for (const auto& t : triangles) {
-            const int ab = middle(t[0], t[1]), bc = middle(t[1], t[2]), ca = middle(t[2], t[0]);
-            finer.insert(finer.end(), {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}});
-        }
-        triangles = std::move(finer);
-    }
-    Matrix3X x(3, vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) x.col(i) = radius * vertices[i];
-    return core::geometry::make_mesh("sphere", x, triangles);
-}
-
-Result<Mesh> part_mesh(const std::string& part, const std::map<std::string, double>& dimensions) {
-    const auto shape = shapes::FilePart::create(part, dimensions);
-    return shape ? description::drawn_mesh(**shape) : Result<Mesh>(shape.errors());
-}
-
-/// Where a mesh may be: as it is named, relative to the file; of package://NAME/x also NAME/x and x below each folder above it.
-Result<std::string> find_mesh(std::string name, const ImportOptions& options) {
-    bool package = false;
-    for (const char* prefix : {"package://", "file://", "model://"}) {
-        if (!name.starts_with(prefix)) continue;
-        package = std::string_view(prefix) != "file://";
-        name.erase(0, std::string_view(prefix).size());
-        break;
-    }
-    std::vector<fs::path> folders{options.folder.empty() ? fs::path(".") : fs::path(options.folder)};
-    folders.insert(folders.end(), options.mesh_dirs.begin(), options.mesh_dirs.end());
-    if (package)
-        for (fs::path up = fs::absolute(folders.front()); up.has_relative_path(); up = up.parent_path()) folders.push_back(up);
-    std::vector<std::string> names{name};
-    if (package && name.find('/') != std::string::npos) names.push_back(name.substr(name.find('/') + 1));
-    std::error_code code;
-    for (const fs::path& folder : folders)
-        for (const std::string& each : names)
-            if (fs::is_regular_file(folder / each, code)) return (folder / each).string();
-    return Error{ErrorCode::file_not_found, name,
-                 "the robot's mesh is not there; looked for it beside the file, in its packages' folders, and in --mesh-dir"};
-}
-
-Result<Mesh> mesh_of(const Geometry& geometry, const ImportOptions& options) {
-    switch (geometry.kind) {
-        case GeometryKind::box:
-            return part_mesh("box", {{"size_x", geometry.size.x()}, {"size_y", geometry.size.y()}, {"size_z", geometry.size.z()}});
-        case GeometryKind::cylinder:
-            return part_mesh("cylinder", {{"radius", geometry.radius}, {"length", geometry.length}});
-        case GeometryKind::sphere:
-            return sphere_mesh(geometry.radius);
-        case GeometryKind::mesh:
-            break;
-    }
-    const Result<std::string> path = find_mesh(geometry.file, options);
-    if (!path) return path.errors();
-    Result<Mesh> mesh = core::mesh_files::read_mesh(*path);
-    if (mesh) core::geometry::scale_mesh(*mesh, geometry.scale);
-    return mesh;
-}
-
-/// All geometry of a link, in its frame.
-Result<Mesh> link_mesh(const Link& link, const ImportOptions& options) {
-    std::vector<Vector3> vertices;
-    std::vector<core::geometry::Triangle> triangles;
-    Errors errors;
-    for (const Geometry& geometry : link.geometry()) {
-        const Result<Mesh> mesh = mesh_of(geometry, options);
-        errors.insert(errors.end(), mesh.errors().begin(), mesh.errors().end());
-        if (!mesh) continue;
-        const int first = count_of(vertices);
-        for (const auto& x : mesh->vertices.colwise()) vertices.push_back(core::kinematics::world_position(geometry.origin, x));
-        for (const auto& t : mesh->triangles) triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    }
-    if (!errors.empty()) return errors;
-    Matrix3X x(3, vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) x.col(i) = vertices[i];
-    return core::geometry::make_mesh(link.name, x, triangles);
-}
 
 /// Names that a scene's lists of pairs can be written with, and files.
 std::string plain(std::string name) {
@@ -132,11 +41,13 @@ public:
     SceneMaker(const Robot& robot, const ImportOptions& options) : robot_(robot), options_(options) {}
 
     Result<ImportedScene> make() {
+        out_.warnings = robot_.warnings;
         scene_ = {{"fettle_scene", 1},       {"description", "The robot \"" + robot_.name + "\", from its URDF file."},
                   {"units", "mm"},           {"gravity", {0, 0, -9.81}},
                   {"timestep", 0.005},       {"end_time", 1},
                   {"bodies", Json::array()}, {"joints", Json::array()}};
         find_tree();
+        find_starts();
         if (errors_.empty()) walk_tree();
         if (errors_.empty()) couple();
         if (errors_.empty() && visited_ < robot_.links.size())
@@ -144,7 +55,8 @@ public:
         if (!errors_.empty()) return errors_;
         if (scene_["bodies"].empty()) return Error{ErrorCode::mesh_invalid, robot_.name, "no link has any geometry"};
         if (scene_["joints"].empty()) scene_.erase("joints");
-        for (Json& body : scene_["bodies"]) write_inertial(body);
+        for (Json& body : scene_["bodies"]) write_rest(body);
+        tell_what_is_left_out();
         out_.files.insert(out_.files.begin(), {options_.stem + ".scene.json", scene_.dump(2) + "\n"});
         return std::move(out_);
     }
@@ -163,6 +75,7 @@ private:
                 errors_.push_back({ErrorCode::inconsistent, robot_.name, "the link \"" + joint.child + "\" is the child of two joints"});
         }
         for (std::size_t i = 0; i < robot_.links.size(); ++i) {
+            if (!robot_.links[i].geometry().empty()) mark_way_to_root(robot_.links[i].name);
             if (parent_joint_.count(robot_.links[i].name) != 0) continue;
             if (root_ >= 0)
                 errors_.push_back({ErrorCode::inconsistent, robot_.name,
@@ -172,26 +85,52 @@ private:
         if (root_ < 0) errors_.push_back({ErrorCode::inconsistent, robot_.name, "every link has a parent, so that there is no root"});
     }
 
+    /// Something with geometry hangs from all of these.
+    void mark_way_to_root(std::string link) {
+        while (carrying_.insert(link).second) {
+            const auto joint = parent_joint_.find(link);
+            if (joint == parent_joint_.end()) return;
+            link = joint->second->parent;
+        }
+    }
+
+    void find_starts() {
+        Result<JointStarts> starts = joint_starts(robot_);
+        errors_.insert(errors_.end(), starts.errors().begin(), starts.errors().end());
+        if (!starts) return;
+        starts_ = std::move(starts->of);
+        out_.warnings.insert(out_.warnings.end(), starts->warnings.begin(), starts->warnings.end());
+    }
+
     /// A link to be visited.
     struct Visit {
         const Joint* joint = nullptr;  // that it hangs from; null: the root
         std::size_t link = 0;
-        Pose pose;           // of the link's frame in the world
-        std::string body;    // that it hangs from; empty: the world
-        double start = 0;    // coordinate of the joint
-        bool still = false;  // does the link not move?
+        Pose pose;              // of the link's frame in the world
+        std::string body;       // that it hangs from; empty: the world
+        bool still = false;     // does the link not move?
+        bool left_out = false;  // it moves, and nothing with geometry hangs from it
     };
 
     /// A link before its children, and those in the order of the joints. By a list of what is to come: a chain may have any length.
     void walk_tree() {
-        std::vector<Visit> ahead{{nullptr, static_cast<std::size_t>(root_), Pose{}, "", 0, !options_.floating}};
+        std::vector<Visit> ahead{{nullptr, static_cast<std::size_t>(root_), Pose{}, "", !options_.floating, false}};
         while (!ahead.empty()) {
             Visit visit = std::move(ahead.back());
             ahead.pop_back();
             const Link& link = robot_.links[visit.link];
-            const bool fixed_to_world = visit.joint && visit.still;
-            if (visit.joint && !fixed_to_world && !link.geometry().empty()) add_joint(*visit.joint, visit.pose, visit.body, visit.start);
-            take_link(visit);
+            ++visited_;
+            if (visit.left_out) {
+                told_["left out, for they move and have no geometry, nor has what hangs from them: the links"].push_back(link.name);
+            } else {
+                if (visit.joint && !link.geometry().empty()) {
+                    if (visit.still)
+                        told_["not in the scene, for what they join does not move: the joints"].push_back(visit.joint->name);
+                    else
+                        add_joint(*visit.joint, visit.pose, visit.body);
+                }
+                take_link(visit);
+            }
             const std::vector<const Joint*>& joints = children_[link.name];
             for (auto joint = joints.rbegin(); joint != joints.rend(); ++joint) ahead.push_back(below(visit, **joint));
         }
@@ -200,37 +139,52 @@ private:
     /// @param visit  its body becomes the link's own, if it has one: what its children hang from.
     void take_link(Visit& visit) {
         const Link& link = robot_.links[visit.link];
-        ++visited_;
         if (!link.geometry().empty()) {
             visit.body = bodies_[visit.link];
             add_body(link, visit.body, visit.pose, visit.still);
-        } else if (visit.joint && visit.joint->type != "fixed") {
+        } else if (visit.joint && !is_fixed(*visit.joint)) {
             errors_.push_back(
                 {ErrorCode::unsupported, robot_.name, "the link \"" + link.name + "\" moves and has no geometry; give it a small one"});
-        } else if (link.mass) {
-            add_to(visit.body, link, visit.pose);
+        } else {
+            add_frame(visit, link);
+            if (link.has_mass()) add_to(visit.body, link, visit.pose);
         }
     }
 
+    /// Does the link stay where the joint's other one has it?
+    bool is_fixed(const Joint& joint) const {
+        const auto start = starts_.find(joint.name);
+        return joint.type == "fixed" || (start != starts_.end() && start->second.is_held);
+    }
+
+    double start_of(const Joint& joint) const {
+        const auto start = starts_.find(joint.name);
+        return start == starts_.end() ? 0 : start->second.coordinate;
+    }
+
     Visit below(const Visit& parent, const Joint& joint) const {
-        const Pose frame = composed(parent.pose, joint.origin);
-        Visit child{&joint, index_of_.at(joint.child), frame, parent.body, start_of(joint), parent.body.empty() && joint.type == "fixed"};
-        const Vector3 axis = joint.axis.normalized();
-        if (joint.type == "prismatic") child.pose.position += child.start * (frame.rotation * axis);
-        if (joint.type == "revolute") child.pose.rotation = frame.rotation * Eigen::AngleAxisd(child.start, axis).toRotationMatrix();
+        Visit child{&joint, index_of_.at(joint.child), composed(parent.pose, joint.origin), parent.body, false, parent.left_out};
+        child.still = parent.body.empty() && is_fixed(joint);
+        if (joint.has_coordinate()) child.pose = composed(child.pose, motion_of(joint.slides(), joint.axis, start_of(joint)));
+        if (!is_fixed(joint) && carrying_.count(joint.child) == 0) child.left_out = true;
         return child;
     }
 
-    static bool is_limited(const Joint& joint) {
-        return joint.lower && joint.upper && *joint.lower < *joint.upper && (joint.type == "revolute" || joint.type == "prismatic");
+    void add_frame(const Visit& visit, const Link& link) {
+        const auto carrier = bodies_made_.find(visit.body);
+        if (!visit.joint || carrier == bodies_made_.end()) {
+            told_["frames of the world, which are left out: the links"].push_back(link.name);
+            return;
+        }
+        carrier->second.notes.frames.push_back({link.name, visit.joint->name, composed(inverse(carrier->second.pose), visit.pose)});
     }
-    static double start_of(const Joint& joint) { return is_limited(joint) ? std::clamp(0.0, *joint.lower, *joint.upper) : 0; }
 
     void add_body(const Link& link, const std::string& name, const Pose& pose, bool still) {
-        const Result<Mesh> mesh = link_mesh(link, options_);
+        const Result<Mesh> mesh = link_mesh(link, options_.meshes);
         errors_.insert(errors_.end(), mesh.errors().begin(), mesh.errors().end());
         if (!mesh) return;
         if (name != link.name) out_.warnings.push_back("link \"" + link.name + "\": its body is called \"" + name + "\"");
+        tell_of_geometry(link);
         const std::string file = options_.stem + ".meshes/" + files_.unique(core::files::file_stem(name)) + ".obj";
         out_.files.emplace_back(file, core::mesh_files::obj_text({{name, &*mesh}}));
         Json body{{"name", name}};
@@ -238,12 +192,12 @@ private:
             body["type"] = "static";
         } else {
             const double volume = core::geometry::solid_moments(mesh->vertices, mesh->triangles)(3, 3);
-            const bool known = link.mass && volume > 0;
+            const bool known = link.has_mass() && volume > 0;
             body["density"] = known ? *link.mass / volume : default_density;
             if (!known && !inertial_of_link(link))
                 out_.warnings.push_back("link \"" + link.name + "\": no mass, or no volume for it; its density is taken as 1000 kg/m^3");
         }
-        masses_[name] = {pose, inertial_of_link(link)};
+        bodies_made_[name] = {pose, inertial_of_link(link), {link.colour, {}}};
         body["mesh"] = file;
         body["position"] = numbers(1e3 * pose.position);
         const Vector3 rpy = rpy_of_rotation(pose.rotation);
@@ -252,9 +206,17 @@ private:
         scene_["bodies"].push_back(std::move(body));
     }
 
+    void tell_of_geometry(const Link& link) {
+        if (!link.collision.empty() && !link.visual.empty())
+            told_["what is seen is what touches, and visual geometry is left out, of the links"].push_back(link.name);
+        const auto is_round = [](const Geometry& each) { return each.kind == GeometryKind::cylinder || each.kind == GeometryKind::sphere; };
+        if (std::any_of(link.geometry().begin(), link.geometry().end(), is_round))
+            told_["cylinders and spheres are polyhedra inside them, of the links"].push_back(link.name);
+    }
+
     /// Along the link's axes; nothing where the file has none, or one that no body has.
     std::optional<Inertial> inertial_of_link(const Link& link) {
-        if (!link.mass || !link.inertia) return std::nullopt;
+        if (!link.has_mass() || !link.inertia) return std::nullopt;
         const Matrix3& turn = link.centre.rotation;
         const Inertial found{*link.mass, link.centre.position, turn * *link.inertia * turn.transpose()};
         const std::string fault = core::scene::fault_of(found);
@@ -267,9 +229,9 @@ private:
     /// What a link without geometry weighs goes to the body that it is fixed to.
     void add_to(const std::string& body, const Link& link, const Pose& pose) {
         if (body.empty()) return;
-        const auto parent = masses_.find(body);
+        const auto parent = bodies_made_.find(body);
         const std::optional<Inertial> own = inertial_of_link(link);
-        if (parent == masses_.end() || !parent->second.inertial || !own) {
+        if (parent == bodies_made_.end() || !parent->second.inertial || !own) {
             out_.warnings.push_back("link \"" + link.name + "\": has no geometry, and its mass is left out: it and the link that it is " +
                                     "fixed to have no inertia each");
             return;
@@ -283,61 +245,72 @@ private:
         parent->second.inertial = core::scene::inertial_of(sum);
     }
 
-    void write_inertial(Json& body) const {
-        const auto found = masses_.find(body["name"].get<std::string>());
-        if (found == masses_.end() || !found->second.inertial) return;
-        const Inertial& own = *found->second.inertial;
-        Json rows = Json::array();
-        for (int k = 0; k < 3; ++k) rows.push_back(numbers(own.inertia.row(k).transpose()));
-        body.erase("density");
-        body["inertial"] = {{"mass", own.mass}, {"centre", numbers(1e3 * own.centre)}, {"inertia", rows}};
+    /// What is known of a body at the end: all that its frames weigh, and where they are.
+    void write_rest(Json& body) const {
+        const auto found = bodies_made_.find(body["name"].get<std::string>());
+        if (found == bodies_made_.end()) return;
+        if (found->second.inertial) {
+            const Inertial& own = *found->second.inertial;
+            Json rows = Json::array();
+            for (int k = 0; k < 3; ++k) rows.push_back(numbers(own.inertia.row(k).transpose()));
+            body.erase("density");
+            body["inertial"] = {{"mass", own.mass}, {"centre", numbers(1e3 * own.centre)}, {"inertia", rows}};
+        }
+        if (!found->second.notes.empty()) body["urdf"] = notes_json(found->second.notes);
     }
 
     /// @param child  the frame of the child's link. @param parent  a body, or empty for the world.
-    void add_joint(const Joint& joint, const Pose& child, const std::string& parent, double start) {
+    void add_joint(const Joint& joint, const Pose& child, const std::string& parent) {
         if (joint.type == "floating") return;
-        const bool turns = joint.type == "revolute" || joint.type == "continuous";
-        const std::string type = turns ? "revolute" : joint.type;
+        const std::string type = is_fixed(joint) ? "fixed" : joint.turns() ? "revolute" : joint.type;
         Json out{{"name", joint.name}, {"type", type}};
         if (!parent.empty()) out["a"] = parent;
         out["b"] = bodies_[index_of_.at(joint.child)];
         out["point"] = numbers(1e3 * child.position);
         if (type != "fixed") out["axis"] = numbers(child.rotation * joint.axis);
-        const double unit = turns ? 180 / M_PI : 1e3;
-        if (is_limited(joint)) out["limits"] = {(*joint.lower - start) * unit, (*joint.upper - start) * unit};
         if (type == "revolute" || type == "prismatic") {
+            const double unit = joint.turns() ? 180 / M_PI : 1e3, start = start_of(joint);
+            if (joint.is_limited()) out["limits"] = {(*joint.lower - start) * unit, (*joint.upper - start) * unit};
             if (joint.damping > 0) out["damping"] = joint.damping;
             if (joint.friction > 0) out["friction"] = joint.friction;
+            const JointNotes notes{start, joint.effort, joint.velocity};
+            if (!notes.empty()) out["urdf"] = notes_json(notes, joint.turns());
+        } else if (joint.effort || joint.velocity) {
+            told_["effort and velocity mean nothing there and are left out, of the joints"].push_back(joint.name);
         }
+        if (joint.damping < 0 || joint.friction < 0)
+            told_["damping and friction below 0 are left out, of the joints"].push_back(joint.name);
+        in_scene_.insert(joint.name);
         scene_["joints"].push_back(std::move(out));
     }
 
-    /// A joint that mimics another: a gear between two that turn, a rack between one that turns and one that slides.
+    /// A joint that mimics another: a gear between two that turn or two that slide, a rack between one that turns and one that slides.
     void couple() {
         for (const Joint& joint : robot_.joints) {
-            if (joint.mimics.empty()) continue;
-            const auto other = joint_of_.find(joint.mimics);
-            const auto turns = [](const Joint& j) { return j.type == "revolute" || j.type == "continuous"; };
-            if (other == joint_of_.end() || !turns(*other->second) || !(turns(joint) || joint.type == "prismatic") ||
-                joint.multiplier == 0) {
-                errors_.push_back(
-                    {ErrorCode::unsupported, robot_.name,
-                     "the joint \"" + joint.name + "\" mimics \"" + joint.mimics + "\": only one that turns can be followed"});
+            if (joint.mimics.empty() || in_scene_.count(joint.name) == 0) continue;
+            if (is_fixed(joint)) {
+                told_["fixed, for they mimic with a multiplier of 0: the joints"].push_back(joint.name);
                 continue;
             }
-            if (joint.offset != 0)
-                out_.warnings.push_back("joint \"" + joint.name + "\" mimics with an offset: it starts at coordinate " +
-                                        std::to_string(start_of(joint)) + ", and follows from there");
-            Json out{{"name", joint.name + " mimics " + joint.mimics},
-                     {"type", turns(joint) ? "gear" : "rack"},
-                     {"of", {joint.mimics, joint.name}}};
-            if (turns(joint)) {
-                out["ratio"] = joint.multiplier;
+            const Joint& other = *joint_of_.at(joint.mimics);
+            if (in_scene_.count(other.name) == 0) {
+                told_["free, for what they mimic is left out: the joints"].push_back(joint.name);
+                continue;
+            }
+            Json out{{"name", joint.name + " mimics " + joint.mimics}};
+            if (joint.turns() == other.turns()) {
+                out.update({{"type", "gear"}, {"of", {other.name, joint.name}}, {"ratio", joint.multiplier}});
+            } else if (other.turns()) {
+                out.update({{"type", "rack"}, {"of", {other.name, joint.name}}, {"radius", 1e3 * joint.multiplier}});
             } else {
-                out["radius"] = 1e3 * joint.multiplier;
+                out.update({{"type", "rack"}, {"of", {joint.name, other.name}}, {"radius", 1e3 / joint.multiplier}});
             }
             scene_["joints"].push_back(std::move(out));
         }
+    }
+
+    void tell_what_is_left_out() {
+        for (const auto& [what, names] : told_) out_.warnings.push_back(what + " " + some_of(names));
     }
 
     const Robot& robot_;
@@ -345,17 +318,22 @@ private:
     Json scene_;
     ImportedScene out_;
     Errors errors_;
-    std::map<std::string, const Joint*> parent_joint_, joint_of_;
-    std::map<std::string, std::vector<const Joint*>> children_;  // by the parent's name
-    std::map<std::string, std::size_t> index_of_;                // of links
-    std::vector<std::string> bodies_;                            // per link, the name of what becomes of it
+    std::unordered_map<std::string, const Joint*> parent_joint_, joint_of_;
+    std::unordered_map<std::string, std::vector<const Joint*>> children_;  // by the parent's name
+    std::unordered_map<std::string, std::size_t> index_of_;                // of links
+    std::unordered_map<std::string, JointStart> starts_;                   // by joint
+    std::vector<std::string> bodies_;                                      // per link, the name of what becomes of it
+    std::set<std::string> carrying_;                                       // links that have geometry, or something below them
+    std::set<std::string> in_scene_;                                       // joints
+    std::map<std::string, std::vector<std::string>> told_;                 // what is left out or changed, and of what
     core::files::UniqueNames files_{"_", true};
-    struct BodyMass {
+    struct BodyMade {
         Pose pose;                         // of the body's frame in the world
         std::optional<Inertial> inertial;  // along its axes
+        BodyNotes notes;
     };
-    std::map<std::string, BodyMass> masses_;  // by body
-    std::set<std::string> doubted_;           // links whose inertia no body has
+    std::map<std::string, BodyMade> bodies_made_;  // by name
+    std::set<std::string> doubted_;                // links whose inertia no body has
     int root_ = -1;
     std::size_t visited_ = 0;
 };

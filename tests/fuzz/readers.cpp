@@ -178,7 +178,7 @@ void read_form(std::string_view bytes) {
 void read_urdf(std::string_view bytes) {
     const auto robot = design::urdf::parse_urdf(bytes, "a.urdf");
     if (!robot) return;
-    const auto scene = design::urdf::scene_of_robot(*robot, {scratch().file(""), {}, "a", false});
+    const auto scene = design::urdf::scene_of_robot(*robot, {{scratch().file(""), {}}, "a", false});
     if (scene && bytes.size() < 10'000) (void)core::scene_files::parse_scene(scene->files.front().second, scratch().file("a.scene.json"));
 }
 

@@ -101,7 +101,8 @@ SweepScene slider_crank() {
 SweepScene wheels(Integrator integrator = Integrator::implicit_euler) {
     core::scene::Scene scene =
         scene_of({bar("carrier", 0.4), bar("first", 0.1, Vector3(0.05, 0, 0.05)), bar("second", 0.1, Vector3(0.3, 0, 0.05)),
-                  bar("rack", 0.1, Vector3(0, 0.2, 0)), bar("nut", 0.1, Vector3(0, 0, 0.3)), bar("puck", 0.1, Vector3(0.1, 0.1, 0.3))},
+                  bar("rack", 0.1, Vector3(0, 0.2, 0)), bar("nut", 0.1, Vector3(0, 0, 0.3)), bar("puck", 0.1, Vector3(0.1, 0.1, 0.3)),
+                  bar("jaw", 0.1, Vector3(0, 0.4, 0))},
                  0.01);
     scene.bodies[0].type = core::scene::BodyType::kinematic_body;
     for (auto& dof : scene.bodies[0].prescribed) dof = core::scene::MotionCurve{};
@@ -114,10 +115,12 @@ SweepScene wheels(Integrator integrator = Integrator::implicit_euler) {
         joint("two", JointKind::revolute, {"carrier", Vector3(0.3, 0, 0.05), z_axis}, {"second", Vector3::Zero(), z_axis}),
         joint("slide", JointKind::prismatic, {"", Vector3(0, 0.2, 0), x_axis}, {"rack", Vector3::Zero(), x_axis}),
         joint("thread", JointKind::screw, {"", Vector3(0, 0, 0.3), x_axis}, {"nut", Vector3::Zero(), x_axis}),
-        joint("table", JointKind::planar, {"nut", Vector3(0, 0, 0), z_axis}, {"puck", Vector3(-0.1, -0.1, 0), z_axis})};
+        joint("table", JointKind::planar, {"nut", Vector3(0, 0, 0), z_axis}, {"puck", Vector3(-0.1, -0.1, 0), z_axis}),
+        joint("other slide", JointKind::prismatic, {"", Vector3(0, 0.4, 0), z_axis}, {"jaw", Vector3::Zero(), z_axis})};
     scene.mechanism.joints[3].pitch = 0.05;
     for (const auto& [name, kind, first, second, ratio] :
-         {std::tuple("gear", JointKind::gear, "one", "two", -0.6), std::tuple("pinion", JointKind::rack, "one", "slide", 0.03)}) {
+         {std::tuple("gear", JointKind::gear, "one", "two", -0.6), std::tuple("pinion", JointKind::rack, "one", "slide", 0.03),
+          std::tuple("jaws", JointKind::gear, "slide", "other slide", -0.5)}) {
         core::scene::Joint coupling = joint(name, kind, {}, {});
         coupling.of = {first, second};
         coupling.ratio = ratio;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <sstream>
 
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/mesh_files/raw_mesh.hpp"
@@ -106,7 +107,7 @@ TEST_CASE("OBJ: full double precision, long lines, CR LF, signs and exponents") 
     CHECK(mesh.triangles.size() == 1);
 }
 
-TEST_CASE("OBJ: polylines are codimensional edges, unused vertices are points") {
+TEST_CASE("OBJ: polylines are codimensional edges, `p` are points") {
     const Folder folder;
     const Mesh mesh = read_mesh(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 5 5 5\nl 1 2 3\nf 1 2 4\np 5\n")).value();
     CHECK(mesh.edges == std::vector<Edge>{{0, 1}, {1, 3}, {3, 0}, {1, 2}});
@@ -114,6 +115,61 @@ TEST_CASE("OBJ: polylines are codimensional edges, unused vertices are points") 
     const Mesh wire = read_mesh(folder.write("b.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n")).value();
     CHECK(wire.triangles.empty());
     CHECK(wire.edges.size() == 1);
+}
+
+TEST_CASE("vertices that nothing uses are no part of a mesh, in every format") {
+    const Folder folder;
+    // A tetrahedron between a vertex that nothing uses and two that only a face without area does.
+    const std::vector<std::string> vertices{"9 9 9", "0 0 0", "1 0 0", "0 1 0", "0 0 1", "7 7 7", "7 7 7"};
+    const std::vector<std::string> faces{"1 3 2", "1 2 4", "1 4 3", "2 3 4", "5 6 1"};
+    const auto lines = [](const std::string& before, const std::vector<std::string>& rows) {
+        std::string text;
+        for (const std::string& row : rows) text += before + row + "\n";
+        return text;
+    };
+    const auto tags = [](const std::string& text, const std::vector<std::string>& rows) {  // % is a number of the row
+        std::string out;
+        for (const std::string& row : rows) {
+            std::istringstream numbers(row);
+            std::string number;
+            for (const char c : text) {
+                if (c == '%') numbers >> number;
+                out += c == '%' ? number : std::string(1, c);
+            }
+        }
+        return out;
+    };
+    const std::string ply_header =
+        "ply\nformat ascii 1.0\nelement vertex 7\nproperty double x\nproperty double y\nproperty double z\nelement face 5\n"
+        "property list uchar int vertex_indices\nend_header\n";
+    std::vector<std::string> from_one;
+    for (const std::string& face : faces) {
+        from_one.push_back(face);
+        for (char& c : from_one.back()) c = static_cast<char>(c == ' ' ? c : c + 1);
+    }
+    const std::string model = "<model unit=\"millimeter\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>" +
+                              std::string("<object id=\"1\"><mesh><vertices>") + tags("<vertex x=\"%\" y=\"%\" z=\"%\"/>", vertices) +
+                              "</vertices><triangles>" + tags("<triangle v1=\"%\" v2=\"%\" v3=\"%\"/>", faces) +
+                              "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>";
+    const std::string amf = "<?xml version=\"1.0\"?>\n<amf unit=\"millimeter\"><object id=\"1\"><mesh><vertices>" +
+                            tags("<vertex><coordinates><x>%</x><y>%</y><z>%</z></coordinates></vertex>", vertices) + "</vertices><volume>" +
+                            tags("<triangle><v1>%</v1><v2>%</v2><v3>%</v3></triangle>", faces) + "</volume></mesh></object></amf>\n";
+    for (const std::string& path :
+         {folder.write("a.obj", lines("v ", vertices) + lines("f ", from_one)), folder.file_3mf("a.3mf", model),
+          folder.write("a.off", "OFF\n7 5 0\n" + lines("", vertices) + lines("3 ", faces)),
+          folder.write("a.ply", ply_header + lines("", vertices) + lines("3 ", faces)), folder.write("a.amf", amf)}) {
+        INFO(path);
+        const auto mesh = read_mesh(path, {1e-3});
+        REQUIRE(mesh);
+        CHECK(mesh->vertices.cols() == 4);
+        CHECK(mesh->vertices.maxCoeff() == 1e-3);
+        CHECK(mesh->codimensional_points.empty());
+        CHECK(core::solids::validate_mesh(*mesh, {}).empty());
+    }
+    CHECK(read_mesh(folder.write("b.obj", "v 9 9 9\nv 1 0 0\nv 2 0 0\nl 2 3\n")).value().vertices.cols() == 2);
+    CHECK(read_mesh(folder.write("c.off", "OFF\n3 1 0\n9 9 9\n1 0 0\n2 0 0\n1 2\n")).value().codimensional_points.size() == 1);
+    CHECK(read_mesh(folder.write("d.obj", "v 1 0 0\nv 2 0 0\nv 3 0 0\n")).value().codimensional_points.size() == 3);
+    CHECK(contains(only_error(folder.write("e.obj", "v 1 0 0\nv 1 0 0\nv 3 0 0\nf 1 2 3\n")).message, "of no area alone"));
 }
 
 TEST_CASE("OBJ: polygons are cut inside their outline, with its orientation") {

@@ -236,6 +236,20 @@ TEST_CASE("Components become bodies of their own", "[scene]") {
     json whole = with("/bodies/0/split_components", true);  // one component keeps its name
     CHECK(shop.read(whole)->bodies[0].name == "box");
 
+    const auto void_in = tests::inside_out(tests::box_mesh({0.2, 0.2, 0.2}, {0.8, 0.8, 0.8}));
+    std::ostringstream hollow;  // the second box has a void, which is no body
+    const auto with_void =
+        tests::joined(tests::box_mesh({5, 0, 0}, {6, 1, 2}), tests::joined(tests::box_mesh({0, 0, 0}, {1, 1, 1}), void_in));
+    for (Eigen::Index i = 0; i < with_void.vertices.cols(); ++i) hollow << "v " << with_void.vertices.col(i).transpose() << "\n";
+    for (const auto& t : with_void.triangles) hollow << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+    std::ofstream(shop.root / "scenes" / "hollow.obj") << hollow.str();
+    json of_solids = scene;
+    of_solids["bodies"][0]["mesh"] = "hollow.obj";
+    const auto solids = shop.read(of_solids);
+    REQUIRE(solids);
+    REQUIRE(solids->bodies.size() == 2);
+    CHECK(setup::build_model(*solids)->bodies[1].moments(3, 3) == Approx(1240 * (1 - 0.6 * 0.6 * 0.6) * 1e-9));
+
     const auto fails = [&](json& wrong, const std::string& message) {
         const auto errors = shop.read(wrong).errors();
         REQUIRE(errors.size() == 1);

@@ -156,18 +156,20 @@ TEST_CASE("a slider-crank's stroke is trigonometry's, and its torque that of the
     CHECK(worst_torque < 1e-5 * load * crank.crank);  // the proximal term's share
 }
 
-TEST_CASE("gears turn by their numbers of teeth, a rack by its radius, a screw by its pitch", "[joints]") {
+TEST_CASE("gears turn by their numbers of teeth, a rack by its radius, a screw by its pitch, slides in their ratio", "[joints]") {
     scene::Scene scene = scene_of({bar("first", 0.1), bar("second", 0.1, Vector3(0.3, 0, 0)), bar("rack", 0.1, Vector3(0, 0.2, 0)),
-                                   bar("screw", 0.1, Vector3(0, 0, 0.3))},
+                                   bar("screw", 0.1, Vector3(0, 0, 0.3)), bar("jaw", 0.1, Vector3(0, 0.4, 0))},
                                   0.01);
     scene.mechanism.joints = {joint("one", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"first", Vector3::Zero(), z_axis}),
                               joint("two", JointKind::revolute, {"", Vector3(0.3, 0, 0), z_axis}, {"second", Vector3::Zero(), z_axis}),
                               joint("slide", JointKind::prismatic, {"", Vector3(0, 0.2, 0), x_axis}, {"rack", Vector3::Zero(), x_axis}),
                               joint("thread", JointKind::screw, {"", Vector3(0, 0, 0.3), x_axis}, {"screw", Vector3::Zero(), x_axis})};
     scene.mechanism.joints.back().pitch = 0.02;
+    scene.mechanism.joints.push_back(
+        joint("other slide", JointKind::prismatic, {"", Vector3(0, 0.4, 0), z_axis}, {"jaw", Vector3::Zero(), z_axis}));
     for (const auto& [name, kind, first, second, ratio] :
          {std::tuple("gear", JointKind::gear, "one", "two", -20.0 / 41.0), std::tuple("pinion", JointKind::rack, "one", "slide", 0.03),
-          std::tuple("belt", JointKind::gear, "two", "thread", 1.5)}) {
+          std::tuple("belt", JointKind::gear, "two", "thread", 1.5), std::tuple("jaws", JointKind::gear, "slide", "other slide", -0.5)}) {
         scene::Joint coupling = joint(name, kind, {}, {});
         coupling.of = {first, second};
         coupling.ratio = ratio;
@@ -186,6 +188,7 @@ TEST_CASE("gears turn by their numbers of teeth, a rack by its radius, a screw b
     CHECK(place(model, out, 200, 2, Vector3::Zero()).x() == Approx(0.03 * 40).epsilon(1e-9));
     CHECK(std::abs(std::remainder(angle_of(3, x_axis) - 1.5 * second, 2 * pi)) < 1e-9);
     CHECK(place(model, out, 200, 3, Vector3::Zero()).x() == Approx(0.02 * 1.5 * second / (2 * pi)).epsilon(1e-9));
+    CHECK(place(model, out, 200, 4, Vector3::Zero()).z() == Approx(-0.5 * 0.03 * 40).epsilon(1e-9));
 }
 
 TEST_CASE("each hinge of a hanging chain carries what hangs below it", "[joints]") {

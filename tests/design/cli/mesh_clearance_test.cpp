@@ -70,6 +70,32 @@ TEST_CASE("clearance: what meshes need is asked for, what they have not is refus
     CHECK(run("clearance " + base + " --unit mm --minimum 1mm").code == 3);  // one part: there is nothing to judge
 }
 
+TEST_CASE("several solids in one file are counted, and the way to bodies of their own is named") {
+    const Boxes boxes;
+    core::geometry::Mesh row = boxes.a;
+    const Eigen::Index first = row.vertices.cols();
+    row.vertices.conservativeResize(3, 2 * first);
+    row.vertices.rightCols(first) = boxes.b.vertices;
+    for (const auto& t : boxes.b.triangles)
+        row.triangles.push_back({t[0] + static_cast<int>(first), t[1] + static_cast<int>(first), t[2] + static_cast<int>(first)});
+    const std::string file = boxes.write("row.obj", core::mesh_files::obj_text({{"row", &row}}));
+    const Answer refused = run("clearance " + file + " --unit mm --minimum 1mm --json");
+    CHECK(refused.code == 3);
+    CHECK(refused.says("is one part of 2 solids"));
+    CHECK(refused.says("split_components"));
+    CHECK(run("validate " + file + " --json").json()["solids"] == 2);
+    CHECK(run("validate " + file).says("2 solids that do not hang together"));
+    const std::string scene = boxes.write("row.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
+        {"name": "row", "type": "static", "mesh": "row.obj"},
+        {"name": "each", "type": "static", "mesh": "row.obj", "position": [0, 50, 0], "split_components": true}]})");
+    const Answer valid = run("validate " + scene + " --json");
+    REQUIRE(valid.json()["parts"].size() == 3);
+    CHECK(valid.json()["parts"][0]["solids"] == 2);
+    CHECK(valid.json()["parts"][2]["solids"] == 1);
+    CHECK(run("validate " + scene).says("  2 solids\n"));
+    CHECK(run("clearance " + scene + " --pairs each-0:each-1 --minimum 0.4mm").code == 0);
+}
+
 TEST_CASE("clearance: a folder of meshes, all pairs of it") {
     const Boxes boxes;
     const Answer answer = run("clearance " + boxes.file("cad") + " --unit mm --minimum 1mm --json");

@@ -66,6 +66,25 @@ TEST_CASE("simulate: steps cover the end time, and the times of all it did are t
     CHECK(run("simulate " + folder.scene() + " --time 1 --json").json()["steps"] == 4);
 }
 
+TEST_CASE("simulate: in a cup without a lid surfaces are proven apart, and what that does not say is said") {
+    const SceneFolder folder;
+    const std::string faces = std::string(cube).substr(0, std::string(cube).find("f 5 6 8")) + "f 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\n" +
+                              "f 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
+    folder.write("cup.obj", faces);
+    const std::string scene = folder.write("cup.scene.json", R"({"fettle_scene": 1, "units": "m", "timestep": 0.01, "end_time": 0.05,
+        "gravity": [0, 0, -10], "bodies": [
+        {"name": "cube", "type": "dynamic", "mesh": "cube.obj", "density": 1000, "position": [0.5, 0.5, 0.1]},
+        {"name": "cup", "type": "static", "mesh": "cup.obj", "scale": 2}]})");
+    const Answer answer = run("simulate " + scene + " --json");
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+    CHECK(answer.json()["status"] == "ok");
+    CHECK(answer.json()["certification"] == "surfaces proven");
+    CHECK(answer.json()["minimum_distance"].get<double>() > 0.05);
+    CHECK(answer.json()["message"].get<std::string>().find("of \"cube\" and \"cup\": whether one lies inside the other") != std::string::npos);
+    CHECK(run("simulate " + scene).says("smallest distance of two surfaces over the path: at least"));
+}
+
 TEST_CASE("simulate: where no pair may collide there is no least distance, and that is said") {
     const SceneFolder folder;
     const std::string scene = folder.write("alone.scene.json", R"({"fettle_scene": 1, "units": "m", "timestep": 0.1, "end_time": 0.2,

@@ -83,7 +83,7 @@ TEST_CASE("URDF: names that files or ids are made of stay apart, both ways") {
     const auto scene = core::scene_files::read_scene(
         folder.write("a.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [)" + bodies + "]}"), reading::scene_read_options());
     REQUIRE(scene);
-    const auto robot = robot_of_scene(*scene, core::setup::build_model(*scene).value(), "a");
+    const auto robot = robot_of_scene(*scene, core::setup::build_model(*scene).value(), {}, "a");
     REQUIRE(robot);
     std::set<std::string> files;
     for (const auto& [name, contents] : robot->files) {
@@ -97,7 +97,7 @@ TEST_CASE("URDF: names that files or ids are made of stay apart, both ways") {
     CHECK(contains(robot->warnings.front(), "body \"world\": its link is called \"world_2\""));
     const auto parsed = parse_urdf(robot->files.front().second, "a.urdf");
     REQUIRE(parsed);
-    const auto back = scene_of_robot(*parsed, {folder.path.string(), {}, "b", false});
+    const auto back = scene_of_robot(*parsed, {{folder.path.string(), {}}, "b", false});
     REQUIRE(back);
     for (const auto& [name, contents] : back->files) folder.write(name, contents);
     const auto again = core::scene_files::read_scene(folder.file("b.scene.json"), reading::scene_read_options());
@@ -114,7 +114,7 @@ TEST_CASE("URDF: names that files or ids are made of stay apart, both ways") {
     const std::string two =
         "<robot><link name=\"a:b\">" + link + "<link name=\"a,b\">" + link + "<link name=\"c\">" + link + joint + "a,b\"/></joint>";
     const auto colliding = scene_of_robot(
-        parse_urdf(two + joint.substr(0, 13) + "k" + joint.substr(14) + "c\"/></joint></robot>", "x").value(), {"", {}, "c", true});
+        parse_urdf(two + joint.substr(0, 13) + "k" + joint.substr(14) + "c\"/></joint></robot>", "x").value(), {{}, "c", true});
     REQUIRE(colliding);
     CHECK(scene_json(*colliding)["bodies"][1]["name"] == "a_b_2");
     CHECK(scene_json(*colliding)["joints"][0]["b"] == "a_b_2");
@@ -136,7 +136,7 @@ TEST_CASE("URDF: a chain of any length is followed") {
         "link=\"49999\"/><child link=\"end\"/></joint></robot>";
     const auto robot = parse_urdf(text, "chain.urdf");
     REQUIRE(robot);
-    const auto scene = scene_of_robot(*robot, {"", {}, "chain", true});
+    const auto scene = scene_of_robot(*robot, {{}, "chain", true});
     REQUIRE(scene);
     CHECK(vector(scene_json(*scene)["bodies"][1]["position"]).x() == Approx(49999));
 }
@@ -290,7 +290,7 @@ TEST_CASE("URDF out: inertia about the centre of mass, joints that it has not ar
         REQUIRE(read);
         core::setup::BuildOptions options;
         options.check_start = false;
-        return robot_of_scene(*read, core::setup::build_model(*read, options).value(), "a");
+        return robot_of_scene(*read, core::setup::build_model(*read, options).value(), {}, "a");
     };
     const auto robot = exported(pivot);
     REQUIRE(robot);
@@ -350,9 +350,93 @@ TEST_CASE("URDF in: what is wrong is told") {
     CHECK(code("<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh "
                "filename=\"package://p/none.stl\"/></geometry></collision></link></robot>") == ErrorCode::file_not_found);
     CHECK(code("<robot name=\"r\"><link name=\"a\"/></robot>") == ErrorCode::mesh_invalid);
-    CHECK(code("<robot name=\"r\"><link name=\"a\">" + box +
-               "</link><link name=\"b\"/><joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/></joint></robot>") ==
+    const std::string turning = "<joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/>";
+    const std::string beyond =
+        "<link name=\"c\">" + box + "</link><joint name=\"k\" type=\"fixed\"><parent link=\"b\"/><child link=\"c\"/></joint>";
+    CHECK(code("<robot name=\"r\"><link name=\"a\">" + box + "</link><link name=\"b\"/>" + turning + "</joint>" + beyond + "</robot>") ==
           ErrorCode::unsupported);
+    CHECK(code(two(turning + "<axis xyz=\"0 0 0\"/></joint>")) == ErrorCode::out_of_range);
+    CHECK(code("<robot name=\"r\"><link name=\"a\"><inertial><mass value=\"-1\"/></inertial></link></robot>") == ErrorCode::out_of_range);
+    CHECK(code("<robot name=\"r\"><link name=\"a\"><visual><geometry><capsule/></geometry></visual></link></robot>") ==
+          ErrorCode::unsupported);
+    CHECK(code(two(turning + "<mimic joint=\"j\"/></joint>")) == ErrorCode::inconsistent);
+    CHECK(code(two(turning + "<mimic joint=\"i\"/></joint>")) == ErrorCode::inconsistent);
+}
+
+TEST_CASE("URDF in: what harms nothing is taken") {
+    const std::string box = "<geometry><box size=\"1 1 1\"/></geometry>";
+    const auto taken = [](const std::string& links) {
+        const auto robot = parse_urdf("\n\n<?xml version=\"1.0\"?><robot name=\"r\">" + links + "</robot>", "x.urdf");
+        CAPTURE(links);
+        REQUIRE(robot);
+        const auto scene = scene_of_robot(*robot, {});
+        REQUIRE(scene);
+        return *scene;
+    };
+    // A material with its colour within a link, before or behind the geometry; of what is not seen; another geometry that is not needed.
+    const std::string red = "<material name=\"red\"><color rgba=\"1 0 0 1\"/></material>";
+    for (const std::string& visual : {box + red, red + box}) {
+        const auto scene = taken("<link name=\"a\"><visual>" + visual + "</visual></link>");
+        CHECK(scene_json(scene)["bodies"][0]["urdf"]["colour"] == json({1.0, 0.0, 0.0, 1.0}));
+        CHECK(scene.warnings.empty());
+    }
+    CHECK(contains(taken("<link name=\"a\"><collision>" + box + red + "</collision></link>").warnings.at(0), "<material> of <collision>"));
+    const auto capsule =
+        taken("<link name=\"a\"><visual><geometry><capsule/></geometry></visual><collision>" + box + "</collision></link>");
+    CHECK(contains(capsule.warnings.at(0), "x.urdf:3: <capsule> of <geometry> is passed over"));
+    // Mass 0 of a root that stays, an axis of length 0 where there is none, blanks round numbers, a link that moves and is nothing.
+    const auto scene = taken("<link name=\"a\"><inertial><mass value=\" 0 \"/></inertial><collision>" + box + "</collision></link>" +
+                             "<link name=\"b\"><collision>" + box + "</collision></link><link name=\"c\"/>" +
+                             "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/><axis xyz=\"0 0 0\"/></joint>" +
+                             "<joint name=\"k\" type=\"continuous\"><parent link=\"b\"/><child link=\"c\"/></joint>");
+    CHECK(scene_json(scene)["bodies"].size() == 2);
+    REQUIRE(scene.warnings.size() == 2);
+    CHECK(contains(scene.warnings[1], "the links \"c\""));
+}
+
+TEST_CASE("URDF: what mimics starts where the other has it, within the limits of both") {
+    const std::string box = "<collision><geometry><box size=\"0.1 0.1 0.1\"/></geometry></collision></link>";
+    const auto imported = [&](const std::string& of_a, const std::string& of_b, const std::string& type = "revolute") {
+        const auto joint = [&](const std::string& name, const std::string& kind, const std::string& child, const std::string& more) {
+            return "<joint name=\"" + name + "\" type=\"" + kind + "\"><parent link=\"base\"/><child link=\"" + child +
+                   "\"/><axis xyz=\"0 0 1\"/>" + more + "</joint>";
+        };
+        const auto robot = parse_urdf("<robot name=\"r\"><link name=\"base\">" + box + "<link name=\"a\">" + box + "<link name=\"b\">" +
+                                          box + joint("ja", type, "a", of_a) + joint("jb", "revolute", "b", of_b) + "</robot>",
+                                      "x.urdf");
+        REQUIRE(robot);
+        const auto scene = scene_of_robot(*robot, {});
+        REQUIRE(scene);
+        return *scene;
+    };
+    const auto start = [](const ImportedScene& scene, std::size_t joint) {
+        return scene_json(scene)["joints"][joint].value("/urdf/start"_json_pointer, 0.0) * M_PI / 180;
+    };
+    const std::string wide = "<limit lower=\"-2\" upper=\"2\" effort=\"7\" velocity=\"3\"/>";
+    const auto plain = imported(wide, wide + "<mimic joint=\"ja\" multiplier=\"1.06399\" offset=\"-0.04545\"/>");
+    CHECK(start(plain, 0) == 0);
+    CHECK(start(plain, 1) == Approx(-0.04545));
+    const json gear = scene_json(plain)["joints"][2];
+    CHECK(gear["ratio"] == 1.06399);  // from there on: 1.06399 - 0.04545 at 1
+    CHECK(vector(scene_json(plain)["bodies"][2]["rotation_vector"]).z() == Approx(-0.04545 * 180 / M_PI));
+    const json limits = scene_json(plain)["joints"][1]["limits"];
+    CHECK(limits[0].get<double>() == Approx((-2 + 0.04545) * 180 / M_PI));
+    // b's own limits hold a back: b = 2 a + 0.3 in [0.5, 1], a = 0.1 at least.
+    const auto narrowed = imported(wide, "<limit lower=\"0.5\" upper=\"1\"/><mimic joint=\"ja\" multiplier=\"2\" offset=\"0.3\"/>");
+    CHECK(start(narrowed, 0) == Approx(0.1));
+    CHECK(start(narrowed, 1) == Approx(0.5));
+    CHECK(scene_json(narrowed)["joints"][1]["limits"][0] == 0.0);
+    const auto apart = imported("<limit lower=\"0\" upper=\"1\"/>", "<limit lower=\"5\" upper=\"6\"/><mimic joint=\"ja\"/>");
+    REQUIRE_FALSE(apart.warnings.empty());
+    CHECK(contains(apart.warnings[0], "no position of it has it and all that mimic it within their limits"));
+    // What turns with what slides, and what does not move at all.
+    const auto rack = imported(wide, wide + "<mimic joint=\"ja\" multiplier=\"20\"/>", "prismatic");
+    CHECK(scene_json(rack)["joints"][2]["of"] == json({"jb", "ja"}));
+    CHECK(scene_json(rack)["joints"][2]["radius"].get<double>() == Approx(50));
+    const auto held = imported(wide, wide + "<mimic joint=\"ja\" multiplier=\"0\" offset=\"0.7\"/>");
+    CHECK(scene_json(held)["joints"].size() == 2);
+    CHECK(scene_json(held)["joints"][1]["type"] == "fixed");
+    CHECK(vector(scene_json(held)["bodies"][2]["rotation_vector"]).z() == Approx(0.7 * 180 / M_PI));
 }
 
 }  // namespace fettle::design::urdf::urdf_test

@@ -104,6 +104,7 @@ function verdict(data) {
 function simulated(data) {
   switch (data.status) {
     case "ok":
+      if (data.message) return { tone: "good", head: "Simulated to the end.", rest: `Surfaces stay at least ${mm(lowerBound(data.least))} apart over the whole continuous path: ${data.message}` };
       return data.least === null
         ? { tone: "good", head: "Simulated to the end.", rest: "No two bodies of it may collide, so that there was nothing to prove." }
         : { tone: "good", head: "Simulated to the end, and proven never to touch.", rest: `Bodies that may collide stay at least ${mm(lowerBound(data.least))} apart over the whole continuous path.` };
