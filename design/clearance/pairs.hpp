@@ -51,6 +51,7 @@ struct PairSelection {
     std::vector<PairSpec> pairs;
     std::vector<std::string> ignored;  ///< "A:B"
     std::vector<PairSpec> left_out;    ///< neither judged by default nor named: only their clashes are reported
+    std::vector<std::string> notes;    ///< on what is required
 };
 
 /// Two bodies by their indices, the lesser first; sorted, each once.

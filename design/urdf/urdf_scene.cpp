@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/core/files/unique_names.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/geometry/mesh_transforms.hpp"
@@ -145,7 +146,7 @@ public:
         if (scene_["bodies"].empty()) return Error{ErrorCode::mesh_invalid, robot_.name, "no link has any geometry"};
         if (scene_["joints"].empty()) scene_.erase("joints");
         for (Json& body : scene_["bodies"]) write_inertial(body);
-        out_.files.insert(out_.files.begin(), {options_.stem + ".scene.json", scene_.dump(2) + "\n"});
+        out_.files.insert(out_.files.begin(), {options_.stem + ".scene.json", core::files::dumped(scene_, 2) + "\n"});
         return std::move(out_);
     }
 

@@ -8,6 +8,7 @@ import errno
 import json
 import math
 import os
+import re
 import signal
 import sys
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Sequence, Union
@@ -129,7 +130,7 @@ def run(options: argparse.Namespace) -> int:
     def tell(done: int, of: int, result: Dict[str, Any]) -> None:
         Stopped.check()
         if not options.quiet:
-            print(progress_line(done, of, result), file=sys.stderr)
+            say(progress_line(done, of, result))
 
     design = _fettle.read_design(options.design, allow_programs=options.allow_programs).design
     sweep = sweep_of(options.sweep, design)
@@ -152,7 +153,7 @@ def run(options: argparse.Namespace) -> int:
     except Unwritten as fault:  # what was found is told all the same
         answer(fault.found, options, fault.errors)
         for each in fault.errors:
-            print(error_line(each.where, each), file=sys.stderr)
+            say(error_line(each.where, each))
         return EXIT_BAD_INPUT
     return answer(found, options, [])
 
@@ -164,7 +165,7 @@ def answer(found: Exploration, options: argparse.Namespace, unwritten: Sequence[
         told: Dict[str, Any] = {"status": "ok" if best else "infeasible", "results": len(found), "best": best, "out": options.out}
         if unwritten:
             told["unwritten"] = [dataclasses.asdict(fault) for fault in unwritten]
-        put(json.dumps(told, allow_nan=False))
+        put_json(told)
     else:
         text = "none meets every requirement"
         if best:
@@ -174,17 +175,24 @@ def answer(found: Exploration, options: argparse.Namespace, unwritten: Sequence[
             text += ", at " + ", ".join(f"{name} {value:.9g}" for name, value in best["parameters"].items()) + " (SI)"
         if not unwritten:
             text += f"\nto look at them: fettle report {options.out}"
-        put(f"{len(found)} designs{'' if unwritten else ' in ' + options.out}; {text}")
+        put(printed(f"{len(found)} designs{'' if unwritten else ' in ' + options.out}; {text}"))
     return EXIT_DONE if best else EXIT_VIOLATED
 
 
-def shown(text: str) -> str:
-    """Control characters, which paths and names can hold, are shown."""
-    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
+def printed(text: str) -> str:
+    """As core/base/printed_text.hpp has it: control characters, which paths and names can hold, are shown, and no line is a command to a runner of
+    checks."""
+    text = "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
+    return re.sub(r"^(\s*):(?=:)", r"\1\\x3a", text, flags=re.MULTILINE).replace("##[", r"\x23#[")
+
+
+def say(text: str) -> None:
+    """The one way to standard error."""
+    print(printed(text), file=sys.stderr)
 
 
 def error_line(where: str, fault: Fault) -> str:
-    return shown(f"error: {where}{': ' if where else ''}{fault.message} [{fault.code}]")
+    return f"error: {where}{': ' if where else ''}{fault.message} [{fault.code}]"
 
 
 def input_errors(faults: Sequence[Fault], as_json: bool) -> int:
@@ -195,7 +203,7 @@ def input_errors(faults: Sequence[Fault], as_json: bool) -> int:
         put_errors([dataclasses.replace(fault, where=where) for where, fault in zip(places, faults)])
     else:
         for where, fault in zip(places, faults):
-            print(error_line(where, fault), file=sys.stderr)
+            say(error_line(where, fault))
     return EXIT_BAD_INPUT
 
 
@@ -205,12 +213,18 @@ def internal_error(fault: Exception, as_json: bool) -> int:
     if as_json:
         put_errors([Fault("internal", "", message)])
     else:
-        print(shown(f"fettle: internal error, please report it: {message}"), file=sys.stderr)
+        say(f"fettle: internal error, please report it: {message}")
     return EXIT_INTERNAL
 
 
 def put_errors(faults: Sequence[Fault]) -> None:
-    put(json.dumps({"status": "error", "errors": [dataclasses.asdict(fault) for fault in faults]}))
+    put_json({"status": "error", "errors": [dataclasses.asdict(fault) for fault in faults]})
+
+
+def put_json(answer: Dict[str, Any]) -> None:
+    """Bytes of a path that are no text are ? there."""
+    text = json.dumps(answer, ensure_ascii=False, allow_nan=False).encode("utf-8", "replace")
+    put(json.dumps(json.loads(text)).replace("##[", "#\\u0023["))
 
 
 class _AnswerLost(Exception):
@@ -269,9 +283,9 @@ def interrupted(options: argparse.Namespace, number: int) -> int:
         found = read_exploration(options.out)
         results, best = len(found), next(iter(found.best()), None)
     if options.json:
-        put(json.dumps({"status": "interrupted", "results": results, "best": best, "out": options.out}))
+        put_json({"status": "interrupted", "results": results, "best": best, "out": options.out})
     elif results:
-        put(f"interrupted: {results} designs are in {options.out}; the same command goes on with the others")
+        put(printed(f"interrupted: {results} designs are in {options.out}; the same command goes on with the others"))
     else:
         put("interrupted before the first design was done")
     return EXIT_SIGNAL + number
@@ -283,7 +297,7 @@ def main(words: Optional[Sequence[str]] = None) -> int:
     try:
         return run_told(words)
     except _AnswerLost as fault:
-        print(error_line("standard output", Fault("file_unwritable", "", f"the answer cannot be written: {fault}")), file=sys.stderr)
+        say(error_line("standard output", Fault("file_unwritable", "", f"the answer cannot be written: {fault}")))
         return EXIT_BAD_INPUT
 
 

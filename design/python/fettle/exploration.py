@@ -79,8 +79,9 @@ def _canonical(value: Any) -> str:
     return hashlib.sha256(pickle.dumps(value)).hexdigest()
 
 
-def _design_name(design: Design) -> str:
-    return hashlib.sha256((_canonical(design) + _fettle.__version__).encode()).hexdigest()[:16]
+def _design_name(design: Design, files: str) -> str:
+    """files: the hash of those that it was read from."""
+    return hashlib.sha256((_canonical(design) + _fettle.__version__ + files).encode()).hexdigest()[:16]
 
 
 def _number(value: float) -> Optional[float]:
@@ -574,8 +575,10 @@ def explore(
     ]
     out = os.fspath(out)
     path = os.fspath(design) if isinstance(design, (str, os.PathLike)) else None
+    files = ""
     if isinstance(design, (str, os.PathLike)):
-        design = _fettle.read_design(design, allow_programs=allow_programs).design
+        file_of_design, files = _fettle.read_design_and_hash(design, allow_programs=allow_programs)
+        design = file_of_design.design
     problem = _fettle.DesignProblem(design)
     faults += too_many("samples", samples) + too_many("starts", starts)
     in_numbers = _swept_in_si(design, sweep or {})
@@ -583,10 +586,12 @@ def explore(
     if faults:
         raise Error(faults)
     packed = pickle.dumps(design)
-    name = _design_name(design)
+    name = _design_name(design, files)
     header: Result = {"fettle_explore": VERSION, "program": _fettle.__version__, "design": name, "parameters": problem.parameter_names}
     if path is not None:  # from the file of results, so that both can be moved together
-        header["file"] = os.path.relpath(path, os.path.dirname(out) or ".")
+        beside = os.path.relpath(path, os.path.dirname(out) or ".")
+        if beside.isprintable():  # JSON has no others
+            header["file"] = beside
     jobs = _jobs(problem, in_numbers, samples, starts, seed)
     del problem
     with contextlib.ExitStack() as stack:

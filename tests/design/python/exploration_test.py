@@ -15,7 +15,7 @@ import pytest
 import fettle
 from conftest import EXAMPLES, MeanHeight, tilted_plate
 from fettle import exploration
-from fettle.__main__ import Stopped, main, progress_line
+from fettle.__main__ import Stopped, main, printed, progress_line
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -533,3 +533,42 @@ def test_results_go_to_regular_files_alone(tmp_path):
     for place in (endless, tmp_path / "pipe.jsonl", tmp_path):
         with pytest.raises(fettle.Error, match="regular file"):
             fettle.explore(short_design(), place, samples=1, workers=1)
+
+
+def test_an_exploration_ends_where_a_file_of_its_design_has_changed(tmp_path):
+    """A process that is named, though nothing of what is evaluated follows from it: what changed is not asked."""
+    design, out = short_file(tmp_path), tmp_path / "out.jsonl"
+    text = json.loads(design.read_text())
+    name = text["parameters"][0]["name"]
+    text["tolerances"] = {name: {"feature": "length", "process": "mine"}}
+    design.write_text(json.dumps(text))
+    process = {"fettle_process": 1, "units": "mm", "features": {"length": {"bias": 0, "spread": 0.01}}}
+    (tmp_path / "mine.process.json").write_text(json.dumps(process))
+    assert len(fettle.explore(design, out, samples=1, workers=1)) == 1
+    assert len(fettle.explore(design, out, samples=2, workers=1)) == 2
+    process["features"]["length"]["bias"] = -0.3
+    (tmp_path / "mine.process.json").write_text(json.dumps(process))
+    with pytest.raises(fettle.Error, match="another design"):
+        fettle.explore(design, out, samples=2, workers=1)
+
+
+def test_bytes_that_are_no_text_are_errors_like_others(tmp_path, capsys):
+    design = short_file(tmp_path)
+    text = design.read_bytes()
+    broken = tmp_path / os.fsdecode(b"br\xffoken.design.json")
+    broken.write_bytes(text.replace(b'"parameters"', b'"para\xffmeters"'))
+    named = tmp_path / os.fsdecode(b"na\xffmed.design.json")
+    named.write_bytes(text)
+    for path, code in ((broken, 3), (tmp_path / os.fsdecode(b"no\xffne.design.json"), 3), (named, 0)):
+        out = tmp_path / os.fsdecode(b"o\xffut.jsonl")
+        assert main(["explore", str(path), "--out", str(out), "--samples", "1", "--workers", "1", "--quiet"]) in (code, 1)
+        told = capsys.readouterr()
+        assert "\udcff" not in told.out + told.err and "internal" not in told.err
+        assert main(["explore", str(path), "--out", str(out), "--samples", "1", "--workers", "1", "--quiet", "--json"]) in (code, 1)
+        assert "\\ud" not in capsys.readouterr().out
+    with pytest.raises(fettle.Error, match=r"\\xff"):
+        fettle.read_design(broken)
+
+
+def test_what_is_printed_is_no_command_to_a_terminal_or_a_runner():
+    assert printed("::error::x\n  ::b\na ::c ##[error]d \033[31m") == "\\x3a:error::x\n  \\x3a:b\na ::c \\x23#[error]d \\x1b[31m"
