@@ -14,6 +14,7 @@
 #include <tbb/task_arena.h>
 #endif
 
+#include "fettle/core/base/read_record.hpp"
 #include "fettle/core/base/stop.hpp"
 
 namespace fettle::core::base {
@@ -130,9 +131,11 @@ void parallel_pieces(int count, int grain, const std::function<void(int begin, i
     const int pieces = count / grain + (count % grain != 0);
     FirstFailure failure;
     const std::function<bool()>* const should_stop = StopScope::asked();
+    ReadRecord* const record = ReadRecord::innermost();
     const auto run = [&](int piece) {
         if (failure.is_below(piece)) return;
         const std::function<bool()>* const own = std::exchange(StopScope::asked(), should_stop);
+        ReadRecord* const own_record = std::exchange(ReadRecord::innermost(), record);
         try {
             stop_if_asked();
             const int begin = piece * grain;
@@ -141,6 +144,7 @@ void parallel_pieces(int count, int grain, const std::function<void(int begin, i
             failure.record(piece);
         }
         StopScope::asked() = own;
+        ReadRecord::innermost() = own_record;
     };
     if (pieces > 1 && thread_count() > 1)
         run_pieces(pieces, run);

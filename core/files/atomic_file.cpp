@@ -11,20 +11,18 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
-#include <fstream>
 #include <set>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "fettle/core/base/mixed_bits.hpp"
-#include "fettle/core/base/stop.hpp"
 
 namespace fettle::core::files {
 
 using base::Error;
 using base::ErrorCode;
 using base::Errors;
-using base::Result;
 
 namespace {
 
@@ -84,20 +82,6 @@ void flush_folder(const fs::path& folder) {
     ::close(handle);
 }
 
-constexpr std::size_t longest_stream = std::size_t{1} << 30;  // of what may have no end: a pipe, a terminal
-
-// /dev/zero, a disk; not /dev/null, which has its end at once, nor a terminal, where somebody gives one.
-bool is_endless(const fs::path& path) {
-    struct stat there {};
-    if (::stat(path.c_str(), &there) != 0 || (!S_ISCHR(there.st_mode) && !S_ISBLK(there.st_mode))) return false;
-    struct stat null {};
-    if (::stat("/dev/null", &null) == 0 && there.st_rdev == null.st_rdev) return false;
-    const int file = ::open(path.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    const bool terminal = file >= 0 && ::isatty(file) != 0;
-    if (file >= 0) ::close(file);
-    return !terminal;
-}
-
 // A name of an open file: /dev/stdout, /dev/fd/3, /proc/self/fd/3.
 bool names_open_file(const fs::path& path) {
     std::error_code code;
@@ -107,6 +91,21 @@ bool names_open_file(const fs::path& path) {
         if (folder.filename() == "fd" && *++folder.begin() == "proc") return true;
     }
     return false;
+}
+
+// What is written to as it goes. A pipe that nobody reads would be waited for without an end: -1 and ENXIO after a while.
+int open_directly(const fs::path& path) {
+    constexpr std::chrono::seconds patience{10};
+    constexpr std::chrono::milliseconds between{20};
+    const auto end = std::chrono::steady_clock::now() + patience;
+    std::error_code ignored;
+    const bool is_pipe = fs::is_fifo(path, ignored);
+    while (true) {
+        const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | (is_pipe ? O_NONBLOCK : 0));
+        if (file >= 0 && is_pipe) ::fcntl(file, F_SETFL, O_APPEND);
+        if (file >= 0 || !is_pipe || errno != ENXIO || std::chrono::steady_clock::now() > end) return file;
+        std::this_thread::sleep_for(between);
+    }
 }
 
 }  // namespace
@@ -146,8 +145,8 @@ NewFile::NewFile(fs::path path) : path_(std::move(path)) {
         fail(unwritten, EISDIR);  // known before a set of files takes its names
     } else if (is_written_directly(path_)) {
         directly_ = true;
-        file_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-        if (file_ < 0) fail(unwritten, errno);
+        file_ = open_directly(path_);
+        if (file_ < 0) fail(errno == ENXIO ? "nobody reads it" : unwritten, errno);
     } else if (file_ = open_unnamed(path_); file_ < 0) {
         file_ = open_beside(path_, temporary_);
         if (file_ < 0) fail(unwritten, errno);
@@ -300,26 +299,6 @@ Errors write_file_atomically(const fs::path& path, std::string_view contents) {
     FilesTogether file;
     Errors errors = file.add(path, contents);
     return errors.empty() ? file.take_names() : errors;
-}
-
-Result<std::string> read_file(const fs::path& path) {
-    std::error_code code;
-    if (!fs::exists(path, code)) return Error{ErrorCode::file_not_found, path.string(), "no such file"};
-    if (fs::is_directory(path, code)) return Error{ErrorCode::file_unreadable, path.string(), "is a folder, a file is expected"};
-    if (is_endless(path)) return Error{ErrorCode::file_unreadable, path.string(), "is a device, not a regular file: it has no end"};
-    const bool has_size = fs::is_regular_file(path, code);
-    std::ifstream stream(path, std::ios::binary);
-    std::string contents;
-    std::vector<char> block(1 << 16);
-    do {
-        base::stop_if_asked();
-        stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-        contents.append(block.data(), static_cast<std::size_t>(stream.gcount()));
-        if (!has_size && contents.size() > longest_stream)
-            return Error{ErrorCode::file_unreadable, path.string(), "gives more than 1 GiB; longer input is read only from a regular file"};
-    } while (stream);
-    if (!stream.is_open() || stream.bad()) return Error{ErrorCode::file_unreadable, path.string(), "the file cannot be read"};
-    return contents;
 }
 
 }  // namespace fettle::core::files

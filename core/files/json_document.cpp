@@ -10,6 +10,7 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/core/files/json_text.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/files/warning_groups.hpp"
@@ -77,7 +78,7 @@ std::string element_names(const json& array, const std::string& word) {
 }
 
 std::string shortest(double number) {
-    const std::string text = json(number).dump();
+    const std::string text = dumped(json(number));
     return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
 }
 
@@ -273,11 +274,11 @@ std::string JsonNode::shown() const {
     const json& value = value_of(value_);
     if (value.is_object()) return "an object";
     if (value.is_array()) return "a list of " + std::to_string(value.size());
-    std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+    std::string text = dumped(value);
     return text.size() > 60 ? text.substr(0, 57) + "..." : text;
 }
 
-std::string JsonNode::text() const { return exists() ? value_of(value_).dump(-1, ' ', false, json::error_handler_t::replace) : "null"; }
+std::string JsonNode::text() const { return exists() ? dumped(value_of(value_)) : "null"; }
 
 void JsonNode::fail(ErrorCode code, std::string message) const { context_->errors.push_back({code, where(), std::move(message)}); }
 

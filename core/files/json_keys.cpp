@@ -2,11 +2,10 @@
 #include "fettle/core/files/json_keys.hpp"
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <limits>
 #include <string>
 
+#include "fettle/core/files/input_file.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 
@@ -80,13 +79,11 @@ private:
 }  // namespace
 
 std::string_view top_level_key(const std::filesystem::path& path, std::span<const std::string_view> keys) {
-    std::ifstream file(path, std::ios::binary);
+    base::Result<InputFile> file = InputFile::open(path);
+    if (!file) return {};
     KeyFinder finder(keys);
-    std::array<char, 65536> block;
-    while (file) {
-        file.read(block.data(), static_cast<std::streamsize>(block.size()));
-        if (!finder.take({block.data(), static_cast<std::size_t>(file.gcount())})) return finder.found();
-    }
+    for (std::string_view block = file->next(); !block.empty(); block = file->next())
+        if (!finder.take(block)) return finder.found();
     return {};
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fettle/core/base/contract.hpp"
+#include "fettle/core/base/text.hpp"
 
 namespace fettle::core::files {
 
@@ -18,6 +19,7 @@ void JsonWriter::number(double x) {
 }
 
 void JsonWriter::string(std::string_view value) {
+    if (!base::is_utf8(value)) return string(base::shown(value));
     text += '"';
     for (const char c : value) {
         if (c == '"' || c == '\\') text += '\\';

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/input_file.hpp"
 #include "fettle/core/files/text_lines.hpp"
 #include "fettle/core/mesh_files/import_format.hpp"
 #include "fettle/core/mesh_files/import_process.hpp"
@@ -176,6 +177,7 @@ Result<RawMesh> read_by_assimp(const std::string& path, std::string_view extensi
     if (std::filesystem::file_size(path, code) == 0) return Error{ErrorCode::parse, path, "is empty; export or download it again"};
     const auto unit = metres_per_unit(path, extension);
     if (!unit) return unit.errors();
+    files::record_file(path);
     const ImportLimits limits = limits_for(path);
     const ImportOutcome outcome = run_importer(path, limits, should_stop);
     std::optional<RawMesh> mesh = mesh_of(outcome.written);

@@ -63,17 +63,20 @@ void add_curve(Part& part, const scene::Curve& curve) {
     part.add(curve.stop_time ? 1 : 0).add(curve.stop_time.value_or(0));
 }
 
+void add_row(Part& part, const constraint::Row& row) {
+    for (const constraint::RowPart& p : row.parts) part.add(p.measure).add(p.factor);
+    part.add(row.constant).add(row.length);
+    add_curve(part, row.curve);
+}
+
 std::string mechanism_hash(const model::Mechanism& mechanism) {
     Part part;
     for (const measure::Frame& f : mechanism.set.frames) part.add(f.body).add(f.point).add(f.axes);
     for (const measure::Measure& m : mechanism.set.measures) {
         for (const int number : {static_cast<int>(m.kind), m.a, m.b, m.axis_a, m.axis_b, static_cast<int>(m.offset_axis)}) part.add(number);
     }
-    for (const constraint::Row& row : mechanism.rows) {
-        for (const constraint::RowPart& p : row.parts) part.add(p.measure).add(p.factor);
-        part.add(row.constant).add(row.length);
-        add_curve(part, row.curve);
-    }
+    for (const constraint::Row& row : mechanism.rows) add_row(part, row);
+    for (const constraint::Row& row : mechanism.dependent) add_row(part, row);
     for (const model::MeasureTerm& term : mechanism.terms) {
         part.add(static_cast<double>(term.kind))
             .add(term.measure)
@@ -104,6 +107,14 @@ std::string contact_model(const model::Model& model) {
     return part.value();
 }
 
+std::string solver_settings(const model::Model& model) {
+    Part part;
+    part.add(model.velocity_tolerance);
+    if (model.solve_accuracy > 0) part.add(model.solve_accuracy);
+    if (model.for_gradient) part.add(1);
+    return part.value();
+}
+
 }  // namespace
 
 std::vector<ScenePart> scene_parts(const model::Model& model) {
@@ -113,7 +124,7 @@ std::vector<ScenePart> scene_parts(const model::Model& model) {
         {"gravity", Part().add(model.gravity).value()},
         {"contact model", contact_model(model)},
         {"friction", Part().add(model.friction.mu).add(model.friction.eps_v).add(model.friction.rounds).value()},
-        {"solver's tolerance", Part().add(model.velocity_tolerance).value()},
+        {"solver's tolerance", solver_settings(model)},
         {"body types and groups", of_bodies(model, [](Part& p, const auto& b) { p.add(static_cast<double>(b.type)).add(b.group); })},
         {"masses", of_bodies(model, [](Part& p, const auto& b) { p.add(b.moments); })},
         {"materials", of_bodies(model, [](Part& p, const auto& b) { p.add(b.material); })},

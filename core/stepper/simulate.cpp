@@ -147,6 +147,12 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
     watched.outputs = options.outputs || model.integrator == scene::Integrator::newmark;
     StepsOnRows stepping(model, watched);
     const int steps = step_count(model, options);
+    // At once, where they grow too large to be copied time and again; what is not used of it costs nothing.
+    constexpr int most_at_once = 1 << 20;
+    const auto expected = static_cast<std::size_t>(std::clamp(steps, 0, most_at_once));
+    out.trajectory.steps.reserve(expected);
+    out.trajectory.poses.reserve(expected + 1);
+    out.report.steps.reserve(expected);
     std::size_t kept_contacts = 0;
     for (const TrajectoryStep& earlier : out.trajectory.steps) kept_contacts += contacts_of(earlier);
     std::optional<BalanceSum> balance;
@@ -170,6 +176,10 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
             break;
         }
         out.report.steps.push_back(result.report);
+        if (options.last_outputs_only) {  // a long motion, which nobody differentiates
+            result.path.friction_rounds = {};
+            result.path.contacts = {};
+        }
         out.trajectory.steps.push_back(std::move(result.path));
         if (kept_contacts += contacts_of(out.trajectory.steps.back()); kept_contacts > most_kept_contacts) {
             out.trajectory.steps.back().contacts.clear();

@@ -11,6 +11,7 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/exports/glb_writer.hpp"
@@ -93,7 +94,7 @@ Json result_json(Json answer, const std::string& command) {
 }
 
 Errors add_result(core::files::FilesTogether& files, const std::string& folder, Json answer, const std::string& command) {
-    const std::string text = result_json(std::move(answer), command).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::string text = core::files::dumped(result_json(std::move(answer), command), 2) + "\n";
     return files.add(std::filesystem::path(folder) / "result.json", text);
 }
 

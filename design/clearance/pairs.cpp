@@ -314,6 +314,7 @@ private:
             if (!found) return;
             process = *found;
         }
+        bool by_process = false;
         for (PairSpec& pair : selection_.pairs) {
             if (!pair.required_by.empty()) continue;
             pair.minimum = 0;
@@ -327,8 +328,11 @@ private:
                 errors_.insert(errors_.end(), required.errors().begin(), required.errors().end());
                 pair.minimum = required ? *required : 0;
                 pair.required_by = "--process " + options_.process;
+                by_process = true;
             }
         }
+        const std::string borrowed = by_process ? tolerances::borrowed_clearance(*process) : "";
+        if (!borrowed.empty()) selection_.notes.push_back("--process " + options_.process + ": " + borrowed);
     }
 
     // Each once, and not what another token named.

@@ -56,6 +56,7 @@ struct PairSelection {
     std::vector<PairSpec> pairs;
     std::vector<std::string> ignored;               ///< "A:B", on request
     std::vector<PairSpec> left_out;                 ///< neither judged by default nor named: only their clashes are reported
+    std::vector<std::string> notes;                 ///< on what is required
     BodyPairs ignored_by_scene, one_group, joined;  ///< not judged for these reasons, though nobody named other pairs
 };
 

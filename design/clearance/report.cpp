@@ -323,6 +323,7 @@ Result<ClearanceReport> judge_clearances(const Subject& subject, const Question&
     ClearanceReport report = make_report(subject, *selection, proven.pairs, std::move(joined), question.should_stop());
     report.tolerance = options.tolerance;
     report.notes = subject.notes;
+    report.notes.insert(report.notes.end(), selection->notes.begin(), selection->notes.end());
     if (question.pairs.minimum && !question.pairs.process.empty())
         report.notes.push_back("--minimum applies; what --process " + question.pairs.process + " requires was not judged");
     if (question.proof) report.certificate = std::move(proven.certificate);

@@ -4,17 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/units.hpp"
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/solids/shells.hpp"
-#include "fettle/design/answers/output_folder.hpp"
-#include "fettle/design/answers/run_folder.hpp"
-#include "fettle/design/clearance/certificate_files.hpp"
 #include "fettle/design/clearance/mesh_parts.hpp"
 #include "fettle/design/clearance/read_subject.hpp"
 #include "fettle/design/clearance/report_json.hpp"
-#include "fettle/design/cli/clearance_folder.hpp"
+#include "fettle/design/cli/clearance_files.hpp"
 #include "fettle/design/cli/clearance_text.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/tolerances/process_clearance.hpp"
@@ -27,7 +21,6 @@ using Json = nlohmann::ordered_json;
 using clearance::Baseline;
 using clearance::ClearanceReport;
 using clearance::Subject;
-using clearance::SubjectSource;
 
 struct ClearanceArguments {
     clearance::SubjectOptions subject;
@@ -60,68 +53,8 @@ Result<AskedLengths> read_lengths(const ClearanceArguments& options) {
     return lengths;
 }
 
-// The certificate, and beside it the trajectory that it is about, unless that is a file already.
-Errors write_proof(const std::string& path, core::certificate::Certificate& certificate, const Subject& subject) {
-    if (!is_finite(subject.trajectory))
-        return {{ErrorCode::not_finite, path, "the path has numbers that are not finite, so that nothing can be certified of it"}};
-    if (!subject.files.empty()) {  // meshes: their files are what the proof is about
-        auto named = clearance::named_files(subject.files, path);
-        if (!named) return named.errors();
-        certificate.exports = std::move(*named);
-    }
-    core::files::FilesTogether files;
-    Errors errors;
-    if (subject.source != SubjectSource::trajectory)
-        errors = core::records::add_trajectory(files, clearance::certificate_trajectory(path), subject.trajectory, subject.model,
-                                               subject.scene_path);
-    if (errors.empty()) errors = core::certificate::add_certificate(files, path, certificate);
-    return errors.empty() ? files.take_names() : errors;
-}
-
-// Where nothing is proven, the certificate of an earlier run must not stay, nor its trajectory, unless that is what was judged.
-Errors take_away_proof(const std::string& path, const Subject& subject) {
-    if (!core::certificate::is_certificate_file(path)) return {};
-    core::files::FilesTogether files;
-    files.take_away(path);
-    const std::string beside = clearance::certificate_trajectory(path);
-    if (subject.source != SubjectSource::trajectory && core::records::is_trajectory_file(beside)) files.take_away(beside);
-    return files.take_names();
-}
-
-// Writes the certificate, or takes an earlier one away, and tells of it. What cannot be written is told beside the verdict.
-void leave_proof(const ClearanceArguments& options, const Subject& subject, core::certificate::Certificate& certificate, Json& json,
-                 std::string& text, Console& console) {
-    const std::string& file = options.certificate;
-    if (certificate.pairs.empty()) {
-        console.unwritten(take_away_proof(file, subject));
-        json["certificate"] = Json();
-        text += "certificate: not written, because nothing is proven\n";
-        return;
-    }
-    const bool is_own = subject.source == SubjectSource::trajectory;
-    if (!is_own && subject.files.empty()) certificate.source = clearance::name_from_certificate(file, options.subject.path);
-    const Errors errors = write_proof(file, certificate, subject);
-    console.unwritten(errors);
-    if (!errors.empty()) return;
-    const std::string path = is_own ? options.subject.path : clearance::certificate_trajectory(file);
-    json["certificate"] = {{"file", file}, {"trajectory", path}};
-    text += "certificate: " + file + (subject.ranges ? "" : ", of the path in " + path) + "; check it with fettle validate " + file +
-            (is_own ? " --trajectory " + path : "") + "\n";
-}
-
-/// What would be found out only after the work: files that cannot be written.
-Errors try_files(const ClearanceArguments& options) {
-    for (const std::string& file : {options.csv, options.certificate}) {
-        if (file.empty()) continue;
-        if (Errors errors = answers::try_output_file(file); !errors.empty()) return errors;
-    }
-    if (!options.certificate.empty() && !core::records::is_trajectory_file(options.subject.path)) {  // a trajectory is written beside it
-        if (Errors errors = answers::others_file(clearance::certificate_trajectory(options.certificate)); !errors.empty()) return errors;
-    }
-    if (!options.out.empty()) {
-        if (Errors errors = answers::try_run_folder(options.out); !errors.empty()) return errors;
-    }
-    return {};
+ClearanceFiles files_of(const ClearanceArguments& options) {
+    return {options.subject.path, options.csv, options.certificate, options.out, options.no_report};
 }
 
 /// Of meshes that are one body.
@@ -136,7 +69,7 @@ std::string why_not_two(const Subject& subject) {
 int run_clearance(const ClearanceArguments& options, const CommonOptions& common, Console& console) {
     const Result<AskedLengths> lengths = read_lengths(options);
     if (!lengths) return console.input_errors(lengths.errors());
-    if (const Errors errors = try_files(options); !errors.empty()) return console.input_errors(errors);
+    if (const Errors errors = try_files(files_of(options)); !errors.empty()) return console.input_errors(errors);
     std::optional<Baseline> baseline;
     if (!options.baseline.empty()) {
         Result<Baseline> read = Baseline::read(options.baseline);
@@ -165,12 +98,9 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     if (!judged) return console.input_errors(judged.errors());
     ClearanceReport& report = *judged;
     if (baseline) compare_with(*std::move(baseline), report);
-    if (!options.csv.empty()) console.unwritten(core::files::write_file_atomically(options.csv, report_csv(report, *subject)));
     Json json = report_json(report, *subject);
     std::string text = report_text(report, *subject, options.explain, console);
-    if (report.certificate) leave_proof(options, *subject, *report.certificate, json, text, console);
-    console.unwritten(write_folder({options.out, options.subject.path, options.no_report},
-                                   {subject->model, subject->trajectory, subject->scene_path}, common, console, json, text));
+    console.unwritten(leave_files(files_of(options), *subject, report, common, console, json, text));
     for (Check& check : report_checks(report, *subject, options.subject.path)) console.found(std::move(check));
     console.result(json, text);
     return exit_code(report.status);

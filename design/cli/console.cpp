@@ -11,11 +11,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <system_error>
 #include <utility>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/printed_text.hpp"
 #include "fettle/core/base/text.hpp"
+#include "fettle/core/files/json_dump.hpp"
 
 namespace fettle::design::cli {
 
@@ -27,7 +30,7 @@ constexpr int indent = 2;
 
 // Text from files can hold bytes that are no UTF-8: they must not break the one JSON object. `depth`: of what it stands in.
 std::string dumped_within(const Json& json, int depth) {
-    const std::string text = json.dump(indent, ' ', false, Json::error_handler_t::replace);
+    const std::string text = core::files::dumped(json, indent);
     if (depth == 0) return text;
     std::string out;
     out.reserve(text.size() + text.size() / 2);
@@ -70,19 +73,15 @@ constexpr const char* green = "\033[32m";
 constexpr const char* red = "\033[31m";
 constexpr const char* plain = "\033[0m";
 
-// Our colours are the only control characters that a terminal gets.
-std::string for_terminal(std::string_view text) {
-    std::string out;
-    std::size_t begin = 0;
-    for (std::size_t at = text.find('\033'); at != std::string_view::npos; at = text.find('\033', at + 1)) {
-        for (const std::string_view colour : {green, red, plain}) {
-            if (!text.substr(at).starts_with(colour)) continue;
-            out.append(core::base::shown(text.substr(begin, at - begin))).append(colour);
-            begin = at + colour.size();
-        }
-    }
-    return out + core::base::shown(text.substr(begin));
+// Text from files may hold any characters. What stands for a colour until the text is printed is drawn anew for each run, so that no file
+// can have it.
+std::string drawn_mark() {
+    std::random_device random;
+    return core::base::formatted("\033%08x%08x", random(), random());
 }
+
+// The one way to stderr. Names and paths may come from anybody.
+void say(const std::string& line) { std::fprintf(stderr, "%s\n", core::base::printed(line).c_str()); }
 
 Json errors_json(const Errors& errors) {
     Json list = Json::array();
@@ -91,9 +90,7 @@ Json errors_json(const Errors& errors) {
 }
 
 void tell(const Error& error) {
-    const std::string line =
-        "error: " + error.where + (error.where.empty() ? "" : ": ") + error.message + " [" + to_string(error.code) + "]";
-    std::fprintf(stderr, "%s\n", core::base::shown(line).c_str());
+    say("error: " + error.where + (error.where.empty() ? "" : ": ") + error.message + " [" + to_string(error.code) + "]");
 }
 
 bool is_file(const std::string& name) {
@@ -125,6 +122,7 @@ struct Console::Answer {
 Console::Console(const ConsoleOptions& options) : options_(options) {
     terminal_ = ::isatty(STDERR_FILENO) != 0;
     colours_ = ::isatty(STDOUT_FILENO) != 0 && !no_color();
+    if (colours_) mark_ = drawn_mark();
     if (options.log.empty()) return;
     if (std::FILE* file = std::fopen(options.log.c_str(), "w")) {
         log_ = {file, std::fclose};
@@ -143,7 +141,7 @@ void Console::log_failed() {
 void Console::log(const std::string& line) {
     if (!log_) return;
     const double seconds = std::chrono::duration<double>(Clock::now() - begun_).count();
-    const bool written = std::fprintf(log_.get(), "%8.1f s  %s\n", seconds, core::base::shown(line).c_str()) >= 0;
+    const bool written = std::fprintf(log_.get(), "%8.1f s  %s\n", seconds, core::base::printed(line).c_str()) >= 0;
     if (!written || std::fflush(log_.get()) != 0) log_failed();
 }
 
@@ -152,7 +150,7 @@ void Console::narrate(const std::string& line) {
     log(line);
     if (options_.quiet) return;
     end_progress();
-    std::fprintf(stderr, "%s\n", core::base::shown(line).c_str());
+    say(line);
 }
 
 std::string Console::pace(int done, int of) const {
@@ -183,7 +181,7 @@ void Console::progress(const std::string& what, int done, int of) {
         const std::string line = doing_ + pace(done, of);
         line_written_ = now;
         log(line);
-        if (!options_.quiet && !terminal_) std::fprintf(stderr, "%s\n", line.c_str());
+        if (!options_.quiet && !terminal_) say(line);
     }
     if (options_.quiet || !terminal_) return;
     const int permille = static_cast<int>(1000.0 * done / of);
@@ -191,7 +189,7 @@ void Console::progress(const std::string& what, int done, int of) {
     bar_permille_ = permille;
     constexpr int width = 30;
     const int filled = static_cast<int>(static_cast<long>(width) * done / of);
-    std::fprintf(stderr, "\r%s [%s%s] %d/%d%s \033[K", what.c_str(), std::string(static_cast<size_t>(filled), '#').c_str(),
+    std::fprintf(stderr, "\r%s [%s%s] %d/%d%s \033[K", core::base::shown_on_one_line(what).c_str(), std::string(static_cast<size_t>(filled), '#').c_str(),
                  std::string(static_cast<size_t>(width - filled), '.').c_str(), done, of, pace(done, of).c_str());
     std::fflush(stderr);
     bar_shown_ = true;
@@ -210,7 +208,17 @@ void Console::put(const std::string& text) {
     unwritten({{ErrorCode::file_unwritable, "standard output", "the answer cannot be written: " + std::generic_category().message(code)}});
 }
 
-void Console::print(const std::string& text) { put(for_terminal(text)); }
+void Console::print(const std::string& text) {
+    std::string out;
+    std::size_t begin = 0;
+    for (std::size_t at = text.find(mark_); colours_ && at != std::string::npos; at = text.find(mark_, begin)) {
+        out += core::base::printed(std::string_view(text).substr(begin, at - begin));
+        begin = at + mark_.size() + 1;
+        const char colour = text[begin - 1];
+        out += colour == 'g' ? green : colour == 'r' ? red : plain;
+    }
+    put(out + core::base::printed(std::string_view(text).substr(begin)));
+}
 
 void Console::result(const Json& json, const std::string& text) {
     end_progress();
@@ -264,7 +272,7 @@ int Console::internal_error(const std::string& message) {
     if (options_.json) {
         result({{"status", "error"}, {"errors", Json::array({{{"code", "internal"}, {"where", ""}, {"message", message}}})}}, "");
     } else {
-        std::fprintf(stderr, "fettle: internal error, please report it: %s\n", core::base::shown(message).c_str());
+        say("fettle: internal error, please report it: " + message);
     }
     return exit_internal;
 }
@@ -284,7 +292,7 @@ int Console::stopped() {
 
 std::string Console::coloured(const std::string& text, bool good) const {
     if (!colours_) return text;
-    return (good ? green : red) + text + plain;
+    return mark_ + (good ? "g" : "r") + text + mark_ + "-";
 }
 
 void expect_failed_writes() {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// What the program says, and where: results on stdout (one JSON object with --json, else text), narration and progress bars on stderr.
 /// On a terminal progress is a bar with rate and time left; elsewhere, and in the log, a line every ten seconds. Nothing is coloured when
-/// NO_COLOR is set or stdout is no terminal. Names and paths in messages may come from anybody: on a terminal and in the log they are
-/// shown without control characters (core/base/text.hpp).
+/// NO_COLOR is set or stdout is no terminal. Names and paths in messages may come from anybody: whatever is printed, and the log, is without
+/// control characters and without commands to a runner of checks (core/base/printed_text.hpp).
 #pragma once
 
 #include <chrono>
@@ -78,7 +78,7 @@ public:
     void set_about(std::string file) { about_ = std::move(file); }
     const std::string& about() const { return about_; }
 
-    /// "clear" in green and so on, if colours are wanted.
+    /// "clear" in green and so on, if colours are wanted: for texts of this console alone.
     std::string coloured(const std::string& text, bool good) const;
 
 private:
@@ -104,6 +104,7 @@ private:
     Clock::time_point progress_begun_, line_written_;
     int first_done_ = 0;
     bool terminal_ = false, colours_ = false, bar_shown_ = false;
+    std::string mark_;  ///< what stands for colours until a text is printed
     int bar_permille_ = -1;
 };
 

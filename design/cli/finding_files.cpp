@@ -14,6 +14,7 @@
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/design/answers/output_folder.hpp"
 
 namespace fettle::design::cli {
@@ -190,7 +191,7 @@ std::string sarif_json(const Checks& checks) {
     const Json invocation{{"executionSuccessful", done}, {"exitCode", checks.exit_code}};
     const Json run{{"tool", {{"driver", driver}}}, {"invocations", Json::array({invocation})}, {"results", results}};
     const Json log{{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"}, {"version", "2.1.0"}, {"runs", Json::array({run})}};
-    return log.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return core::files::dumped(log, 2) + "\n";
 }
 
 std::string markdown_text(const Checks& checks) {

@@ -13,6 +13,7 @@
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/core/base/shared_library.hpp"
 #include "fettle/core/base/stop.hpp"
+#include "fettle/core/base/printed_text.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/answers/answer_json.hpp"
@@ -278,11 +279,11 @@ int main(int argc, char** argv) {
     keep_freed_memory();
     expect_out_of_memory(asks_for_json(argc, argv));
     try {
-        return run(argc, argv);
+        return fettle::design::cli::ended(run(argc, argv));
     } catch (const std::bad_alloc&) {
         end_out_of_memory();
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "fettle: internal error: %s\n", error.what());
-        return exit_internal;
+        std::fprintf(stderr, "fettle: internal error: %s\n", core::base::printed(error.what()).c_str());
+        return fettle::design::cli::ended(exit_internal);
     }
 }

@@ -13,6 +13,7 @@
 #include "fettle/design/coupons/coupon_form.hpp"
 #include "fettle/design/reading/process_file.hpp"
 #include "fettle/design/tolerances/known_processes.hpp"
+#include "fettle/design/tolerances/process_clearance.hpp"
 
 namespace fettle::design::cli {
 
@@ -97,7 +98,8 @@ std::string kind_text(const KindFit& kind, const std::string& base) {
         text += "; no spread is seen, since all are off by the same: limits about the bias as " + base + "; measure in finer steps\n";
     for (const auto& outlier : kind.outliers)
         text += "        " + outlier.name + " lies " + formatted("%+.3f", outlier.residual * 1e3) + " mm off the others' line (" +
-                formatted("%.1f", std::abs(outlier.studentised)) + " of their spreads): measure it again; it is in the fit as it is\n";
+                (std::abs(outlier.studentised) < 100 ? formatted("%.1f", std::abs(outlier.studentised)) : std::string("more than 100")) +
+                " of their spreads): measure it again; it is in the fit as it is\n";
     return text;
 }
 
@@ -123,6 +125,12 @@ std::string fit_text(const ProcessFit& fit, const Process& base, const std::stri
                             : std::string("no feature was measured twice: how much of the spread is the caliper's is not known\n");
     return text + "tolerances take the larger spread, which the true one is below with 95% confidence: more features bring it down\n" +
            of_prints(fit, base);
+}
+
+// What `clearance --process` asks for, which no coupon shows.
+std::string clearance_text(const Process& fitted) {
+    const std::string borrowed = tolerances::borrowed_clearance(fitted);
+    return borrowed.empty() ? "" : "of the clearance between two parts " + borrowed + "\n";
 }
 
 Errors name_errors(const ProcessArguments& arguments, const fs::path& file) {
@@ -172,7 +180,7 @@ int run_process(const ProcessArguments& arguments, Console& console) {
     if (const Errors errors = core::files::write_file_atomically(file, reading::process_text(*fit, fitted, base.name)); !errors.empty())
         return console.input_errors(errors);
     console.result(fit_json(*fit, file.string(), base.name),
-                   fit_text(*fit, base, file.string()) + "next: fettle tolerance DESIGN --process " + arguments.name + "\n");
+                   fit_text(*fit, base, file.string()) + clearance_text(fitted) + "next: fettle tolerance DESIGN --process " + arguments.name + "\n");
     return exit_done;
 }
 

@@ -44,7 +44,7 @@ constexpr std::size_t reserve_bytes = std::size_t{8} << 20;
 
 // Handlers reach nothing but objects of static storage.
 std::atomic<void*> reserve{nullptr};
-std::atomic<bool> ran_out{false}, answers_json{false};
+std::atomic<bool> ran_out{false}, answers_json{false}, has_ended{false};
 
 void on_no_memory() {
     ran_out = true;
@@ -85,6 +85,10 @@ extern "C" void on_crash(int signal) {
     std::raise(signal);
 }
 
+void on_exit_of_others() {
+    if (!has_ended) end_out_of_memory();
+}
+
 // Sanitizers tell of crashes themselves.
 constexpr bool tells_crashes() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -111,8 +115,14 @@ void expect_out_of_memory(bool json) {
     reserve = std::malloc(reserve_bytes);
     std::set_new_handler(on_no_memory);
     std::set_terminate(on_terminate);
+    std::atexit(on_exit_of_others);
     if (!tells_crashes()) return;
     for (const int signal : {SIGSEGV, SIGBUS, SIGABRT}) std::signal(signal, on_crash);
+}
+
+int ended(int code) {
+    has_ended = true;
+    return code;
 }
 
 void end_out_of_memory() {

@@ -22,6 +22,10 @@ std::function<void()> memory_ahead(std::size_t bytes);
 /// @param json  is the answer wanted as JSON?
 void expect_out_of_memory(bool json);
 
+/// The program's end, in main: whoever ends it before, by exit(), is a library that computes, which does so where it gets no memory
+/// (Fortran's does, with codes of its own). From expect_out_of_memory on that is told and is exit code 3, too. @return code
+int ended(int code);
+
 /// Says so, with memory that is there already, and ends the program with exit code 3.
 [[noreturn]] void end_out_of_memory();
 

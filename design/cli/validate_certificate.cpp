@@ -7,6 +7,7 @@
 #include "fettle/core/base/rounded_lengths.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/clearance/clearance.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/clearance/certificate_claims.hpp"
@@ -53,7 +54,7 @@ Json claims_json(const std::vector<Claim>& claims, const Model& model, const std
 }
 
 std::string claim_name(const Claim& pair, const Model& model) {
-    const auto name = [](const Json& body) { return body.is_string() ? body.get<std::string>() : body.dump(); };
+    const auto name = [](const Json& body) { return body.is_string() ? body.get<std::string>() : core::files::dumped(body); };
     return name(name_of(model, pair.a)) + ":" + name(name_of(model, pair.b));
 }
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/version.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/core/kinematics/rotation.hpp"
 
 namespace fettle::design::exports {
@@ -205,7 +206,7 @@ private:
     }
 
     std::string with_header() {
-        std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+        std::string text = core::files::dumped(json_);
         text.resize((text.size() + 3) / 4 * 4, ' ');
         binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
         const std::size_t total = 12 + 8 + text.size() + (binary_.empty() ? 0 : 8 + binary_.size());

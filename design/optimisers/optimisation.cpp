@@ -192,11 +192,13 @@ private:
     void optimise_problem(bool begun, const VectorX& from) {
         if (!problem_.smoother.empty() && stopped_ != StopReason::interrupted)
             narrate(options_, std::string("now the design as written") + (begun ? ", from the best of these:" : ":"));
+        if (begun) report_.untried = begun_at(from, nullptr).start;
         for (int k = 0; k < starts_tried; ++k) {
             if (stopped_ == StopReason::interrupted) break;
             const Problem problem = begun_at(candidate(from, k), nullptr);
             const int native = std::max(std::min(1, left()), left() - reserve_);
             Evaluator evaluator(problem, limits(native));
+            if (evaluator.stop_reason() == StopReason::none) report_.untried.resize(0);
             if (k == 0 && problem_.smoother.empty()) {
                 report_.start = evaluator.start_evaluation();
                 if (ended_at_start(report_.start)) {
@@ -322,9 +324,22 @@ private:
 
 }  // namespace
 
+void take_if_better(OptimiserReport& report, const VectorX& point, const Evaluation& evaluation) {
+    if (!is_better(evaluation, report.best)) return;
+    report.point = point;
+    report.best = evaluation;
+    report.objective = evaluation.objective;
+    report.violation = evaluation.violation;
+    report.feasible = evaluation.violation <= 0;
+    report.optimality = {};
+    if (report.status != OptimiserStatus::interrupted)
+        report.status = report.feasible ? OptimiserStatus::feasible : OptimiserStatus::infeasible;
+}
+
 OptimiserReport better_of(OptimiserReport first, OptimiserReport later) {
     OptimiserReport best = is_better(later.best, first.best) ? later : first;
     best.start = first.start;
+    best.untried = later.untried;
     best.evaluations = first.evaluations + later.evaluations;
     best.failures = first.failures + later.failures;
     best.iterations = first.iterations + later.iterations;

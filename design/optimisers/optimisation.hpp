@@ -47,6 +47,9 @@ struct OptimiserReport {
     Optimality optimality;
     int evaluations = 0, failures = 0, iterations = 0;
     bool budget_spent = false;  ///< max_evaluations ended the run
+    /// Where the smoother models have led to, if the run ended before the problem itself was evaluated there: it may be better than `best`.
+    /// Empty: it was, or there are none.
+    VectorX untried;
     /// Of the smoother models, then of the problem itself: from where they led to and, if that ended worse than the start, from the start.
     std::vector<StageReport> stages;
 };
@@ -54,6 +57,9 @@ struct OptimiserReport {
 /// Deterministic: the same problem and options give the same sequence of evaluations.
 /// Throws what Problem::evaluate throws (Interrupted excepted).
 OptimiserReport optimise(const Problem& problem, const Optimiser& optimiser, const OptimiserOptions& options);
+
+/// Gives the report this end, which was evaluated after the run, in place of `best` where it is better.
+void take_if_better(OptimiserReport& report, const VectorX& point, const Evaluation& evaluation);
 
 /// Two searches of one problem, one after the other, as one: the start of the first, the end of the better one and its verdict, evaluations
 /// of both. Interrupted if the later one was.

@@ -8,6 +8,7 @@
 #include "fettle/core/certificate/certificate_checker.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/range_clearance.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/design/clearance/report_json.hpp"
 #include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
@@ -267,7 +268,7 @@ py::object report_of(const clearance::Subject& subject, clearance::Question ques
     if (before) compare_with(*std::move(before), *judged);
     std::shared_ptr<Certificate> certificate;
     if (judged->certificate && !judged->certificate->pairs.empty()) certificate = std::make_shared<Certificate>(*judged->certificate);
-    return py::module_::import("fettle.results").attr("ClearanceReport")(report_json(*judged, subject).dump(), certificate);
+    return py::module_::import("fettle.results").attr("ClearanceReport")(core::files::dumped(report_json(*judged, subject)), certificate);
 }
 
 void bind_question(py::module_& module) {

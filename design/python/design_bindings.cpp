@@ -153,6 +153,15 @@ void bind_design(py::module_& module) {
         py::arg("path"), py::arg("mesh_dirs") = Paths(), py::arg("allow_programs") = false, unlocked,
         "The DesignFile of a *.design.json, with its scene. allow_programs: the programs that it names may be run to make its parts.");
     module.def(
+        "read_design_and_hash",
+        [](const Path& path, const Paths& dirs, bool allow_programs) {
+            reading::DesignFile file = as_drawn(value_or_raise(reading::read_design(path.string(), read_options(dirs, allow_programs))));
+            std::string hash = reading::design_hash(file);
+            return std::pair(std::move(file), std::move(hash));
+        },
+        py::arg("path"), py::arg("mesh_dirs") = Paths(), py::arg("allow_programs") = false, unlocked,
+        "read_design, and a hash of all that its numbers depend on: what stands in every file that was read for it, too.");
+    module.def(
         "parse_design",
         [](const std::string& text, const Path& path, const Paths& dirs, bool allow_programs) {
             return as_drawn(value_or_raise(reading::parse_design(text, path.string(), read_options(dirs, allow_programs))));

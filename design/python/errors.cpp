@@ -3,6 +3,7 @@
 
 #include <pybind11/stl.h>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/design/python/records.hpp"
 
 FETTLE_WORDS(fettle::core::base::ErrorCode, "file_not_found", "file_unreadable", "file_unwritable", "out_of_memory", "parse", "unknown_key",
@@ -16,7 +17,7 @@ namespace py = pybind11;
 
 void warn_of(const std::vector<std::string>& warnings) {
     for (const std::string& warning : warnings)
-        if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
+        if (PyErr_WarnEx(PyExc_UserWarning, core::base::shown(warning).c_str(), 1) != 0) throw py::error_already_set();
 }
 
 Errors errors_of(py::error_already_set& raised, const std::string& where) {

@@ -13,7 +13,6 @@
 #include "fettle/design/python/design_records.hpp"
 #include "fettle/design/python/errors.hpp"
 #include "fettle/design/python/watch.hpp"
-#include "fettle/design/reading/design_text.hpp"
 #include "fettle/design/studies/exploration.hpp"
 
 namespace fettle::design::python {
@@ -139,14 +138,6 @@ void bind_exploration(py::module_& module) {
         "lost_result", [](const ExplorationJob& job) { return text_of(studies::lost_result(job, "two workers were lost on this design")); },
         py::arg("job"), "Of a job whose workers were lost.");
     module.def("read_exploration", &read_exploration, py::arg("path"), "Header and results of a file of explore(), as JSON.");
-    module.def(
-        "design_hash",
-        [](const Path& path, bool allow_programs) {
-            const auto programs = allow_programs ? reading::Programs::allowed : reading::Programs::refused;
-            return reading::design_hash(value_or_raise(reading::read_design(path.string(), {{}, programs})));
-        },
-        py::arg("path"), py::arg("allow_programs") = false, py::call_guard<py::gil_scoped_release>(),
-        "The same for files of which every evaluation has the same numbers.");
 }
 
 }  // namespace fettle::design::python

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/design/answers/tolerance_json.hpp"
 #include "fettle/design/python/arguments.hpp"
 #include "fettle/design/python/bindings.hpp"
@@ -88,7 +89,7 @@ py::object tolerance(const Path& path, int samples, std::int64_t seed, bool seco
     watch.end();
     const studies::ToleranceReport found = value_or_raise(std::move(report));
     return py::module_::import("fettle.results")
-        .attr("ToleranceReport")(answers::tolerance_json(file, found).dump(), deviations_of(found, count_of(file.tolerances)),
+        .attr("ToleranceReport")(core::files::dumped(answers::tolerance_json(file, found)), deviations_of(found, count_of(file.tolerances)),
                                  values_of(found));
 }
 

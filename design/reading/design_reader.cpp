@@ -105,10 +105,7 @@ public:
         take_over_tolerances(root, entries.empty());
         check_use(root["parameters"]);
         file_.quantities = named;
-        file_.output = root["output"].string().value_or("");
-        if (const std::string fault = core::base::name_fault(file_.output); !file_.output.empty() && !fault.empty())
-            root["output"].fail(ErrorCode::out_of_range, "the folder's name " + fault);
-        if (!file_.output.empty()) file_.output = (fs::path(file_.path).parent_path() / file_.output).string();
+        file_.output = read_output(root["output"]);
         if (!document_.errors().empty() || !scene_errors_.empty()) return all_errors();
         refine(design_.scene, design_.steps);
         for (description::Scenario& scenario : design_.scenarios) refine(scenario.scene, scenario.steps);
@@ -507,6 +504,23 @@ private:
         return node["clearance_margin"].length(to_si(1, file_.length_unit), core::files::not_negative).value_or(default_margin);
     }
 
+    // A design may come from anybody: it does not choose where else its results are written.
+    std::string read_output(const JsonNode& node) const {
+        const std::string name = node.string().value_or("");
+        if (name.empty()) return {};
+        if (const std::string fault = core::base::name_fault(name); !fault.empty())
+            node.fail(ErrorCode::out_of_range, "the folder's name " + fault);
+        std::error_code ignored;
+        const fs::path folder = fs::path(file_.path).parent_path(), output = folder / name;
+        const auto whole = [&](const fs::path& path) { return fs::weakly_canonical(fs::current_path(ignored) / path, ignored); };
+        const fs::path below = whole(output).lexically_relative(whole(folder));
+        if (below.empty() || *below.begin() == "..")
+            node.fail(ErrorCode::out_of_range,
+                      "found " + node.shown() + ", which leads out of the design's own folder; `output` is a folder in it, and --out of the "
+                      "command line any other");
+        return output.string();
+    }
+
     Errors all_errors() const {
         Errors errors = document_.errors();
         errors.insert(errors.end(), process_errors_.begin(), process_errors_.end());
@@ -594,6 +608,7 @@ Result<DesignFile> parse_design(const std::string& text, const std::string& path
                          : "not a design: `fettle_design` (its version, 1) is not there" +
                                core::files::misspelt_key(root, {"fettle_scene", "fettle_design"})};
     }
+    const core::base::ReadRecord record;
     DesignReadOptions drawn = options;
     if (!drawn.made) drawn.made = std::make_shared<std::vector<MadePart>>();
     Result<DesignFile> file = DefaultVariables(text, path, drawn).read();
@@ -606,6 +621,9 @@ Result<DesignFile> parse_design(const std::string& text, const std::string& path
         file->design = description::over_tolerances(std::move(file->design), std::move(made->design), std::move(made->tolerances));
     }
     file->text = text;
+    file->files = record.files();
+    file->read_as = core::base::formatted("facets %d, steps %d, %s, process %s", options.resolution.facets, options.resolution.steps,
+                                          options.as_made ? "as made" : "as drawn", options.process.c_str());
     return file;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "fettle/core/base/read_record.hpp"
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/design/description/design.hpp"
@@ -22,12 +23,14 @@ struct DesignFile {
     std::string path, text;  ///< of the file, and its contents
     std::string scene_path;
     Unit length_unit;    ///< of the file
-    std::string output;  ///< folder, absolute or relative to the working directory; empty: not said
+    std::string output;  ///< folder, absolute or relative to the working directory, below that of the file; empty: not said
     std::vector<std::string> warnings;
     std::vector<quantities::NamedQuantity> quantities = {};  ///< of its `quantities`
     std::vector<description::Tolerance> tolerances = {};     ///< of a design read as made
     std::vector<Untoleranced> untoleranced = {};             ///< what "*" of its tolerances leaves out
     std::string process = {};                                ///< that makes what entries say no other of; empty: none
+    core::base::ReadRecord::Files files = {};                ///< that it was read from, besides its own
+    std::string read_as = {};                                ///< what of the options its numbers depend on
 };
 
 /// How many times as fine as the files say. Contract: both at least 1.

@@ -2,13 +2,16 @@
 #include "fettle/design/reading/design_text.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/version.hpp"
-#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
-#include "fettle/core/part_files/part_file.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/design/reading/process_file.hpp"
 
 namespace fettle::design::reading {
@@ -24,9 +27,22 @@ void make_numbers_equal(nlohmann::json& json) {
     for (auto& child : json) make_numbers_equal(child);
 }
 
-// Everything of a scene that is not in its own text: meshes, which come from files or are made from dimensions, and part files, which say
-// what becomes of them at other dimensions.
-void append_bytes(std::string& text, const void* data, size_t size) { text.append(static_cast<const char*>(data), size); }
+// All of a mesh: what its file, or what made it, may have had from others that nobody opened here.
+void add_mesh(core::files::Fnv1a& hash, const core::geometry::Mesh& mesh) {
+    const auto add = [&](const auto& list, const auto& add_one) {
+        hash.add(static_cast<std::uint64_t>(list.size()));
+        for (const auto& one : list) add_one(one);
+    };
+    const auto index = [&](int i) { hash.add(static_cast<std::uint32_t>(i)); };
+    const auto indices = [&](const auto& corners) { std::for_each(corners.begin(), corners.end(), index); };
+    const auto name = [&](const std::string& text) { hash.add(text + '\n'); };
+    add(mesh.vertices.reshaped(), [&](double x) { hash.add(x); });
+    add(mesh.triangles, indices);
+    add(mesh.edges, indices);
+    add(mesh.codimensional_points, index);
+    add(mesh.triangle_face, index);
+    add(mesh.face_names, name);
+}
 
 // Names of processes that are files, which stay where they are.
 void move_processes(nlohmann::ordered_json& json, const std::string& folder, const std::string& other) {
@@ -40,6 +56,15 @@ void move_processes(nlohmann::ordered_json& json, const std::string& folder, con
 }
 
 }  // namespace
+
+Result<std::string> scene_from(const DesignFile& file, const std::string& directory) {
+    std::error_code failure;
+    const fs::path scene = fs::relative(fs::absolute(file.scene_path), fs::absolute(directory), failure);
+    std::string name = failure || scene.empty() ? fs::absolute(file.scene_path).string() : scene.generic_string();
+    if (core::base::is_utf8(name)) return name;
+    return Error{ErrorCode::inconsistent, directory,
+                 "from here the scene is " + name + ", which is not UTF-8, so that no design can name it; choose a folder beside the scene"};
+}
 
 std::string design_text(const DesignFile& file, const VectorX& values, const std::string& directory) {
     auto json = nlohmann::ordered_json::parse(file.text);
@@ -55,12 +80,11 @@ std::string design_text(const DesignFile& file, const VectorX& values, const std
                          : value == parameter.upper ? entry["upper"]
                                                     : nlohmann::ordered_json(description::from_si(value, parameter.unit));
     }
-    std::error_code failure;
-    const fs::path scene = fs::relative(fs::absolute(file.scene_path), fs::absolute(directory), failure);
-    json["scene"] = failure || scene.empty() ? fs::absolute(file.scene_path).string() : scene.generic_string();
+    const Result<std::string> scene = scene_from(file, directory);
+    json["scene"] = scene ? *scene : fs::absolute(file.scene_path).string();
     move_processes(json, fs::path(file.path).parent_path().string(), directory);
     json.erase("output");  // it was relative to the first file's folder
-    return json.dump(2) + "\n";
+    return core::files::dumped(json, 2) + "\n";
 }
 
 std::string text_with_sides(const DesignFile& file, const std::vector<core::model::JointSide>& sides) {
@@ -84,22 +108,27 @@ std::string text_with_sides(const DesignFile& file, const std::vector<core::mode
         if (!side.assemble.to.empty()) said["to"] = side.assemble.to;
         json["set"][place.to_string()] = std::move(said);
     }
-    return json.dump(2) + "\n";
+    return core::files::dumped(json, 2) + "\n";
 }
 
 std::string design_hash(const DesignFile& file) {
     auto json = nlohmann::json::parse(file.text);
     for (const char* key : {"$schema", "description", "optimiser", "output", "scene"}) json.erase(key);
     make_numbers_equal(json);
-    std::string all = std::string(core::base::version()) + "\n" + json.dump() + "\n";
-    if (const Result<std::string> scene = core::files::read_file(file.scene_path)) all += *scene;
-    for (const core::scene::Body& body : file.design.scene.bodies) {
-        append_bytes(all, body.mesh.vertices.data(), static_cast<size_t>(body.mesh.vertices.size()) * sizeof(double));
-        append_bytes(all, body.mesh.triangles.data(), body.mesh.triangles.size() * sizeof(core::geometry::Triangle));
-        if (!body.shape || !body.shape->part.ends_with(core::part_files::part_file_ending)) continue;
-        if (const Result<std::string> part = core::files::read_file(body.shape->part)) all += *part;
+    core::files::Fnv1a hash;
+    hash.add(std::string(core::base::version()) + "\n" + core::files::dumped(json) + "\n" + file.read_as + "\n");
+    // By their names as the scene has them, so that the folder can be moved.
+    std::error_code unresolved;
+    const fs::path folder = fs::weakly_canonical(fs::path(file.scene_path).parent_path(), unresolved);
+    std::set<std::pair<std::string, std::uint64_t>> files;
+    for (const auto& [path, contents] : file.files)
+        files.emplace(fs::weakly_canonical(path, unresolved).lexically_proximate(folder).string(), contents);
+    for (const auto& [name, contents] : files) {
+        hash.add(name + "\n");
+        hash.add(contents);
     }
-    return core::files::hash_of(all);
+    for (const core::scene::Body& body : file.design.scene.bodies) add_mesh(hash, body.mesh);
+    return core::files::hexadecimal(hash.value());
 }
 
 }  // namespace fettle::design::reading

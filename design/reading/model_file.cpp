@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "fettle/core/base/stop.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
@@ -123,7 +124,7 @@ Result<core::scene::Scene> read_scene_or_part(const std::string& path, const cor
     const std::string name = file.substr(0, file.size() - core::part_files::part_file_ending.size());
     const nlohmann::json body{{"name", name}, {"type", "static"}, {"shape", {{"part", file}}}};
     const nlohmann::json scene{{"fettle_scene", 1}, {"units", "mm"}, {"bodies", {body}}};
-    return core::scene_files::parse_scene(scene.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), path, options);
+    return core::scene_files::parse_scene(core::files::dumped(scene), path, options);
 }
 
 Errors not_wanted(const std::string& path, FileKind kind, const std::string& wanted) {

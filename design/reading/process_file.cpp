@@ -11,6 +11,7 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_document.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/tolerances/known_processes.hpp"
@@ -60,7 +61,9 @@ private:
     Process based_on() const {
         const JsonNode node = root_["based_on"];
         const auto name = node.exists() ? node.choice(tolerances::known_process_names()) : std::nullopt;
-        return name ? *tolerances::find_known_process(*name) : Process{};
+        Process process = name ? *tolerances::find_known_process(*name) : Process{};
+        if (process.clearance) process.clearance->minimum_of = process.clearance->bands_of = *name;
+        return process;
     }
 
     void read_features(Process& process) {
@@ -113,13 +116,14 @@ private:
     void read_clearance(Process& process) const {
         const auto minimum = root_["minimum_gap"].length(unit_, not_negative);
         const auto part = root_["part_tolerance"].length(unit_, not_negative);
-        if (minimum) process.clearance = tolerances::ClearanceNeed{*minimum, path_, {}};
+        if (minimum) process.clearance = tolerances::ClearanceNeed{*minimum, path_, {}, {}, {}};
         if (part && !process.clearance)
             root_["part_tolerance"].fail(ErrorCode::inconsistent, "`part_tolerance` goes with `minimum_gap`, or with `based_on`");
         if (!process.clearance) return;
         if (root_["features"].exists() && root_["features"].is_object() && root_["features"]["length"].exists())
             process.clearance->bands.clear();
         if (part) process.clearance->bands = {{std::numeric_limits<double>::infinity(), *part, path_}};
+        if (part || process.clearance->bands.empty()) process.clearance->bands_of.clear();
     }
 
     const JsonNode& root_;
@@ -220,7 +224,7 @@ std::string process_text(const tolerances::ProcessFit& fit, const Process& fitte
         features[tolerances::to_string(kind.kind)] = feature_json(*tolerances::find_feature(fitted, kind.kind), kind);
     const Json json = {{"fettle_process", 1},  {"description", fitted.description}, {"units", "mm"},
                        {"based_on", based_on}, {"correlation", fitted.correlation}, {"features", std::move(features)}};
-    return json.dump(2) + "\n";
+    return core::files::dumped(json, 2) + "\n";
 }
 
 }  // namespace fettle::design::reading

@@ -52,12 +52,16 @@ core::scene::ReadOptions scene_read_options(const std::vector<std::string>& mesh
     options.mesh_dirs = mesh_dirs;
     options.part_dimensions = dimensions_of_part;
     options.shape_maker = [programs, made, finer_facets](const core::scene::ShapeSpec& spec) -> Result<core::geometry::Mesh> {
-        for (const MadePart& part : *made)
-            if (part.spec == spec) return part.mesh;
+        for (const MadePart& part : *made) {
+            if (!(part.spec == spec)) continue;
+            core::base::ReadRecord::tell(part.files);
+            return part.mesh;
+        }
+        const core::base::ReadRecord record;
         const auto shape = shape_of_spec(spec, programs, finer_facets);
         if (!shape) return shape.errors();
         Result<core::geometry::Mesh> mesh = description::drawn_mesh(**shape);
-        if (mesh) made->push_back({spec, *shape, *mesh});
+        if (mesh) made->push_back({spec, *shape, *mesh, record.files()});
         return mesh;
     };
     return options;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fettle/core/base/read_record.hpp"
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/design/description/shape.hpp"
@@ -20,7 +21,8 @@ enum class Programs { refused, allowed };
 struct MadePart {
     core::scene::ShapeSpec spec;
     std::shared_ptr<const description::Shape> shape;
-    core::geometry::Mesh mesh;  ///< as drawn
+    core::geometry::Mesh mesh;                ///< as drawn
+    core::base::ReadRecord::Files files = {};  ///< that it was made of
 };
 
 /// What read_scene needs to make the parts of this program, and where it looks for meshes. Each part is made once, however many bodies are

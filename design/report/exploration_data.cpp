@@ -9,6 +9,7 @@
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/version.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/design/exports/assembly.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/report/answer_values.hpp"
@@ -148,7 +149,7 @@ public:
         Json added = Json::array();
         std::vector<std::size_t> place;
         for (std::size_t i = first; i < data["meshes"].size(); ++i) {
-            const auto [at, is_new] = known_.try_emplace(data["meshes"][i].dump(), first + added.size());
+            const auto [at, is_new] = known_.try_emplace(core::files::dumped(data["meshes"][i]), first + added.size());
             if (is_new) added.push_back(data["meshes"][i]);
             if (is_new) bytes_ += at->first.size();
             place.push_back(at->second);

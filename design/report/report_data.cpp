@@ -3,6 +3,7 @@
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/version.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/design_rows.hpp"
@@ -58,7 +59,7 @@ void add_optimisation(Json& data, const ReportSource& source) {
     data["why_not_optimal"] = member(result, "why_not_optimal");
     const Json starts = member(result, "starts"), optimality = member(result, "optimality");
     if (starts.is_array())
-        data["notices"].push_back("The best of " + std::to_string(starts.size()) + " starts, seed " + member(result, "seed").dump() +
+        data["notices"].push_back("The best of " + std::to_string(starts.size()) + " starts, seed " + core::files::dumped(member(result, "seed")) +
                                   "; the table of starts has all.");
     data["optimality"] = optimality.is_object() ? Json{{"worth", member(optimality, "worth")}} : Json();
 }

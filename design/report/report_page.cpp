@@ -5,6 +5,7 @@
 
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/files/embedded_file.hpp"
+#include "fettle/core/files/json_dump.hpp"
 
 FETTLE_EMBEDDED_FILE(fettle_report_template, FETTLE_REPORT_TEMPLATE)
 
@@ -25,7 +26,7 @@ std::string page_of(const nlohmann::ordered_json& data) {
     const std::string_view page = page_template();
     const std::size_t at = page.find(marker);
     FETTLE_ASSERT(at != std::string_view::npos, "the page has a place for its data");
-    const std::string text = data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    const std::string text = core::files::dumped(data);
     std::string made(page.substr(0, at));
     made.reserve(page.size() + text.size() + text.size() / 64);
     for (const char c : text) {

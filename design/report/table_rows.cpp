@@ -43,22 +43,29 @@ const std::string no_word;
 
 }  // namespace
 
-TableRows::TableRows(std::string_view text) {
+TableRows::TableRows(std::string_view text) : text_(text) {
     std::size_t at = 0;
     header_ = next_line(text, at);
     while (at < text.size()) {
-        std::vector<std::string> fields = next_line(text, at);
-        if (fields.size() != header_.size()) continue;
-        for (std::string& field : fields) field = core::base::csv_word(field);
-        rows_.push_back(std::move(fields));
+        const std::size_t begin = at;
+        if (next_line(text, at).size() == header_.size()) rows_.push_back(begin);
     }
+}
+
+const std::vector<std::string>& TableRows::fields(std::size_t row) const {
+    if (row == taken_) return fields_;
+    std::size_t at = rows_[row];
+    fields_ = next_line(text_, at);
+    for (std::string& field : fields_) field = core::base::csv_word(field);
+    taken_ = row;
+    return fields_;
 }
 
 bool TableRows::has(std::string_view column) const { return std::find(header_.begin(), header_.end(), column) != header_.end(); }
 
 const std::string& TableRows::word(std::size_t row, std::string_view column) const {
     const auto found = std::find(header_.begin(), header_.end(), column);
-    return found == header_.end() ? no_word : rows_[row][found - header_.begin()];
+    return found == header_.end() ? no_word : fields(row)[found - header_.begin()];
 }
 
 double TableRows::number(std::size_t row, std::string_view column) const {

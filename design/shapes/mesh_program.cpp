@@ -16,9 +16,13 @@
 #include <filesystem>
 #include <numeric>
 #include <regex>
+#include <set>
+#include <sstream>
 #include <thread>
 
+#include "fettle/core/base/read_record.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/input_file.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/mesh_files/mesh_reader.hpp"
 
@@ -130,6 +134,28 @@ core::geometry::Mesh in_order(const core::geometry::Mesh& mesh, const std::strin
     return core::geometry::make_mesh(name, std::move(vertices), std::move(triangles));
 }
 
+// Where the system finds a program of this name.
+fs::path on_path(const std::string& name) {
+    const char* const path = ::getenv("PATH");
+    std::istringstream folders(path == nullptr ? "" : path);
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (fs::path file = fs::path(folder) / name; ::access(file.c_str(), X_OK) == 0) return file;
+    return {};
+}
+
+// The program itself, and files that its command names: "rod.scad", "--with=rod.scad". What these name in turn it alone knows.
+void record_files(const MeshProgram& program) {
+    const std::string& name = program.command.front();
+    if (name.find('/') == std::string::npos) core::files::record_file(on_path(name));
+    for (const std::string& word : program.command) {
+        for (const std::string& file : std::set<std::string>{word, word.substr(word.find('=') + 1)}) {
+            std::error_code ignored;
+            const fs::path path = fs::path(program.directory) / file;
+            if (fs::is_regular_file(path, ignored)) core::files::record_file(path);
+        }
+    }
+}
+
 // The last lines that a program said, in one.
 std::string last_words(const fs::path& log) {
     const Result<std::string> text = core::files::read_file(log);
@@ -174,6 +200,7 @@ Errors check_program(const MeshProgram& program, const std::vector<ShapeDimensio
 Result<core::geometry::Mesh> run_program(const MeshProgram& program, const std::vector<ShapeDimension>& dimensions,
                                          const std::vector<double>& values) {
     const Workplace place;
+    const core::base::ReadRecord apart(core::base::ReadRecord::Outer::apart);  // of what stands there
     const std::string& name = program.command.front();
     if (place.path().empty()) return Error{ErrorCode::file_unreadable, name, "no temporary folder can be made for what it writes"};
     const fs::path out = place.path() / ("part." + program.format), log = place.path() / "log.txt";
@@ -221,6 +248,7 @@ ProgramPart::ProgramPart(const MeshProgram& program, std::vector<ShapeDimension>
 Result<std::shared_ptr<const ProgramPart>> ProgramPart::create(const MeshProgram& program, std::vector<ShapeDimension> dimensions) {
     Errors errors = check_program(program, dimensions);
     if (!errors.empty()) return errors;
+    record_files(program);
     return std::shared_ptr<const ProgramPart>(new ProgramPart(program, std::move(dimensions)));
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_text.hpp"
@@ -93,7 +94,7 @@ Json header_of(const description::Design& design, const std::string& name, const
                 {"program", core::base::version()},
                 {"design", name},
                 {"parameters", description::names_of(design.parameters)}};
-    if (!file.empty()) header["file"] = file;
+    if (!file.empty() && core::base::is_utf8(file)) header["file"] = file;  // JSON has no others
     return header;
 }
 

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "fettle/core/base/version.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/core/files/json_text.hpp"
 
 namespace fettle::design::studies {
@@ -83,7 +84,7 @@ std::string header_line(const HistoryHeader& header) {
     json["program"] = core::base::version();
     json["parameters"] = header.parameters;
     json["constraints"] = header.constraints;
-    return json.dump();
+    return core::files::dumped(json);
 }
 
 std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, int number) {
@@ -116,7 +117,7 @@ std::string entry_line(const HistoryEntry& entry, const HistoryHeader& header, i
     }
     json["forward_seconds"] = entry.forward_seconds;
     json["backward_seconds"] = entry.backward_seconds;
-    return json.dump();
+    return core::files::dumped(json);
 }
 
 HistoryEntry parsed_entry(const std::string& line, const HistoryHeader& header) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <utility>
 
 #include "fettle/design/description/requirement_text.hpp"
@@ -78,10 +79,10 @@ class DesignRun {
 public:
     DesignRun(const problem::DesignProblem& problem, const OptimiseOptions& options)
         : problem_(problem), design_(problem.design()), options_(options) {
-        with_derivatives_.should_stop = options.should_stop;
+        with_derivatives_.should_stop = [this] { return !has_ended_ && options_.should_stop && options_.should_stop(); };
         with_derivatives_.on_step = options.on_step;
         compute_ = [this](const problem::DesignProblem& model, const VectorX& p, Recorded wanted) {
-            if (options_.replay_only) throw optimisers::Interrupted();
+            if (options_.replay_only && !has_ended_) throw optimisers::Interrupted();
             ++computed_;
             const bool values = wanted == Recorded::values;
             return history_entry(design_, p, model.evaluate(p, values ? problem::without_gradients(with_derivatives_) : with_derivatives_));
@@ -98,6 +99,8 @@ public:
         outcome_.report = optimisers::optimise(seen, optimiser, settings());
         if (options_.seed != 0 && !options_.repair && moves_by_joints_alone(problem_)) search_again(seen, optimiser);
         outcome_.replayed = outcome_.report.evaluations - computed_;
+        has_ended_ = true;
+        if (outcome_.report.untried.size() > 0) try_untried(seen);
         if (outcome_.report.best.usable) measure_end();
         return std::move(outcome_);
     }
@@ -199,13 +202,25 @@ private:
         return settings;
     }
 
+    // Stopped among the smoother models: what these have led to may be better than the start as written, too, and is not lost.
+    void try_untried(const optimisers::Problem& seen) {
+        optimisers::OptimiserReport& report = outcome_.report;
+        const VectorX point = report.untried;
+        const optimisers::Evaluation found = seen.values(point);
+        const bool better = optimisers::is_better(found, report.best);
+        optimisers::take_if_better(report, point, found);
+        if (better) report.message += "; the design is the best of these, as it is as written";
+    }
+
     // The best design once more, with its certificates.
     void measure_end() {
-        const VectorX& point = outcome_.report.point;
+        const VectorX point = outcome_.report.point;
         problem::EvaluateOptions last;  // not interruptible: it is what makes the result of an interrupted run usable
         last.gradients = false;
         last.balance = true;
         outcome_.final = problem_.evaluate(point, last);
+        judge_end();
+        if (!outcome_.final.usable) return;
         if (!smoother_.empty()) {
             last.should_stop = options_.should_stop;
             outcome_.play_taken_up_by = smoother_.front().name;
@@ -220,6 +235,37 @@ private:
             limits_of(problem_, point, outcome_.final, outcome_.report.best.jacobian, failures_, outcome_.report.evaluations + refused_);
     }
 
+    // Do both say the same of a design? To more than the rounding of another machine, which may have computed one of them.
+    bool agree(const optimisers::Evaluation& a, const optimisers::Evaluation& b) const {
+        const auto near = [](double x, double y, double size) {
+            return std::abs(x - y) <= 1e-6 * std::max({std::abs(x), std::abs(y), std::abs(size)});
+        };
+        if (!a.usable || !b.usable || (a.violation <= 0) != (b.violation <= 0) || a.constraints.size() != b.constraints.size()) return false;
+        for (Eigen::Index i = 0; i < a.constraints.size(); ++i)
+            if (!near(a.constraints[i], b.constraints[i], design_.constraints[i].bounds.unit)) return false;
+        return near(a.objective, b.objective, outcome_.objective_start.value_or(0));
+    }
+
+    // Whatever the search was told of this design, by a history perhaps: what it measures now is what counts.
+    void judge_end() {
+        optimisers::OptimiserReport& report = outcome_.report;
+        optimisers::Evaluation now = problem::optimiser_evaluation(outcome_.final);
+        if (options_.repair) now.objective = report.best.objective;  // a distance, of which it knows nothing
+        if (agree(now, report.best)) return;
+        const std::string stopped = report.status == optimisers::OptimiserStatus::interrupted ? report.message + "; " : "";
+        report.message = stopped + "evaluated once more, this design is not what the " + (outcome_.replayed > 0 ? "history" : "search") +
+                         " says it is" + (now.usable ? "" : ", and cannot be evaluated: " + now.reason) +
+                         "; something that it depends on has changed that nobody knows of (a file that a program reads): run it without "
+                         "--resume";
+        report.feasible = now.usable && now.violation <= 0;
+        report.optimality = {};
+        if (stopped.empty()) report.status = report.feasible ? optimisers::OptimiserStatus::feasible : optimisers::OptimiserStatus::infeasible;
+        constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+        report.objective = now.usable ? now.objective : unknown;
+        report.violation = now.usable ? now.violation : unknown;
+        report.best = std::move(now);
+    }
+
     const problem::DesignProblem& problem_;
     const Design& design_;
     const OptimiseOptions& options_;
@@ -228,7 +274,7 @@ private:
     std::vector<problem::SmootherDesign> smoother_;
     std::vector<FailedTrial> failures_;
     int computed_ = 0, refused_ = 0;
-    bool has_begun_ = false;
+    bool has_begun_ = false, has_ended_ = false;
     OptimiseOutcome outcome_;
 };
 

@@ -41,6 +41,7 @@ Result<FileOutcome> optimise_file(const reading::DesignFile& file, const problem
     const auto optimiser =
         optimisers::make_optimiser(options.optimiser.empty() ? file.design.optimiser.name : options.optimiser, "optimiser");
     if (!optimiser) return optimiser.errors();
+    if (const auto scene = reading::scene_from(file, folder.directory); !scene) return scene.errors();
     const LineFileMode mode = folder.resume ? LineFileMode::resume : LineFileMode::fresh;
     Result<History> history = History::open(folder.directory, header_of(file), mode);
     if (!history) return history.errors();

@@ -8,6 +8,7 @@
 
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/core/files/json_text.hpp"
 
 namespace fettle::design::studies {
@@ -110,7 +111,7 @@ Errors SampleFile::read_found(const std::string& path) {
     if (lines.empty()) {
         Errors errors = file_.keep(0);
         if (!errors.empty()) return errors;
-        file_.append(header_json(header_).dump());
+        file_.append(core::files::dumped(header_json(header_)));
         return unwritten();
     }
     Result<FoundSamples> found = found_in(lines, path, header_, true);
@@ -124,7 +125,7 @@ const SampleOutcome* SampleFile::find(int sample) const {
     return found == known_.end() ? nullptr : &found->second;
 }
 
-std::string header_line(const SampleFileHeader& header) { return header_json(header).dump(); }
+std::string header_line(const SampleFileHeader& header) { return core::files::dumped(header_json(header)); }
 
 std::string sample_line(int sample, const SampleOutcome& outcome) {
     Json json = {{"sample", sample}};
@@ -134,7 +135,7 @@ std::string sample_line(int sample, const SampleOutcome& outcome) {
         json["values"] = std::vector<double>(outcome.values.begin(), outcome.values.end());
         json["met"] = outcome.met;
     }
-    return json.dump();
+    return core::files::dumped(json);
 }
 
 void SampleFile::append(int sample, const SampleOutcome& outcome) { file_.append(sample_line(sample, outcome)); }

@@ -67,6 +67,8 @@ struct ClearanceNeed {
     double minimum = 0;  ///< per side [m]
     std::string source;
     std::vector<SizeBand> bands;  ///< none: half of what a length of the part's size may be off by
+    /// Of a user's process: the known one whose `minimum`, whose `bands` these still are; empty: its own.
+    std::string minimum_of = {}, bands_of = {};
 };
 
 struct Process {

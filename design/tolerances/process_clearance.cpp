@@ -45,6 +45,18 @@ Result<double> required_clearance(const Process& process, double size_a, double 
     return process.clearance->minimum + (*a + *b);
 }
 
+std::string borrowed_clearance(const Process& process) {
+    if (!process.clearance || (process.clearance->minimum_of.empty() && process.clearance->bands_of.empty())) return {};
+    const ClearanceNeed& need = *process.clearance;
+    const std::string gap = "the smallest gap (" + in_millimetres(need.minimum) + " mm)", faces = "what faces may be off by";
+    const bool both = !need.minimum_of.empty() && !need.bands_of.empty();
+    return (both                         ? gap + " and " + faces + " are those of " + need.minimum_of
+            : need.minimum_of.empty() ? faces + " is that of " + need.bands_of
+                                      : gap + " is that of " + need.minimum_of) +
+           ", since no coupon shows " + (both ? "them" : "it") + ": once you know what your parts need, say `minimum_gap` and `part_tolerance` in " +
+           process.name + ".process.json, or --minimum";
+}
+
 std::string clearance_table() {
     std::string text = "Required clearance per side = minimum + tolerance of one part + tolerance of the other [mm, per side]:\n";
     for (const Process& process : known_processes()) {

@@ -15,6 +15,7 @@ namespace fettle::design::tolerances {
 namespace {
 
 constexpr double confidence = 0.95;
+constexpr double least_spread = 1e-9;  // more than rounding [m]
 using DoublesAlone = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 // The t that |t| exceeds with probability `outside`.
@@ -97,8 +98,9 @@ VectorX weights_of(const Columns& data, double repeatability, int freedom, bool 
     return usual * variances(data, process, repeat).cwiseInverse();
 }
 
+// @param measuring  Variance that measuring alone has: no feature lies out by less than that shows.
 std::vector<OutlyingFeature> outliers_of(const std::vector<const MeasuredFeature*>& features, const Columns& data, const Line& line,
-                                         int freedom) {
+                                         int freedom, double measuring) {
     std::vector<OutlyingFeature> found;
     if (freedom < 2) return found;
     const double squares = weighted_squares(line), limit = student_t(freedom - 1, (1 - confidence) / data.count());
@@ -106,7 +108,7 @@ std::vector<OutlyingFeature> outliers_of(const std::vector<const MeasuredFeature
         const double w = line.weights[i], d = data.size[i] - line.centre, e2 = w * line.residuals[i] * line.residuals[i];
         const double leverage = w * (1 / line.weight + (line.moment > 0 ? d * d / line.moment : 0));
         if (!(leverage < 1)) continue;
-        const double others = std::max(squares - e2 / (1 - leverage), 0.0) / (freedom - 1);
+        const double others = std::max({(squares - e2 / (1 - leverage)) / (freedom - 1), measuring, least_spread * least_spread});
         const double t = std::copysign(std::sqrt(e2 / (others * (1 - leverage))), line.residuals[i]);
         if (e2 > 0 && std::abs(t) > limit) found.push_back({features[i]->name, line.residuals[i], t});
     }
@@ -218,13 +220,13 @@ KindFit fit_kind(FeatureKind kind, const std::vector<const MeasuredFeature*>& fe
         fit.bias_per_size = {line.slope, line.slope - t * slope_error, line.slope + t * slope_error};
     }
     set_spread(s, f, measuring, fit);
-    if (has_spread(fit)) fit.outliers = outliers_of(features, data, line, f);
+    if (has_spread(fit)) fit.outliers = outliers_of(features, data, line, f, measuring);
     return fit;
 }
 
 }  // namespace
 
-bool has_spread(const KindFit& fit) { return fit.spread.value > 1e-9; }
+bool has_spread(const KindFit& fit) { return fit.spread.value > least_spread; }
 
 double taken_spread(const KindFit& fit) {
     if (!fit.components) return fit.spread_bound;
@@ -260,6 +262,7 @@ Result<ProcessFit> fit_process(const std::vector<MeasuredFeature>& features, con
 
 Process fitted_process(const ProcessFit& fit, const std::string& name, const Process& base) {
     Process process = base;
+    if (process.clearance) process.clearance->minimum_of = process.clearance->bands_of = base.name;
     process.name = name;
     process.description = "measured; what is not, as " + base.name;
     for (const KindFit& kind : fit.kinds) {
@@ -278,7 +281,9 @@ Process fitted_process(const ProcessFit& fit, const std::string& name, const Pro
         }
         std::erase_if(process.features, [&](const FeatureSpread& each) { return each.kind == kind.kind; });
         process.features.push_back(std::move(feature));
-        if (kind.kind == FeatureKind::length && process.clearance) process.clearance->bands.clear();
+        if (kind.kind != FeatureKind::length || !process.clearance) continue;
+        process.clearance->bands.clear();
+        process.clearance->bands_of.clear();
     }
     std::sort(process.features.begin(), process.features.end(), [](const auto& a, const auto& b) { return a.kind < b.kind; });
     return process;

@@ -9,6 +9,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/core/files/unique_names.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/mesh_files/mesh_writer.hpp"
@@ -57,7 +58,7 @@ public:
         if (scene_["joints"].empty()) scene_.erase("joints");
         for (Json& body : scene_["bodies"]) write_rest(body);
         tell_what_is_left_out();
-        out_.files.insert(out_.files.begin(), {options_.stem + ".scene.json", scene_.dump(2) + "\n"});
+        out_.files.insert(out_.files.begin(), {options_.stem + ".scene.json", core::files::dumped(scene_, 2) + "\n"});
         return std::move(out_);
     }
 

@@ -223,9 +223,9 @@ def explore(
     out = os.fspath(out)
     name, file = "", ""
     if isinstance(design, (str, os.PathLike)):
-        read = _fettle.read_design(design, allow_programs=allow_programs)
         file = os.path.relpath(design, os.path.dirname(out) or ".")  # from the file of results, so that both can be moved together
-        design, name = read.design, _fettle.design_hash(design, allow_programs=allow_programs)
+        read, name = _fettle.read_design_and_hash(design, allow_programs=allow_programs)
+        design = read.design
     problem = _fettle.DesignProblem(design)
     jobs = _fettle.exploration_jobs(problem, _swept_in_si(design, sweep or {}), samples, starts, seed)
     with contextlib.ExitStack() as stack:

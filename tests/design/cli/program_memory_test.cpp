@@ -2,9 +2,14 @@
 #include "fettle/design/cli/program_memory.hpp"
 #include "fettle/tests/support/skip.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 #include <thread>
 
 // Sanitizers have an allocator of their own.
@@ -24,6 +29,27 @@ TEST_CASE("What is to be done for memory ahead can be done on any thread, and th
     keep_freed_memory();
     for (const std::size_t bytes : {std::size_t{0}, std::size_t{1}, std::size_t{5000}, std::size_t{3} << 20})
         if (const std::function<void()> job = memory_ahead(bytes)) std::thread(job).join();
+}
+
+TEST_CASE("A library that ends the program ends it with its own words and exit code") {
+    std::array<int, 2> ends{};
+    REQUIRE(::pipe(ends.data()) == 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::dup2(ends[1], STDOUT_FILENO);
+        expect_out_of_memory(true);
+        std::exit(2);  // as Fortran's does
+    }
+    ::close(ends[1]);
+    std::string told;
+    char buffer[1024];
+    for (ssize_t n; (n = ::read(ends[0], buffer, sizeof buffer)) > 0;) told.append(buffer, static_cast<std::size_t>(n));
+    ::close(ends[0]);
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 3);
+    CHECK(told.find("\"out_of_memory\"") != std::string::npos);
 }
 
 #ifdef MADV_POPULATE_WRITE

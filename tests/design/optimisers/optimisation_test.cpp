@@ -264,6 +264,22 @@ TEST_CASE("smoother models are gone through first, and only the problem itself i
     CHECK(stopped.point == p.start);
     CHECK(stopped.best.objective == Approx(16.0));
     CHECK(stopped.message.find("after 3 evaluations") != std::string::npos);
+    // What they had led to by then is told, and is taken once it is known to be better.
+    REQUIRE(stopped.untried.size() == p.start.size());
+    OptimiserReport taken = stopped;
+    take_if_better(taken, stopped.untried, p.evaluate(stopped.untried));
+    const bool better = is_better(p.evaluate(stopped.untried), stopped.best);
+    CHECK(taken.point == (better ? stopped.untried : p.start));
+    Evaluation best = p.evaluate(report.point);
+    take_if_better(taken, report.point, best);
+    CHECK(taken.point == report.point);
+    CHECK(taken.feasible);
+    CHECK(taken.objective == best.objective);
+    CHECK(taken.status == OptimiserStatus::interrupted);
+    best.violation = 1;
+    take_if_better(taken, p.start, best);
+    CHECK(taken.point == report.point);
+    CHECK(report.untried.size() == 0);
     options.should_stop = {};
 
     // A model that cannot be evaluated is left out.

@@ -486,3 +486,39 @@ def test_results_go_to_regular_files_alone(tmp_path):
     for place in (endless, tmp_path / "pipe.jsonl", tmp_path):
         with pytest.raises(fettle.Error, match="regular file"):
             fettle.explore(short_design(), place, samples=1, workers=1)
+
+
+def test_an_exploration_ends_where_a_file_of_its_design_has_changed(tmp_path):
+    """A process that is named, though nothing of what is evaluated follows from it: what changed is not asked."""
+    design, out = short_file(tmp_path), tmp_path / "out.jsonl"
+    text = json.loads(design.read_text())
+    name = text["parameters"][0]["name"]
+    text["tolerances"] = {name: {"feature": "length", "process": "mine"}}
+    design.write_text(json.dumps(text))
+    process = {"fettle_process": 1, "units": "mm", "features": {"length": {"bias": 0, "spread": 0.01}}}
+    (tmp_path / "mine.process.json").write_text(json.dumps(process))
+    assert len(fettle.explore(design, out, samples=1, workers=1)) == 1
+    assert len(fettle.explore(design, out, samples=2, workers=1)) == 2
+    process["features"]["length"]["bias"] = -0.3
+    (tmp_path / "mine.process.json").write_text(json.dumps(process))
+    with pytest.raises(fettle.Error, match="another design"):
+        fettle.explore(design, out, samples=2, workers=1)
+
+
+@needs_program
+def test_bytes_that_are_no_text_are_errors_like_others(tmp_path):
+    design = short_file(tmp_path)
+    text = design.read_bytes()
+    broken = tmp_path / os.fsdecode(b"br\xffoken.design.json")
+    broken.write_bytes(text.replace(b'"parameters"', b'"para\xffmeters"'))
+    named = tmp_path / os.fsdecode(b"na\xffmed.design.json")
+    named.write_bytes(text)
+    for path, code in ((broken, 3), (tmp_path / os.fsdecode(b"no\xffne.design.json"), 3), (named, 0)):
+        out = tmp_path / os.fsdecode(b"o\xffut.jsonl")
+        words = (path, "--out", out, "--samples", "1", "--quiet")
+        told = ran(*words)
+        assert told.returncode in (code, 1)
+        assert "internal" not in told.stderr
+        assert ran(*words, "--json").returncode in (code, 1)
+    with pytest.raises(fettle.Error, match=r"\\xff"):
+        fettle.read_design(broken)

@@ -2,7 +2,10 @@
 #include "fettle/design/reading/design_text.hpp"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 
 #include "fettle/tests/design/small_design.hpp"
 
@@ -63,6 +66,75 @@ TEST_CASE("a design's hash is another when its part says something else, even if
     };
     CHECK(hash_of("= 12") == hash_of("= 12"));
     CHECK(hash_of("= 12") != hash_of("= 2 + size_z"));
+}
+
+TEST_CASE("a design's hash is another when any file says something else that was read for it") {
+    const DesignFolder folder(
+        replaced(small_design, R"("optimiser":)", R"("tolerances": {"height": {"feature": "length", "process": "mine"}}, "optimiser":)"),
+        replaced(small_scene, R"({ "name": "wall",)", R"(
+            { "name": "wire", "type": "static", "mesh": "wire.obj", "position": [0, 50, 0] },
+            { "name": "post", "type": "static", "shape": {"part": "post.part.json"}, "position": [0, 80, 0] },
+            { "name": "made", "type": "static", "position": [0, 110, 0], "shape": {
+              "program": ["sh", "make.sh", "{out}", "{size}"], "format": "off", "dimensions": {"size": 5} } },
+            { "name": "wall",)"));
+    const std::map<std::string, std::string> files{
+        {"small.scene.json", ""},
+        {"wire.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nl 1 2\nl 2 3\nl 3 4\n"},
+        {"post.part.json", R"({"fettle_part": 1, "solid": {"extrude": {"rectangle": [4, 4]}, "to": 10}})"},
+        {"make.sh", R"(printf 'OFF\n4 4 0\n0 0 0\n%s 0 0\n0 10 0\n0 0 10\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n' "$2" > "$1")"},
+        {"mine.process.json", R"({"fettle_process": 1, "units": "mm", "features": {"length": {"bias": 0.1, "spread": 0.05}}})"}};
+    for (const auto& [name, text] : files)
+        if (!text.empty()) folder.write(name, text);
+    DesignReadOptions options;
+    options.programs = Programs::allowed;
+    const auto hash = [&] {
+        const Result<DesignFile> design = read_design(folder.design(), options);
+        INFO(all(design.errors()));
+        REQUIRE(design);
+        std::set<std::string> read;
+        for (const auto& [path, contents] : design->files) read.insert(std::filesystem::path(path).filename().string());
+        for (const auto& [name, text] : files) CHECK(read.count(name) == 1);
+        CHECK(read.count("sh") == 1);  // the program itself
+        return design_hash(*design);
+    };
+    const std::string before = hash();
+    CHECK(hash() == before);
+    for (const auto& [name, text] : files) {
+        INFO(name);
+        const std::string was = fettle::tests::support::contents(folder.path / name);
+        folder.write(name, was + "\n");
+        CHECK(hash() != before);
+        folder.write(name, was);
+        CHECK(hash() == before);
+    }
+    // A wire's edges alone.
+    folder.write("wire.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nl 1 2\nl 2 3\nl 4 1\n");
+    CHECK(hash() != before);
+    folder.write("wire.obj", files.at("wire.obj"));
+    options.process = "fdm";
+    CHECK(hash() != before);
+    options.process.clear();
+    options.resolution.steps = 2;
+    CHECK(hash() != before);
+}
+
+TEST_CASE("a design's folder of results lies in its own") {
+    for (const char* output : {"/tmp", "..", "../out", "a/../../out", "away", "away/below"}) {
+        const DesignFolder folder(replaced(small_design, R"("optimiser":)", R"("output": ")" + std::string(output) + R"(", "optimiser":)"));
+        std::filesystem::create_directory_symlink("/tmp", folder.path / "away");
+        const Result<DesignFile> design = read_design(folder.design());
+        INFO(output);
+        REQUIRE_FALSE(design);
+        CHECK(design.errors().at(0).where.ends_with("#/output"));
+        CHECK(design.errors().at(0).message.find("--out") != std::string::npos);
+    }
+    for (const char* output : {"out", "./a/b", "a/../b", "."}) {
+        const DesignFolder folder(replaced(small_design, R"("optimiser":)", R"("output": ")" + std::string(output) + R"(", "optimiser":)"));
+        const Result<DesignFile> design = read_design(folder.design());
+        INFO(output << "\n" << all(design.errors()));
+        REQUIRE(design);
+        CHECK(std::filesystem::path(design->output) == folder.path / output);
+    }
 }
 
 }  // namespace fettle::design::reading::design_text_test

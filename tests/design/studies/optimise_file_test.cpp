@@ -54,6 +54,53 @@ TEST_CASE("a simulated design, killed and resumed, ends the same, bit for bit", 
     CHECK(again.objective == whole->outcome.report.best.objective);
 }
 
+TEST_CASE("whatever a history says, the status is that of the design as it is now", "[design]") {
+    const DesignFolder folder(replaced(small_design, "\"max_evaluations\": 8", "\"max_evaluations\": 3"));
+    const reading::DesignFile file = file_of(folder);
+    const problem::DesignProblem problem = problem_of(folder);
+    RunFolder run{(folder.path / "out").string(), false};
+    const Result<FileOutcome> first = optimise_file(file, problem, run, {});
+    REQUIRE(first);
+    REQUIRE(first->outcome.report.feasible);
+    run.resume = true;
+    const Result<FileOutcome> again = optimise_file(file, problem, run, {});
+    REQUIRE(again);
+    CHECK(again->outcome.replayed == again->outcome.report.evaluations);
+    CHECK(again->outcome.report.status == first->outcome.report.status);
+    CHECK(again->outcome.report.message == first->outcome.report.message);
+
+    // More is required now, which nothing has told the history of.
+    const DesignFolder changed(replaced(replaced(small_design, "\"max_evaluations\": 8", "\"max_evaluations\": 3"),
+                                        "\"minimum\": 15", "\"minimum\": 35"));
+    const Result<FileOutcome> stale = optimise_file(file, problem_of(changed), run, {});
+    REQUIRE(stale);
+    const OptimiseOutcome& outcome = stale->outcome;
+    CHECK(outcome.replayed == outcome.report.evaluations);
+    CHECK(outcome.report.status == optimisers::OptimiserStatus::infeasible);
+    CHECK_FALSE(outcome.report.feasible);
+    CHECK(outcome.report.violation == outcome.final.violation);
+    CHECK(outcome.final.violation > 0);
+    CHECK(outcome.report.message.find("history") != std::string::npos);
+    CHECK_FALSE(outcome.limits.empty());
+}
+
+TEST_CASE("a history is not gone on with once a process was measured anew", "[design]") {
+    const DesignFolder folder(replaced(
+        small_design, R"("optimiser":)", R"("tolerances": {"height": {"feature": "length", "process": "mine"}}, "optimiser":)"));
+    const auto measured = [&](const char* bias) {
+        folder.write("mine.process.json", std::string(R"({"fettle_process": 1, "units": "mm", "features": {"length": {"bias": )") + bias +
+                                              R"(, "spread": 0.05}}})");
+    };
+    measured("0");
+    const std::string out = (folder.path / "out").string();
+    REQUIRE(History::open(out, {reading::design_hash(file_of(folder)), {}, {}}, LineFileMode::resume));
+    REQUIRE(History::open(out, {reading::design_hash(file_of(folder)), {}, {}}, LineFileMode::resume));
+    measured("-0.3");
+    const Result<History> stale = History::open(out, {reading::design_hash(file_of(folder)), {}, {}}, LineFileMode::resume);
+    REQUIRE_FALSE(stale);
+    CHECK(stale.errors().at(0).code == ErrorCode::inconsistent);
+}
+
 TEST_CASE("a design that was found has the settings of the one that the search began with", "[design]") {
     const DesignFolder folder;
     const reading::DesignFile file = file_of(folder);

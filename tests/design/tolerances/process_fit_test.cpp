@@ -162,6 +162,22 @@ TEST_CASE("a process' fit: where one feature was measured more often it counts f
     CHECK(fit.process_spread == 0);
 }
 
+TEST_CASE("a process' fit: where all others lie on one line, or measuring alone scatters as much, an outlier has a finite measure") {
+    std::vector<MeasuredFeature> features;
+    for (const double size : {2.0, 3.0, 4.0, 5.0, 6.0, 7.0}) features.push_back({"S", FeatureKind::slot, size * mm, {(size - 0.1) * mm}});
+    features[2].measured[0] += 0.003 * mm;
+    const KindFit fit = fit_process(features, "")->kinds.at(0);
+    REQUIRE(fit.outliers.size() == 1);
+    CHECK(std::isfinite(fit.outliers[0].studentised));
+    CHECK(fit.outliers[0].studentised > 100);
+    // Measured twice, 0.05 mm apart: 0.003 mm is nothing.
+    for (MeasuredFeature& feature : features) {
+        feature.measured.push_back(feature.measured[0] - 0.025 * mm);
+        feature.measured[0] += 0.025 * mm;
+    }
+    CHECK(fit_process(features, "")->kinds.at(0).outliers.empty());
+}
+
 TEST_CASE("a process' fit: an outlier is named, and seldom without reason") {
     const Truth truth{-0.2 * mm, 0.01, 0.03 * mm, 0};
     Workshop workshop(truth, 5);
