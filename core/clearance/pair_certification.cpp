@@ -31,10 +31,10 @@ bool is_measurable(const PairMotion& pair) {
     });
 }
 
-constexpr long bounds_a_second = 1'000'000;
+constexpr long path_bounds_a_second = 1'000'000;
 
 StopRule stop_rule(const ClearanceOptions& options, double minimum, bool is_recorded) {
-    return {minimum, options.answer_is_enough, is_recorded ? bounds_a_second / 50 : bounds_a_second / 5, bounds_a_second};
+    return {minimum, options.answer_is_enough, is_recorded ? path_bounds_a_second / 50 : path_bounds_a_second / 5, path_bounds_a_second};
 }
 
 // A certificate's checker rounds in its own way and bounds curves in its own way: the claim leaves it this much room, of which its proof

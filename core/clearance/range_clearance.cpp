@@ -17,7 +17,7 @@
 namespace fettle::core::clearance {
 namespace {
 
-constexpr long bounds_a_second = 200'000;
+constexpr long range_bounds_a_second = 200'000;
 
 // Rounding hides no more than a thousandth of the bodies' size.
 bool has_small_slack(const ScrewedPair& pair) { return pair.slack <= 1e-3 * (pair.a.radius() + pair.b.radius()); }
@@ -72,7 +72,7 @@ private:
 
     void measure(const certificate::LinkedPair& linked, std::size_t index, PairClearance& out) const {
         const ScrewedPair pair = screwed_pair(*shape(out.a).tree, *shape(out.b).tree, ranges_.linkage, linked, start(out.a), start(out.b));
-        const BoxSearchOptions search = search_options(out, pair.count, pair.a.radius() + pair.b.radius(), bounds_a_second);
+        const BoxSearchOptions search = search_options(out, pair.count, pair.a.radius() + pair.b.radius(), range_bounds_a_second);
         if (!has_small_slack(pair)) {
             out.reason = "its numbers are so large that rounding hides the distance";
             return;

@@ -84,7 +84,6 @@ std::optional<double> apart_if_thinner(const PairMotion& pair, bool is_a, const 
     search.refuted = 1e-6 * by;
     search.exact_witness = search.sample_nodes = search.nodes_only = false;
     search.seed.reset();
-    search.proof = nullptr;
     const SearchResult found = search_pair(thin.a, thin.b, thin.segments, search);
     if (found.intersecting || !(found.lower > 0)) return std::nullopt;
     if (!certificate::are_apart(certificate::solids_of(thin.solid_a, thin.solid_b, start, found.lower))) return std::nullopt;

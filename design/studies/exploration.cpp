@@ -27,7 +27,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using core::base::formatted;
-using Kind = ExplorationJob::Kind;
+using JobKind = ExplorationJob::Kind;
 
 // --- what to explore
 
@@ -100,7 +100,7 @@ Errors add_sweep(const problem::DesignProblem& problem, const std::vector<SweptP
         VectorX point = description::values_of(parameters);
         for (std::size_t i = 0; i < sweep.size(); ++i) point[places[i]] = values[i][at[i]];
         if (Errors errors = description::check_values(parameters, point); !errors.empty()) return errors;
-        jobs.push_back({Kind::evaluate, std::move(point)});
+        jobs.push_back({JobKind::evaluate, std::move(point)});
         more = false;
         for (std::size_t i = sweep.size(); i-- > 0 && !more;) {
             more = ++at[i] < values[i].size();
@@ -178,7 +178,7 @@ Json begun_result(const ExplorationJob& job) { return {{"key", job.key()}, {"kin
 
 }  // namespace
 
-const char* to_string(Kind kind) { return kind == Kind::evaluate ? "evaluate" : "optimise"; }
+const char* to_string(ExplorationJob::Kind kind) { return kind == JobKind::evaluate ? "evaluate" : "optimise"; }
 
 std::string ExplorationJob::key() const {
     std::string text = std::string(to_string(kind)) + " " + std::to_string(seed);
@@ -247,8 +247,8 @@ Result<std::vector<ExplorationJob>> jobs_of(const problem::DesignProblem& proble
     if (Errors faults = add_sweep(problem, request.sweep, all); !faults.empty()) return faults;
     const std::vector<std::uint64_t> seeds = seeds_of_list(request.seed, 1 + std::max(request.samples, request.starts));
     for (int k = 1; k <= request.samples; ++k)
-        all.push_back({Kind::evaluate, sample_of_seed(problem.design(), seeds[static_cast<std::size_t>(k)])});
-    for (int k = 0; k < request.starts; ++k) all.push_back({Kind::optimise, {}, seeds[static_cast<std::size_t>(k)]});
+        all.push_back({JobKind::evaluate, sample_of_seed(problem.design(), seeds[static_cast<std::size_t>(k)])});
+    for (int k = 0; k < request.starts; ++k) all.push_back({JobKind::optimise, {}, seeds[static_cast<std::size_t>(k)]});
     std::unordered_set<std::string> keys;
     std::vector<ExplorationJob> jobs;
     for (ExplorationJob& job : all)
@@ -260,7 +260,7 @@ Json result_of(const problem::DesignProblem& problem, const ExplorationJob& job,
     const auto begin = std::chrono::steady_clock::now();
     Json json = begun_result(job);
     try {
-        if (job.kind == Kind::evaluate)
+        if (job.kind == JobKind::evaluate)
             add_evaluation(json, problem, job, should_stop);
         else
             add_optimum(json, problem, job, should_stop);
