@@ -14,9 +14,27 @@ using namespace std::string_view_literals;
 
 // White space of Unicode on a line, as .NET trims it: U+0020, U+0009, U+00A0, U+1680, U+2000 to U+200A, U+2028, U+2029, U+202F, U+205F,
 // U+3000, U+FEFF.
-constexpr std::array blanks{" "sv,          "\t"sv,         "\xC2\xA0"sv,     "\xE1\x9A\x80"sv, "\xE2\x80\x80"sv, "\xE2\x80\x81"sv, "\xE2\x80\x82"sv,
-                            "\xE2\x80\x83"sv, "\xE2\x80\x84"sv, "\xE2\x80\x85"sv, "\xE2\x80\x86"sv, "\xE2\x80\x87"sv, "\xE2\x80\x88"sv, "\xE2\x80\x89"sv,
-                            "\xE2\x80\x8A"sv, "\xE2\x80\xA8"sv, "\xE2\x80\xA9"sv, "\xE2\x80\xAF"sv, "\xE2\x81\x9F"sv, "\xE3\x80\x80"sv, "\xEF\xBB\xBF"sv};
+constexpr std::array blanks{" "sv,
+                            "\t"sv,
+                            "\xC2\xA0"sv,
+                            "\xE1\x9A\x80"sv,
+                            "\xE2\x80\x80"sv,
+                            "\xE2\x80\x81"sv,
+                            "\xE2\x80\x82"sv,
+                            "\xE2\x80\x83"sv,
+                            "\xE2\x80\x84"sv,
+                            "\xE2\x80\x85"sv,
+                            "\xE2\x80\x86"sv,
+                            "\xE2\x80\x87"sv,
+                            "\xE2\x80\x88"sv,
+                            "\xE2\x80\x89"sv,
+                            "\xE2\x80\x8A"sv,
+                            "\xE2\x80\xA8"sv,
+                            "\xE2\x80\xA9"sv,
+                            "\xE2\x80\xAF"sv,
+                            "\xE2\x81\x9F"sv,
+                            "\xE3\x80\x80"sv,
+                            "\xEF\xBB\xBF"sv};
 
 // Of the blank that a text begins with.
 std::size_t blank_size(std::string_view text) {

@@ -19,7 +19,8 @@ public:
     InputFile(InputFile&&) noexcept;
     InputFile& operator=(InputFile&&) noexcept;
 
-    /// What comes next, valid until the next call; empty: there is no more, or it cannot be read (failed()). May end by Stopped (base/stop.hpp).
+    /// What comes next, valid until the next call; empty: there is no more, or it cannot be read (failed()). May end by Stopped
+    /// (base/stop.hpp).
     std::string_view next();
     bool failed() const { return failed_; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The files that `fettle clearance` leaves: margins (--csv), the proof and the trajectory that it is about (--certificate), a folder with the
-/// answer, meshes, path and report (--out). All that is asked for takes its place together, or nothing does.
+/// The files that `fettle clearance` leaves: margins (--csv), the proof and the trajectory that it is about (--certificate), a folder with
+/// the answer, meshes, path and report (--out). All that is asked for takes its place together, or nothing does.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -189,8 +189,9 @@ void Console::progress(const std::string& what, int done, int of) {
     bar_permille_ = permille;
     constexpr int width = 30;
     const int filled = static_cast<int>(static_cast<long>(width) * done / of);
-    std::fprintf(stderr, "\r%s [%s%s] %d/%d%s \033[K", core::base::shown_on_one_line(what).c_str(), std::string(static_cast<size_t>(filled), '#').c_str(),
-                 std::string(static_cast<size_t>(width - filled), '.').c_str(), done, of, pace(done, of).c_str());
+    std::fprintf(stderr, "\r%s [%s%s] %d/%d%s \033[K", core::base::shown_on_one_line(what).c_str(),
+                 std::string(static_cast<size_t>(filled), '#').c_str(), std::string(static_cast<size_t>(width - filled), '.').c_str(), done,
+                 of, pace(done, of).c_str());
     std::fflush(stderr);
     bar_shown_ = true;
     if (done >= of) end_progress();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// What the program says, and where: results on stdout (one JSON object with --json, else text), narration and progress bars on stderr.
 /// On a terminal progress is a bar with rate and time left; elsewhere, and in the log, a line every ten seconds. Nothing is coloured when
-/// NO_COLOR is set or stdout is no terminal. Names and paths in messages may come from anybody: whatever is printed, and the log, is without
-/// control characters and without commands to a runner of checks (core/base/printed_text.hpp).
+/// NO_COLOR is set or stdout is no terminal. Names and paths in messages may come from anybody: whatever is printed, and the log, is
+/// without control characters and without commands to a runner of checks (core/base/printed_text.hpp).
 #pragma once
 
 #include <chrono>

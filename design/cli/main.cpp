@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "fettle/core/base/parallel.hpp"
+#include "fettle/core/base/printed_text.hpp"
 #include "fettle/core/base/shared_library.hpp"
 #include "fettle/core/base/stop.hpp"
-#include "fettle/core/base/printed_text.hpp"
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/design/answers/answer_json.hpp"

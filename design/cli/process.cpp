@@ -179,8 +179,8 @@ int run_process(const ProcessArguments& arguments, Console& console) {
     const Process fitted = fitted_process(*fit, arguments.name, base);
     if (const Errors errors = core::files::write_file_atomically(file, reading::process_text(*fit, fitted, base.name)); !errors.empty())
         return console.input_errors(errors);
-    console.result(fit_json(*fit, file.string(), base.name),
-                   fit_text(*fit, base, file.string()) + clearance_text(fitted) + "next: fettle tolerance DESIGN --process " + arguments.name + "\n");
+    console.result(fit_json(*fit, file.string(), base.name), fit_text(*fit, base, file.string()) + clearance_text(fitted) +
+                                                                 "next: fettle tolerance DESIGN --process " + arguments.name + "\n");
     return exit_done;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Text of the library on its way to Python: what is no UTF-8 (in a path, in words of a file or of another program) is there as "\\xff", where
-/// pybind11 would raise UnicodeDecodeError. For every std::string: part of each file of the bindings (CMakeLists.txt includes it).
+/// Text of the library on its way to Python: what is no UTF-8 (in a path, in words of a file or of another program) is there as "\\xff",
+/// where pybind11 would raise UnicodeDecodeError. For every std::string: part of each file of the bindings (CMakeLists.txt includes it).
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -516,8 +516,9 @@ private:
         const fs::path below = whole(output).lexically_relative(whole(folder));
         if (below.empty() || *below.begin() == "..")
             node.fail(ErrorCode::out_of_range,
-                      "found " + node.shown() + ", which leads out of the design's own folder; `output` is a folder in it, and --out of the "
-                      "command line any other");
+                      "found " + node.shown() +
+                          ", which leads out of the design's own folder; `output` is a folder in it, and --out of the "
+                          "command line any other");
         return output.string();
     }
 

@@ -62,8 +62,9 @@ Result<std::string> scene_from(const DesignFile& file, const std::string& direct
     const fs::path scene = fs::relative(fs::absolute(file.scene_path), fs::absolute(directory), failure);
     std::string name = failure || scene.empty() ? fs::absolute(file.scene_path).string() : scene.generic_string();
     if (core::base::is_utf8(name)) return name;
-    return Error{ErrorCode::inconsistent, directory,
-                 "from here the scene is " + name + ", which is not UTF-8, so that no design can name it; choose a folder beside the scene"};
+    return Error{
+        ErrorCode::inconsistent, directory,
+        "from here the scene is " + name + ", which is not UTF-8, so that no design can name it; choose a folder beside the scene"};
 }
 
 std::string design_text(const DesignFile& file, const VectorX& values, const std::string& directory) {

@@ -22,8 +22,8 @@ std::string design_text(const DesignFile& file, const VectorX& values, const std
 /// these joints.
 std::string text_with_sides(const DesignFile& file, const std::vector<core::model::JointSide>& sides);
 
-/// Hash of all that an evaluation's numbers depend on: the program's version, the design without optimiser and output, how it was read, every
-/// file that was read for it (the scene, parts, meshes, processes, programs: DesignFile::files), and the meshes that came of them.
+/// Hash of all that an evaluation's numbers depend on: the program's version, the design without optimiser and output, how it was read,
+/// every file that was read for it (the scene, parts, meshes, processes, programs: DesignFile::files), and the meshes that came of them.
 std::string design_hash(const DesignFile& file);
 
 }  // namespace fettle::design::reading

@@ -21,7 +21,7 @@ enum class Programs { refused, allowed };
 struct MadePart {
     core::scene::ShapeSpec spec;
     std::shared_ptr<const description::Shape> shape;
-    core::geometry::Mesh mesh;                ///< as drawn
+    core::geometry::Mesh mesh;                 ///< as drawn
     core::base::ReadRecord::Files files = {};  ///< that it was made of
 };
 

@@ -59,8 +59,8 @@ void add_optimisation(Json& data, const ReportSource& source) {
     data["why_not_optimal"] = member(result, "why_not_optimal");
     const Json starts = member(result, "starts"), optimality = member(result, "optimality");
     if (starts.is_array())
-        data["notices"].push_back("The best of " + std::to_string(starts.size()) + " starts, seed " + core::files::dumped(member(result, "seed")) +
-                                  "; the table of starts has all.");
+        data["notices"].push_back("The best of " + std::to_string(starts.size()) + " starts, seed " +
+                                  core::files::dumped(member(result, "seed")) + "; the table of starts has all.");
     data["optimality"] = optimality.is_object() ? Json{{"worth", member(optimality, "worth")}} : Json();
 }
 

@@ -240,7 +240,8 @@ private:
         const auto near = [](double x, double y, double size) {
             return std::abs(x - y) <= 1e-6 * std::max({std::abs(x), std::abs(y), std::abs(size)});
         };
-        if (!a.usable || !b.usable || (a.violation <= 0) != (b.violation <= 0) || a.constraints.size() != b.constraints.size()) return false;
+        if (!a.usable || !b.usable || (a.violation <= 0) != (b.violation <= 0) || a.constraints.size() != b.constraints.size())
+            return false;
         for (Eigen::Index i = 0; i < a.constraints.size(); ++i)
             if (!near(a.constraints[i], b.constraints[i], design_.constraints[i].bounds.unit)) return false;
         return near(a.objective, b.objective, outcome_.objective_start.value_or(0));
@@ -259,7 +260,8 @@ private:
                          "--resume";
         report.feasible = now.usable && now.violation <= 0;
         report.optimality = {};
-        if (stopped.empty()) report.status = report.feasible ? optimisers::OptimiserStatus::feasible : optimisers::OptimiserStatus::infeasible;
+        if (stopped.empty())
+            report.status = report.feasible ? optimisers::OptimiserStatus::feasible : optimisers::OptimiserStatus::infeasible;
         constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
         report.objective = now.usable ? now.objective : unknown;
         report.violation = now.usable ? now.violation : unknown;

@@ -50,11 +50,12 @@ std::string borrowed_clearance(const Process& process) {
     const ClearanceNeed& need = *process.clearance;
     const std::string gap = "the smallest gap (" + in_millimetres(need.minimum) + " mm)", faces = "what faces may be off by";
     const bool both = !need.minimum_of.empty() && !need.bands_of.empty();
-    return (both                         ? gap + " and " + faces + " are those of " + need.minimum_of
+    return (both                      ? gap + " and " + faces + " are those of " + need.minimum_of
             : need.minimum_of.empty() ? faces + " is that of " + need.bands_of
                                       : gap + " is that of " + need.minimum_of) +
-           ", since no coupon shows " + (both ? "them" : "it") + ": once you know what your parts need, say `minimum_gap` and `part_tolerance` in " +
-           process.name + ".process.json, or --minimum";
+           ", since no coupon shows " + (both ? "them" : "it") +
+           ": once you know what your parts need, say `minimum_gap` and `part_tolerance` in " + process.name +
+           ".process.json, or --minimum";
 }
 
 std::string clearance_table() {

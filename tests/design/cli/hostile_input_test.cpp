@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Files of anybody: whatever stands in them, and whatever they are called, no command of the program breaks, waits for ever, or prints what a
-// terminal or a runner of checks obeys.
+// Files of anybody: whatever stands in them, and whatever they are called, no command of the program breaks, waits for ever, or prints what
+// a terminal or a runner of checks obeys.
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
@@ -52,7 +52,8 @@ const std::vector<std::string>& commands() {
 
 std::string filled(std::string command, const std::string& file, const std::string& out) {
     for (const auto& [word, name] : {std::pair{std::string("FILE"), file}, {std::string("OUT"), out}})
-        for (std::size_t at = 0; (at = command.find(word, at)) != std::string::npos; at += name.size()) command.replace(at, word.size(), name);
+        for (std::size_t at = 0; (at = command.find(word, at)) != std::string::npos; at += name.size())
+            command.replace(at, word.size(), name);
     return command;
 }
 
@@ -81,8 +82,8 @@ TEST_CASE("no command waits for what nobody writes into a pipe") {
         REQUIRE(::mkfifo(folder.file(name).c_str(), 0600) == 0);
         const bool all = std::string(name) == "pipe.json";
         for (const std::string& command : commands()) {
-            if (!all && !command.starts_with("validate") && !command.starts_with("clearance FILE FILE") &&
-                !command.starts_with("import") && !command.starts_with("shapes"))
+            if (!all && !command.starts_with("validate") && !command.starts_with("clearance FILE FILE") && !command.starts_with("import") &&
+                !command.starts_with("shapes"))
                 continue;
             const Answer answer = run(filled(command, folder.file(name), folder.file("out")), true, patient);
             CAPTURE(command, name, answer.out);
@@ -116,9 +117,9 @@ TEST_CASE("bytes that are no UTF-8 break no command, in a file or in its name", 
 }
 
 TEST_CASE("text of files reaches neither a terminal's controls nor the start of a line of a runner's") {
-    const DesignFolder folder(
-        replaced(small_design, R"({ "type": "stroke", "body": "cube", "axis": [0, 0, 1], "lower": 0, "upper": 30 })",
-                 R"({ "type": "stroke", "name": "::error::hello ##[error]x", "body": "cube", "axis": [0, 0, 1], "lower": 0, "upper": 30 })"));
+    const DesignFolder folder(replaced(
+        small_design, R"({ "type": "stroke", "body": "cube", "axis": [0, 0, 1], "lower": 0, "upper": 30 })",
+        R"({ "type": "stroke", "name": "::error::hello ##[error]x", "body": "cube", "axis": [0, 0, 1], "lower": 0, "upper": 30 })"));
     for (const char* command : {"validate FILE", "gradient FILE", "optimise FILE --no-report --out OUT", "check-resolution FILE"}) {
         const Answer answer = run(filled(command, folder.design(), folder.file("out")), true);
         CAPTURE(command, answer.out);

@@ -70,8 +70,8 @@ TEST_CASE("whatever a history says, the status is that of the design as it is no
     CHECK(again->outcome.report.message == first->outcome.report.message);
 
     // More is required now, which nothing has told the history of.
-    const DesignFolder changed(replaced(replaced(small_design, "\"max_evaluations\": 8", "\"max_evaluations\": 3"),
-                                        "\"minimum\": 15", "\"minimum\": 35"));
+    const DesignFolder changed(
+        replaced(replaced(small_design, "\"max_evaluations\": 8", "\"max_evaluations\": 3"), "\"minimum\": 15", "\"minimum\": 35"));
     const Result<FileOutcome> stale = optimise_file(file, problem_of(changed), run, {});
     REQUIRE(stale);
     const OptimiseOutcome& outcome = stale->outcome;
@@ -85,8 +85,8 @@ TEST_CASE("whatever a history says, the status is that of the design as it is no
 }
 
 TEST_CASE("a history is not gone on with once a process was measured anew", "[design]") {
-    const DesignFolder folder(replaced(
-        small_design, R"("optimiser":)", R"("tolerances": {"height": {"feature": "length", "process": "mine"}}, "optimiser":)"));
+    const DesignFolder folder(
+        replaced(small_design, R"("optimiser":)", R"("tolerances": {"height": {"feature": "length", "process": "mine"}}, "optimiser":)"));
     const auto measured = [&](const char* bias) {
         folder.write("mine.process.json", std::string(R"({"fettle_process": 1, "units": "mm", "features": {"length": {"bias": )") + bias +
                                               R"(, "spread": 0.05}}})");
