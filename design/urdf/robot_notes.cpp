@@ -8,7 +8,6 @@
 #include "fettle/core/base/units.hpp"
 #include "fettle/core/files/json_document.hpp"
 #include "fettle/core/scene/angles.hpp"
-#include "fettle/design/urdf/robot_notes_json.hpp"
 
 namespace fettle::design::urdf {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// What a robot description says beside what a scene uses: kept from import to export, under the key `urdf` of a scene's bodies and joints
-/// (writing: robot_notes_json.hpp).
+/// What a robot description says beside what a scene uses: kept from import to export, under the key `urdf` of a scene's bodies and joints.
 ///     {"name": "hand", ..., "urdf": {"colour": [0.5, 0.5, 0.5, 1], "frames": [{"name": "tool", "joint": "mount", "position": [0, 0,
 ///     40]}]}}
 ///     {"name": "slide", ..., "urdf": {"start": 12.5, "effort": 30, "velocity": 0.2}}
 #pragma once
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,5 +40,9 @@ struct RobotNotes {
 
 /// Those of a scene's file. Errors: of the file; what is there and cannot be meant, by its place.
 Result<RobotNotes> read_robot_notes(const std::string& scene_path);
+
+/// As a scene's file has them, lengths in millimetres.
+nlohmann::ordered_json notes_json(const BodyNotes& notes);
+nlohmann::ordered_json notes_json(const JointNotes& notes, bool turns);
 
 }  // namespace fettle::design::urdf
