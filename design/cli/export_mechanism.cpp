@@ -8,6 +8,7 @@
 #include "fettle/core/files/hash.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/setup/build_model.hpp"
+#include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/read_files.hpp"
@@ -97,6 +98,7 @@ int export_scene(const std::string& path, const std::string& to, const CommonOpt
         return console.input_errors({{ErrorCode::unsupported, path, "is not a design; a design is written as a scene"}});
     const auto file = reading::read_design(path, {common.mesh_dirs, programs_of(common)});
     if (!file) return console.input_errors(file.errors());
+    if (const Errors errors = answers::try_output_file(to); !errors.empty()) return console.input_errors(errors);
     const auto text = reading::scene_text(*file, to, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
     if (!text) return console.input_errors(text.errors());
     return leave_files({{to, *text}}, "scene", file->warnings, common, console);

@@ -50,8 +50,7 @@ void replace(Json& scene, const std::string& pointer, const Json& value) {
 
 void apply(const Json& holder, Json& scene) {
     if (!holder.contains("set")) return;
-    for (const auto& [pointer, value] : holder["set"].items())
-        if (!pointer.starts_with("#")) replace(scene, pointer, value);
+    for (const auto& [pointer, value] : holder["set"].items()) replace(scene, pointer, value);
 }
 
 /// "12.5 mm"; plain numbers as they are.

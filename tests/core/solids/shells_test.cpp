@@ -2,6 +2,7 @@
 #include "fettle/core/solids/shells.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/solids/mesh_validity.hpp"
@@ -28,7 +29,7 @@ double volume(const Mesh& mesh) { return geometry::solid_moments(mesh.vertices, 
 
 std::vector<double> volumes_of_solids(const std::vector<Mesh>& shells) {
     std::vector<double> out;
-    for (const Mesh& solid : split_solids(together(shells))) out.push_back(volume(solid));
+    for (const Mesh& solid : split_solids(together(shells))) out.push_back(std::round(volume(solid)));
     return out;
 }
 

@@ -25,7 +25,7 @@ using nlohmann::json;
 TEST_CASE("a design leaves as a scene with its numbers, its formulas and its parts, into another folder") {
     const DesignFolder folder(
         replaced(replaced(small_design, "\"value\": 10, \"lower\": 6", "\"value\": 11.7, \"lower\": 6"), "\"set\": {",
-                 "\"variables\": {\"gap\": \"0.12mm\"}, \"set\": {\"#why\": \"none\", \"/bodies/wall/position\": [41, \"= gap\", 0],"),
+                 "\"variables\": {\"gap\": \"0.12mm\"}, \"set\": {\"/bodies/wall/position\": [41, \"= gap\", 0],"),
         replaced(small_scene, R"("part": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 })",
                  R"("part": "cube.part.json", "dimensions": { "size_x": 20, "size_z": 10 })"));
     folder.write("cube.part.json", R"({"fettle_part": 1, "dimensions": {"size_x": 20, "size_z": 10},
@@ -55,13 +55,13 @@ TEST_CASE("a design leaves as a scene with its numbers, its formulas and its par
 TEST_CASE("of a design with scenarios the first leaves as a scene, with what takes up its play") {
     const DesignFolder folder(replaced(small_design, "\"objective\": [",
                                        R"("scenarios": [{"name": "pressed", "play": "both", "along": [2, 0, 0], "press": 3,
-                                           "set": {"/friction/mu": 0.25}}], "objective": [)"));
+                                           "set": {"/bodies/cube/angular_velocity": [5, 0, 0]}}], "objective": [)"));
     const std::string out = folder.file("out.scene.json");
     const Answer answer = run("export " + folder.design() + " --to " + out, true);
     INFO(answer.out);
     REQUIRE(answer.code == 0);
     CHECK(json::parse(contents(out))["gravity"] == json({3.0, 0.0, -9.81}));
-    CHECK(json::parse(contents(out))["friction"]["mu"] == 0.25);
+    CHECK(json::parse(contents(out))["bodies"][1]["angular_velocity"] == json({5, 0, 0}));
 }
 
 TEST_CASE("what a scene cannot say of a design is refused by its place") {

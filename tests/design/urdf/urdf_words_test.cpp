@@ -133,6 +133,15 @@ struct Outcome {
     std::string scene, file;
 };
 
+/// Its links may overlap.
+core::model::Model model_of(const core::scene::Scene& scene) {
+    core::setup::BuildOptions options;
+    options.check_start = false;
+    const auto model = core::setup::build_model(scene, options);
+    REQUIRE(model);
+    return *model;
+}
+
 Outcome outcome_of(const std::string& text, const TemporaryFolder& folder) {
     const auto told = [](const Errors& errors) { return Outcome{errors.front().message, errors.front().message}; };
     const auto robot = parse_urdf(text, "r.urdf");
@@ -147,13 +156,10 @@ Outcome outcome_of(const std::string& text, const TemporaryFolder& folder) {
     }
     const auto scene = core::scene_files::read_scene(folder.file("r.scene.json"), reading::scene_read_options());
     REQUIRE(scene);
-    core::setup::BuildOptions options;
-    options.check_start = false;
-    const auto model = core::setup::build_model(*scene, options);
-    REQUIRE(model);
+    const core::model::Model model = model_of(*scene);
     const auto notes = read_robot_notes(scene->path);
     REQUIRE(notes);
-    const auto exported = robot_of_scene(*scene, *model, *notes, "r");
+    const auto exported = robot_of_scene(*scene, model, *notes, "r");
     REQUIRE(exported);
     for (const std::string& warning : exported->warnings) out.file += warning + "\n";
     for (const auto& [name, contents] : exported->files) out.file += contents;
@@ -238,7 +244,7 @@ TEST_CASE("URDF: there and back the words have the same values") {
     for (const auto& [name, contents] : scene->files) folder.write(name, contents);
     const auto read = core::scene_files::read_scene(folder.file("r.scene.json"), reading::scene_read_options());
     REQUIRE(read);
-    const auto exported = robot_of_scene(*read, core::setup::build_model(*read).value(), read_robot_notes(read->path).value(), "r");
+    const auto exported = robot_of_scene(*read, model_of(*read), read_robot_notes(read->path).value(), "r");
     REQUIRE(exported);
     CHECK(exported->warnings.empty());
     const auto second = parse_urdf(exported->files.front().second, "r.urdf");
