@@ -81,7 +81,8 @@ TEST_CASE("simulate: in a cup without a lid surfaces are proven apart, and what 
     CHECK(answer.json()["status"] == "ok");
     CHECK(answer.json()["certification"] == "surfaces proven");
     CHECK(answer.json()["minimum_distance"].get<double>() > 0.05);
-    CHECK(answer.json()["message"].get<std::string>().find("of \"cube\" and \"cup\": whether one lies inside the other") != std::string::npos);
+    CHECK(answer.json()["message"].get<std::string>().find("of \"cube\" and \"cup\": whether one lies inside the other") !=
+          std::string::npos);
     CHECK(run("simulate " + scene).says("smallest distance of two surfaces over the path: at least"));
 }
 

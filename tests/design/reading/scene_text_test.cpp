@@ -23,11 +23,10 @@ using nlohmann::json;
 }  // namespace
 
 TEST_CASE("a design leaves as a scene with its numbers, its formulas and its parts, into another folder") {
-    const DesignFolder folder(
-        replaced(replaced(small_design, "\"value\": 10, \"lower\": 6", "\"value\": 11.7, \"lower\": 6"), "\"set\": {",
-                 "\"variables\": {\"gap\": \"0.12mm\"}, \"set\": {\"/bodies/wall/position\": [41, \"= gap\", 0],"),
-        replaced(small_scene, R"("part": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 })",
-                 R"("part": "cube.part.json", "dimensions": { "size_x": 20, "size_z": 10 })"));
+    const DesignFolder folder(replaced(replaced(small_design, "\"value\": 10, \"lower\": 6", "\"value\": 11.7, \"lower\": 6"), "\"set\": {",
+                                       "\"variables\": {\"gap\": \"0.12mm\"}, \"set\": {\"/bodies/wall/position\": [41, \"= gap\", 0],"),
+                              replaced(small_scene, R"("part": "box", "dimensions": { "size_x": 20, "size_y": 12, "size_z": 10 })",
+                                       R"("part": "cube.part.json", "dimensions": { "size_x": 20, "size_z": 10 })"));
     folder.write("cube.part.json", R"({"fettle_part": 1, "dimensions": {"size_x": 20, "size_z": 10},
         "solid": {"extrude": {"rectangle": ["= size_x", 12]}, "from": "= -size_z / 2", "to": "= size_z / 2"}})");
     const std::string out = folder.file("out/tuned.scene.json");
