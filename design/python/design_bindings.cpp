@@ -153,7 +153,7 @@ void bind_design(py::module_& module) {
         py::arg("path"), py::arg("mesh_dirs") = Paths(), py::arg("allow_programs") = false, unlocked,
         "The DesignFile of a *.design.json, with its scene. allow_programs: the programs that it names may be run to make its parts.");
     module.def(
-        "read_design_and_hash",
+        "_read_design_and_hash",
         [](const Path& path, const Paths& dirs, bool allow_programs) {
             reading::DesignFile file = as_drawn(value_or_raise(reading::read_design(path.string(), read_options(dirs, allow_programs))));
             std::string hash = reading::design_hash(file);

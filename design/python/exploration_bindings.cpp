@@ -110,7 +110,7 @@ std::string read_exploration(const Path& path) {
 }  // namespace
 
 void bind_exploration(py::module_& module) {
-    py::class_<ExplorationJob>(module, "ExplorationJob", "One design to evaluate, or one run of the optimiser.")
+    py::class_<ExplorationJob>(module, "_ExplorationJob", "One design to evaluate, or one run of the optimiser.")
         .def(py::init(&job_from), py::arg("kind"), py::arg("point"), py::arg("seed"))
         .def_property_readonly("key", &ExplorationJob::key)
         .def_property_readonly("kind", [](const ExplorationJob& self) { return studies::to_string(self.kind); })
@@ -120,7 +120,7 @@ void bind_exploration(py::module_& module) {
                         [](const py::tuple& state) {
                             return job_from(state[0].cast<std::string>(), state[1].cast<VectorX>(), state[2].cast<std::int64_t>());
                         }));
-    py::class_<ResultsFile>(module, "ExplorationFile", "Results of an exploration, a line each (exploration.py).")
+    py::class_<ResultsFile>(module, "_ExplorationFile", "Results of an exploration, a line each (exploration.py).")
         .def(py::init<const Path&, const DesignProblem&, const std::string&, const std::string&>(), py::arg("path"), py::arg("problem"),
              py::arg("name"), py::arg("design_file"))
         .def(
@@ -131,13 +131,14 @@ void bind_exploration(py::module_& module) {
         .def("append", &ResultsFile::append, py::arg("line"), "Adds a line of result_of. Returns why the file could not take it.")
         .def("has", &ResultsFile::has, py::arg("key"))
         .def("found", &ResultsFile::found, "Header and results, as JSON.");
-    module.def("exploration_jobs", &jobs_of, py::arg("problem"), py::arg("sweep"), py::arg("samples"), py::arg("starts"), py::arg("seed"),
+    module.def("_exploration_jobs", &jobs_of, py::arg("problem"), py::arg("sweep"), py::arg("samples"), py::arg("starts"), py::arg("seed"),
                "What explore() runs. sweep: {parameter: how many values between its bounds, or the values, SI}.");
-    module.def("result_of", &line_of, py::arg("problem"), py::arg("job"), "The result of a job, as a line of the file.");
+    module.def("_result_of", &line_of, py::arg("problem"), py::arg("job"), "The result of a job, as a line of the file.");
     module.def(
-        "lost_result", [](const ExplorationJob& job) { return text_of(studies::lost_result(job, "two workers were lost on this design")); },
+        "_lost_result",
+        [](const ExplorationJob& job) { return text_of(studies::lost_result(job, "two workers were lost on this design")); },
         py::arg("job"), "Of a job whose workers were lost.");
-    module.def("read_exploration", &read_exploration, py::arg("path"), "Header and results of a file of explore(), as JSON.");
+    module.def("_read_exploration", &read_exploration, py::arg("path"), "Header and results of a file of explore(), as JSON.");
 }
 
 }  // namespace fettle::design::python

@@ -223,8 +223,14 @@ Result<SweptParameter> parse_sweep(const std::string& text, const std::vector<de
     }
     const int looked_at = swept.count == 1 ? 1 : 2;  // a single value is the lower end
     for (int i = 0; i < looked_at; ++i) {
-        const Errors errors = description::check_values({parameter}, VectorX::Constant(1, ends[i]));
-        if (!errors.empty()) return refuse(errors.front().code, errors.front().message);
+        if (description::check_values({parameter}, VectorX::Constant(1, ends[i])).empty()) continue;
+        const std::string unit = parameter.unit.name.empty() ? "" : " " + std::string(parameter.unit.name);
+        const double lower = description::from_si(parameter.lower, parameter.unit),
+                     upper = description::from_si(parameter.upper, parameter.unit);
+        return refuse(
+            ErrorCode::out_of_range,
+            formatted("%g%s is far outside the bounds, %g%s to %g%s: farther than they are apart. If it is meant, widen the bounds",
+                      description::from_si(ends[i], parameter.unit), unit.c_str(), lower, unit.c_str(), upper, unit.c_str()));
     }
     swept.values = evenly(ends[0], ends[1], swept.count);
     return swept;

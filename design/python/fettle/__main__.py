@@ -29,7 +29,7 @@ def main() -> int:
         return 3
     with client:
         put({"connected": True})
-        jobs = [_fettle.ExplorationJob(each["kind"], each["point"], each["seed"]) for each in map(json.loads, sys.stdin)]
+        jobs = [_fettle._ExplorationJob(each["kind"], each["point"], each["seed"]) for each in map(json.loads, sys.stdin)]
         for job, line in run_on_dask(client, run_job, ("", pickle.dumps(design)), jobs):
             print(line or json.dumps({"key": job.key}), flush=True)
     return 0

@@ -69,11 +69,11 @@ class _Worker:
         return cls.made[name]
 
 
-def run_job(name: str, design: bytes, job: "_fettle.ExplorationJob") -> str:
+def run_job(name: str, design: bytes, job: "_fettle._ExplorationJob") -> str:
     """One job on one thread of a cluster: its result as a line."""
     limit = _fettle.ThreadLimit(1)
     problem = _Worker.keep(name, lambda: _fettle.DesignProblem(pickle.loads(design)))
-    line = str(_fettle.result_of(problem, job))
+    line = str(_fettle._result_of(problem, job))
     del limit
     return line
 
@@ -172,7 +172,7 @@ def _fail(code: str, where: str, message: str) -> Error:
 
 def read_exploration(path: PathLike) -> Exploration:
     """Reads a file of explore(). A last line that was cut off is left out; another that is damaged is an error."""
-    return _found(json.loads(_fettle.read_exploration(path)))
+    return _found(json.loads(_fettle._read_exploration(path)))
 
 
 def _found(told: Result) -> Exploration:
@@ -224,15 +224,15 @@ def explore(
     name, file = "", ""
     if isinstance(design, (str, os.PathLike)):
         file = os.path.relpath(design, os.path.dirname(out) or ".")  # from the file of results, so that both can be moved together
-        read, name = _fettle.read_design_and_hash(design, allow_programs=allow_programs)
+        read, name = _fettle._read_design_and_hash(design, allow_programs=allow_programs)
         design = read.design
     problem = _fettle.DesignProblem(design)
-    jobs = _fettle.exploration_jobs(problem, _swept_in_si(design, sweep or {}), samples, starts, seed)
+    jobs = _fettle._exploration_jobs(problem, _swept_in_si(design, sweep or {}), samples, starts, seed)
     with contextlib.ExitStack() as stack:
         client = stack.enter_context(_dask_client(dask)) if dask is not None else None
         packed = pickle.dumps(design) if client else b""
         name = name or _design_name(design)
-        results = stack.enter_context(_fettle.ExplorationFile(out, problem, name, file))
+        results = stack.enter_context(_fettle._ExplorationFile(out, problem, name, file))
         if client is None:
             limit = None if workers is None else _fettle.ThreadLimit(workers)
             unwritten = results.explore(problem, jobs, None if progress is None else _told(progress))
@@ -254,7 +254,7 @@ def _explore_on_dask(client: Any, arguments: Tuple[str, bytes], jobs: Sequence[A
     wanted = [job for job in jobs if not results.has(job.key)]
     done = len(jobs) - len(wanted)
     for job, line in run_on_dask(client, run_job, arguments, wanted):
-        line = line or _fettle.lost_result(job)
+        line = line or _fettle._lost_result(job)
         unwritten: List[Fault] = results.append(line)
         if unwritten:
             return unwritten

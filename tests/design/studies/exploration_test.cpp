@@ -86,7 +86,9 @@ TEST_CASE("exploration: every combination, each job once; all that is wrong is t
     request.samples = -1;
     request.starts = most_designs + 1;
     std::vector<std::string> places;
-    for (const Error& error : jobs_of(problem, request).errors()) places.push_back(error.where);
+    const auto refused = jobs_of(problem, request);
+    REQUIRE_FALSE(refused);
+    for (const Error& error : refused.errors()) places.push_back(error.where);
     CHECK(places == std::vector<std::string>{"samples", "starts", "a", "b", "c"});
 }
 
