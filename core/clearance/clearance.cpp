@@ -183,6 +183,7 @@ private:
     PairClearance recorded_far(const PairMotion& motion, const PairRequest& request, const std::optional<PairRecord>& record) const {
         ClearanceOptions options = options_;
         options.enough = request.far + options.tolerance;
+        options.answer_is_enough = false;
         options.sample_nodes = options.margin_curve = false;
         options.witness_tolerance = 0;
         return certify_pair(motion, request, 0, options, record);

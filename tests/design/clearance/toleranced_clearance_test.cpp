@@ -261,7 +261,7 @@ TEST_CASE("What cannot be proven within tolerances is refused by name", "[tolera
     SECTION("parts that are made of other facets at an end") {
         // 20 segments of the ball's arc turn by 150 degrees just: with a thinner neck it would have 21.
         const char* const stud = R"json({"fettle_scene": 1, "units": "mm", "variables": {"neck": "2.5 mm"}, "bodies": [
-            {"name": "stud", "type": "static", "shape": {"part": "ball_stud", "dimensions": {"neck_radius": "= neck"}}},
+            {"name": "stud", "type": "static", "density": 1000, "shape": {"part": "ball_stud", "dimensions": {"neck_radius": "= neck"}}},
             {"name": "box", "type": "static", "position": [30, 0, 0],
              "shape": {"part": "box", "dimensions": {"size_x": 2, "size_y": 2, "size_z": 2}}}]})json";
         const auto design_of = [](const std::string& deviation) {
