@@ -149,8 +149,7 @@ std::optional<Remade> remade(const FilePart& shape, const Values& values) {
         CHECK(alone.has_value() == kept.has_value());
         return std::nullopt;
     }
-    const Matrix3X& x = description::drawn_mesh(**alone)->vertices;
-    const Matrix3X& y = kept->mesh.vertices;
+    const Matrix3X x = description::drawn_mesh(**alone)->vertices, y = kept->mesh.vertices;
     return Remade{same_points(x, y), kept->other_facets};
 }
 
