@@ -54,12 +54,13 @@ DeviatingNumbers::DeviatingNumbers(const Design& design, const std::vector<Toler
         parameters[tolerance.parameter] = parameters[tolerance.parameter] + tape_.input(base[k]);
     }
     const std::vector<std::string> names = description::names_of(design.parameters);
+    const core::scene::Scene described = description::described_scene(design);
     for (const core::scene::BoundNumber& bound : design.numbers) {
-        const core::scene::Place place = core::scene::find_place(scene_, bound.place).value();
+        const core::scene::Place place = core::scene::find_place(described, bound.place).value();
         std::vector<Number> inputs;
         for (const int position : core::expression::positions_of(bound.formula, names)) inputs.push_back(parameters[position]);
         const Number number = core::expression::value_of<Number>(bound.formula, inputs);
-        numbers_[core::scene::pointer_to(scene_, place)] = number;
+        numbers_[core::scene::pointer_to(described, place)] = number;
         if (!number.is_constant()) moved_.push_back({place, number});
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fettle/design/python/own_quantity.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "fettle/design/python/arguments.hpp"
@@ -427,17 +428,19 @@ py::object number_or_formula(const core::expression::Formula& formula) {
     return formula.is_constant() ? py::object(py::float_(core::expression::value_of<double>(formula, {}))) : py::cast(formula);
 }
 
-py::object python_point(const quantities::OwnPoint& point) {
-    if (!point.follows()) return py::cast(point.at);
+py::object python_point(const quantities::OwnPoint& point, bool as_list = false) {
+    if (!point.follows() && !as_list) return py::cast(point.at);
     py::list out;
     for (std::size_t k = 0; k < 3; ++k)
         out.append(point.formulas[k] ? py::cast(*point.formulas[k]) : py::object(py::float_(point.at[static_cast<Eigen::Index>(k)])));
     return std::move(out);
 }
 
+// Where one of them follows from parameters, lists all of them.
 py::list python_points(const std::vector<quantities::OwnPoint>& points) {
+    const bool any_follows = std::any_of(points.begin(), points.end(), [](const auto& point) { return point.follows(); });
     py::list out;
-    for (const quantities::OwnPoint& point : points) out.append(python_point(point));
+    for (const quantities::OwnPoint& point : points) out.append(python_point(point, any_follows));
     return out;
 }
 

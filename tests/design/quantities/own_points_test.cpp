@@ -95,7 +95,8 @@ std::string design_of(const Number& number, bool as_parameter) {
     return R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm", "parameters": [)" + free + R"(],
         "quantities": {"angle": {"type": "joint_position", "joint": "hinge"})" +
            (is_target ? "" : R"(, "q": {)" + quantity + "}") + R"(},
-        "objective": [{"type": "expression", "expression": "far"})" +
+        "objective": [)" +
+           (as_parameter ? R"({"type": "mass", "bodies": ["arm"]})" : R"({"type": "expression", "expression": "far"})") +
            (is_target ? ", {" + quantity + "}" : "") + R"(],
         "constraints": [)" +
            (is_target ? "" : R"({"type": "expression", "expression": "2 * q", "upper": 1e9})") + "]" +
