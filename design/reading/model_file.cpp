@@ -5,13 +5,13 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
 #include "fettle/core/base/stop.hpp"
+#include "fettle/core/files/input_file.hpp"
 #include "fettle/core/files/json_dump.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/files/nearest_word.hpp"
@@ -42,9 +42,11 @@ std::string extension_of(const std::string& path) {
 bool is_foreign(const std::string& path) {
     const std::string extension = extension_of(path);
     if (extension == ".json" || extension.empty()) return false;
-    std::ifstream file(path);
-    char first = 0;
-    return static_cast<bool>(file >> first) && first != '{';
+    Result<core::files::InputFile> file = core::files::InputFile::open(path);
+    if (!file) return false;
+    const std::string_view text = file->next();
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    return first != std::string_view::npos && text[first] != '{';
 }
 
 Errors foreign_error(const std::string& path) {

@@ -37,6 +37,7 @@ TEST_CASE("A library that ends the program ends it with its own words and exit c
     const pid_t child = ::fork();
     if (child == 0) {
         ::dup2(ends[1], STDOUT_FILENO);
+        ::dup2(ends[1], STDERR_FILENO);
         expect_out_of_memory(true);
         std::exit(2);  // as Fortran's does
     }

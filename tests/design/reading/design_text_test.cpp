@@ -80,7 +80,8 @@ TEST_CASE("a design's hash is another when any file says something else that was
     const std::map<std::string, std::string> files{
         {"small.scene.json", ""},
         {"wire.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nl 1 2\nl 2 3\nl 3 4\n"},
-        {"post.part.json", R"({"fettle_part": 1, "solid": {"extrude": {"rectangle": [4, 4]}, "to": 10}})"},
+        {"post.part.json",
+         R"({"fettle_part": 1, "dimensions": {"side": 4}, "solid": {"extrude": {"rectangle": ["= side", "= side"]}, "to": "= side"}})"},
         {"make.sh", R"(printf 'OFF\n4 4 0\n0 0 0\n%s 0 0\n0 10 0\n0 0 10\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n' "$2" > "$1")"},
         {"mine.process.json", R"({"fettle_process": 1, "units": "mm", "features": {"length": {"bias": 0.1, "spread": 0.05}}})"}};
     for (const auto& [name, text] : files)

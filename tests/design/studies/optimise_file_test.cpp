@@ -69,9 +69,9 @@ TEST_CASE("whatever a history says, the status is that of the design as it is no
     CHECK(again->outcome.report.status == first->outcome.report.status);
     CHECK(again->outcome.report.message == first->outcome.report.message);
 
-    // More is required now, which nothing has told the history of.
-    const DesignFolder changed(
-        replaced(replaced(small_design, "\"max_evaluations\": 8", "\"max_evaluations\": 3"), "\"minimum\": 15", "\"minimum\": 35"));
+    // The cube has become heavier than it may be, which nothing has told the history of.
+    const DesignFolder changed(replaced(small_design, "\"max_evaluations\": 8", "\"max_evaluations\": 3"),
+                               replaced(small_scene, "\"size_y\": 12", "\"size_y\": 28"));
     const Result<FileOutcome> stale = optimise_file(file, problem_of(changed), run, {});
     REQUIRE(stale);
     const OptimiseOutcome& outcome = stale->outcome;
