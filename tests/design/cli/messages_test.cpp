@@ -78,7 +78,7 @@ TEST_CASE("messages: why nothing is judged") {
     };
     said("\"group\": 1, " + body + "]}", "all bodies are of one group");
     said(body + R"(], "joints": [{"name": "hinge", "type": "revolute", "a": "a", "b": "b", "point": [10, 0, 0], "axis": [0, 0, 1]}]})",
-         "the bodies of every pair are of one group, or a joint joins them");
+         "a joint joins the bodies of every pair");
 }
 
 TEST_CASE("messages: a format's key that is misspelt, and folders that are not there") {
