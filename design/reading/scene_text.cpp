@@ -9,6 +9,7 @@
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_dump.hpp"
 #include "fettle/core/part_files/part_file.hpp"
 #include "fettle/core/scene/place.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
@@ -122,7 +123,7 @@ Result<std::string> scene_text(const DesignFile& file, const std::string& path, 
         for (const auto& [name, value] : design["variables"].items())
             if (!name.starts_with("#")) scene["variables"][name] = value;
     move_names(scene, fs::path(file.scene_path).parent_path(), fs::path(path).parent_path());
-    std::string out = scene.dump(2) + "\n";
+    std::string out = core::files::dumped(scene, 2) + "\n";
 
     const auto problem = problem::DesignProblem::create(file.design);
     if (!problem) return problem.errors();
