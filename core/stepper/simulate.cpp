@@ -176,7 +176,7 @@ Simulation simulate(const model::Model& model, const SimulationOptions& options)
             break;
         }
         out.report.steps.push_back(result.report);
-        if (options.last_outputs_only) {  // a long motion, which nobody differentiates
+        if (options.last_outputs_only && !options.for_gradient) {  // a long motion, which nobody differentiates
             result.path.friction_rounds = {};
             result.path.contacts = {};
         }

@@ -361,6 +361,7 @@ std::string DesignProblem::simulate(int scenario, const EvaluateOptions& options
     if (scenario == 0) simulation.on_step = options.on_step;
     simulation.should_stop = options.should_stop;
     simulation.outputs = simulation.last_outputs_only = options.balance;
+    simulation.for_gradient = true;  // forces of contact are made of what its steps keep, with derivatives and without
     run.simulation = core::stepper::simulate(*run.model, simulation);
     const core::stepper::SimulationReport& report = run.simulation.report;
     if (report.status == core::stepper::SimulationStatus::ok) return {};
