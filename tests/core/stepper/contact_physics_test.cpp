@@ -46,7 +46,13 @@ TEST_CASE("linear momentum is exact under contact and friction, by every integra
                 core::model::Model model = collision(h);
                 model.integrator = integrator;
                 set_friction(model, mu, 1e-3, 1);
-                const auto flight = run(model, static_cast<int>(std::lround(0.24 / h)), true);
+                core::stepper::SimulationOptions options;
+                options.steps = static_cast<int>(std::lround(0.24 / h));
+                options.outputs = options.for_gradient = true;
+                const auto flight = core::stepper::simulate(model, options);
+                // Newmark's rule throws them apart with more energy than they had, by long steps.
+                REQUIRE((flight.report.status == core::stepper::SimulationStatus::ok ||
+                         (flight.report.status == core::stepper::SimulationStatus::energy_gained && integrator == Integrator::newmark)));
                 REQUIRE(steps_in_contact(flight) > 0);
                 const Vector3 start = start_momentum(model);
                 for (const auto& step : flight.outputs) CHECK((step.linear_momentum - start).norm() < 1e-9 * start.norm());

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What each step has a number of: derivatives in time, windows, and expressions over the steps. What they come to is tested in C++."""
+"""What each instant has a number of: derivatives in time, windows, and expressions over the steps. What they come to is tested in C++."""
 import pickle
 
 import numpy as np
@@ -16,8 +16,8 @@ class Watch(fettle.Quantity):
     """Keeps the times, and where POINT of the part is."""
 
     def value(self, simulated):
-        self.times = simulated.times[1:]
-        self.places = simulated.positions[1:, 1] + simulated.rotations[1:, 1] @ (POINT - simulated.reference_points[1])
+        self.times = simulated.times
+        self.places = simulated.positions[:, 1] + simulated.rotations[:, 1] @ (POINT - simulated.reference_points[1])
         return 1.0
 
     def gradient(self, simulated):
@@ -45,11 +45,11 @@ def test_windows_and_derivatives():
         rms=height("rms"), bend=fettle.MarkerPosition("part", POINT, derivative=2, at=0.03), far=fettle.MarkerPosition("part", POINT, origin=[0, 0, 1]))
     z, h = watch.places[:, 2], 0.005
     assert found["last"] == pytest.approx(z[-1], rel=1e-12)
-    assert found["mean"] == pytest.approx(z[4:10].mean(), rel=1e-12)
-    assert found["middle"] == pytest.approx((z[5] + z[6]) / 2, rel=1e-12)
-    assert found["slope"] == pytest.approx((z[6] - z[4]) / (2 * h), rel=1e-9)
+    assert found["mean"] == pytest.approx(z[5:11].mean(), rel=1e-12)
+    assert found["middle"] == pytest.approx((z[6] + z[7]) / 2, rel=1e-12)
+    assert found["slope"] == pytest.approx((z[7] - z[5]) / (2 * h), rel=1e-9)
     assert found["rms"] == pytest.approx(np.sqrt((z**2).mean()), rel=1e-12)
-    assert found["bend"] == pytest.approx(np.linalg.norm(watch.places[6] - 2 * watch.places[5] + watch.places[4]) / h**2, rel=1e-6)
+    assert found["bend"] == pytest.approx(np.linalg.norm(watch.places[7] - 2 * watch.places[6] + watch.places[5]) / h**2, rel=1e-6)
     assert found["far"] == pytest.approx(np.linalg.norm(watch.places[-1] - Z), rel=1e-12)
     assert passed["mean"] == fettle.MarkerPosition(1, POINT, "mean", Z, from_time=0.025, to_time=0.05)
     assert (passed["bend"].derivative, passed["bend"].at, passed["bend"].to_time) == (2, 0.03, None)

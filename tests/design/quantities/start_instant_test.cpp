@@ -15,7 +15,7 @@ using tests::design_support::check_gradient;
 using tests::design_support::problem_of;
 
 // Crank, rod and slider in line at the start, driven at once; a spring pulls the slider back.
-const char* slider_crank = R"({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.06, "gravity": [0, -9.81, 0],
+const char* slider_crank = R"({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.07, "gravity": [0, -9.81, 0],
     "variables": {"r": "153mm", "l": "306mm"},
     "bodies": [{"name": "crank", "group": "g", "density": 1000, "shape": {"part": "box", "dimensions": {"size_x": 4, "size_y": 4, "size_z": 4}}},
                {"name": "rod", "group": "g", "density": 1000, "shape": {"part": "box"}, "position": ["= r", 0, 0]},
@@ -63,7 +63,7 @@ std::string design_of(const std::vector<std::string>& constraints) {
            list + "]}";
 }
 
-constexpr int steps = 6;
+constexpr int steps = 7;
 
 }  // namespace
 
