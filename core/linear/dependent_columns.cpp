@@ -121,13 +121,14 @@ RankFactor factorise(const Sparse& matrix, double share) {
     return factor_by_eigen(matrix, share);
 }
 
-// Of as many columns: those that leave out what is nearly a sum of others already, where there are.
+// Of as many columns: those that stand farthest apart, by powers of ten, of what the order allows.
 RankFactor factorise_well(const Sparse& matrix, double share) {
-    constexpr double well_apart = 1e-2;
     RankFactor out = factorise(matrix, share);
-    if (out.rank == matrix.cols() || share >= well_apart) return out;
-    RankFactor better = factorise(matrix, well_apart);
-    return better.rank == out.rank ? std::move(better) : std::move(out);
+    for (double apart = 1e-2; apart > share && out.rank < matrix.cols(); apart *= 0.1) {
+        RankFactor better = factorise(matrix, apart);
+        if (better.rank == out.rank) return better;
+    }
+    return out;
 }
 
 }  // namespace

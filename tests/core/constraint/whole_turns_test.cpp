@@ -51,7 +51,7 @@ TEST_CASE("whole turns: those after which geared joints are back", "[turns]") {
 }
 
 TEST_CASE("whole turns: a joint's angle at the start is within half a turn of the start as written, however it was assembled", "[turns]") {
-    for (const double crank : {20.0, 60.0, -75.0})
+    for (const double crank : {60.0, 100.0, -75.0})
         for (int k = 0; k < 72; ++k) {
             const double written = (5 * k - 178) * degree;
             const model::Model model = built(four_bar(crank * degree, written));
