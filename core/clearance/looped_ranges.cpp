@@ -224,7 +224,10 @@ private:
         };
         for (const ClosedLoop& loop : out_.loops)
             for (const int c : loop.unknowns) stand(coordinates[c]);
-        if (is_pinned_) std::for_each(coordinates.begin(), coordinates.end(), stand);
+        if (!is_pinned_) return;
+        std::for_each(coordinates.begin(), coordinates.end(), stand);
+        out_.ranges.narrowed.clear();  // limits of ranges that nothing is asked over
+        out_.ranges.lost.clear();
     }
 
     const model::Model& model_;

@@ -77,10 +77,15 @@ void BalanceSum::add_loss(double lost, const StepOutputs& step) {
 }
 
 double largest_work(const model::Model& model) {
+    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon(), of_places = 1e-14;  // of the scene's size
+    const double speed = of_places * model.diagonal / model.timestep;  // of what is at rest, by rounding
     double sum = 0;
-    for (const model::Body& body : model.bodies)
-        if (energy::has_free_dof(body))
-            sum += (body.moments(3, 3) * model.gravity.norm() + body.force.norm()) * model.diagonal + body.torque.norm();
+    for (const model::Body& body : model.bodies) {
+        if (!energy::has_free_dof(body)) continue;
+        const double mass = body.moments(3, 3);
+        sum += (mass * model.gravity.norm() + body.force.norm()) * model.diagonal + body.torque.norm();
+        sum += mass * speed * speed / rounding;
+    }
     return sum;
 }
 
