@@ -121,10 +121,20 @@ RankFactor factorise(const Sparse& matrix, double share) {
     return factor_by_eigen(matrix, share);
 }
 
-// Of as many columns: those that stand farthest apart, by powers of ten, of what the order allows.
+// Of what is left of each column that is kept, once those before it are taken out, the least.
+double least_left(const RankFactor& factor) {
+    double least = 1;
+    for (int i = 0; i < factor.rank; ++i) least = std::min(least, std::abs(factor.r.coeff(i, i)));
+    return least;
+}
+
+// Where columns that are kept nearly depend on one another: as many that do less so, by powers of ten, if the order allows it.
 RankFactor factorise_well(const Sparse& matrix, double share) {
+    constexpr double nearly = 1e-3;
     RankFactor out = factorise(matrix, share);
-    for (double apart = 1e-2; apart > share && out.rank < matrix.cols(); apart *= 0.1) {
+    const double least = least_left(out);
+    if (out.rank == matrix.cols() || least > nearly) return out;
+    for (double apart = 1e-2; apart > least; apart *= 0.1) {
         RankFactor better = factorise(matrix, apart);
         if (better.rank == out.rank) return better;
     }

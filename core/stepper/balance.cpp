@@ -78,7 +78,7 @@ void BalanceSum::add_loss(double lost, const StepOutputs& step) {
 
 double largest_work(const model::Model& model) {
     constexpr double rounding = 64 * std::numeric_limits<double>::epsilon(), of_places = 1e-14;  // of the scene's size
-    const double speed = of_places * model.diagonal / model.timestep;  // of what is at rest, by rounding
+    const double speed = of_places * model.diagonal / model.timestep;                            // of what is at rest, by rounding
     double sum = 0;
     for (const model::Body& body : model.bodies) {
         if (!energy::has_free_dof(body)) continue;

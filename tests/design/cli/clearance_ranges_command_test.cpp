@@ -187,7 +187,7 @@ TEST_CASE("ranges: a certificate is accepted, and stale when joints, limits or m
 
 TEST_CASE("ranges: limits of what follows a joint are told where they narrow its range, and leave no verdict where they leave none") {
     const auto with_follower = [](const std::string& limits) {
-        const std::string box = R"("shape": {"part": "box", "dimensions": {"size_x": 40, "size_y": 8, "size_z": 4}})";
+        const std::string box = R"("density": 1240, "shape": {"part": "box", "dimensions": {"size_x": 40, "size_y": 8, "size_z": 4}})";
         return R"({"fettle_scene": 1, "units": "mm", "timestep": 0.02, "bodies": [{"name": "one", )" + box +
                R"(}, {"name": "two", "position": [0, 0, 20], )" + box + R"(}], "joints": [
             {"name": "drive", "type": "revolute", "b": "one", "point": [0, 0, 0], "axis": [0, 0, 1], "limits": [0, 30]},
