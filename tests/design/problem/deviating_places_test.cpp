@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "fettle/core/certificate/toleranced.hpp"
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/core/clearance/driven_ranges.hpp"
 #include "fettle/core/clearance/range_clearance.hpp"
@@ -16,8 +17,6 @@
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/problem/toleranced_bodies.hpp"
-#include "fettle/design/quantities/clearance.hpp"
-#include "fettle/design/quantities/marker_position.hpp"
 #include "fettle/design/shapes/file_part.hpp"
 #include "fettle/tests/support/mechanisms.hpp"
 
@@ -42,7 +41,7 @@ namespace {
 const Vector3 along_x = Vector3::UnitX(), along_z = Vector3::UnitZ();
 constexpr double step = 0.05;
 constexpr int steps = 8;
-constexpr double accuracy = 2e-4;  // [m]
+constexpr double accuracy = 2e-3;  // [m]
 constexpr double slack = 1e-9;
 
 core::scene::Curve table(std::vector<double> times, std::vector<double> values, CurveKind kind = CurveKind::linear) {
@@ -208,8 +207,8 @@ enum class Question { assembled, ranges, motion };
 // --- the box
 
 struct Asked {
-    Errors refused;  // or the bounds
-    std::vector<PairClearance> pairs;
+    Errors refused;  // or the bounds, of the pairs that the deviation has influence on
+    std::vector<std::optional<PairClearance>> pairs;
 };
 
 Result<std::optional<LoopedRanges>> ranges_of(Question question, const Model& model) {
@@ -238,7 +237,13 @@ Asked within(const Design& design, const std::vector<Tolerance>& tolerances, con
     if (!ranges) return {ranges.errors(), {}};
     const auto toleranced = toleranced_bodies(problem->design(), tolerances, *model, *ranges);
     if (!toleranced) return {toleranced.errors(), {}};
-    return {{}, core::clearance::certify_toleranced(*model, *toleranced, pairs, options())};
+    Asked out;
+    for (const PairRequest& pair : pairs) {
+        const bool matters = !core::certificate::toleranced_pair(*toleranced, pair.a, pair.b).deviations.empty();
+        out.pairs.push_back(matters ? std::optional(core::clearance::certify_toleranced(*model, *toleranced, {pair}, options()).front())
+                                    : std::nullopt);
+    }
+    return out;
 }
 
 // --- the scene made anew
@@ -263,52 +268,101 @@ std::optional<Model> made_anew(const Design& design, const Place& place, double 
     return std::move(model).value();
 }
 
-double distance_at(Model model, const std::vector<core::kinematics::Pose>& poses, const PairRequest& pair) {
-    for (std::size_t i = 0; i < poses.size(); ++i) model.bodies[i].pose_start = poses[i];
-    ClearanceOptions fine = options();
-    fine.tolerance = 1e-9;
-    return core::clearance::certify_clearance(model, core::clearance::as_assembled(model), {pair}, fine).front().upper;
+// Where the bodies of a model can be, as the question has it.
+struct Positions {
+    Model model;
+    std::vector<std::vector<core::kinematics::Pose>> poses;  // some of them; of a motion at its nodes, of ranges at their corners
+    std::optional<core::clearance::JointRanges> ranges;
+};
+
+std::vector<std::vector<core::kinematics::Pose>> corners_of(const Model& model, const core::clearance::JointRanges& ranges) {
+    const auto& coordinates = ranges.linkage.coordinates;
+    std::vector<std::vector<core::kinematics::Pose>> out;
+    for (unsigned corner = 0; corner < 1U << coordinates.size(); ++corner) {
+        PairClearance at;
+        for (int k = 0; k < count_of(coordinates); ++k) {
+            at.coordinates.push_back(k);
+            at.at.push_back((corner >> k & 1U) != 0 ? coordinates[static_cast<std::size_t>(k)].high
+                                                    : coordinates[static_cast<std::size_t>(k)].low);
+        }
+        auto& poses = out.emplace_back();
+        for (int i = 0; i < count_of(model.bodies); ++i) poses.push_back(core::clearance::pose_at_witness(model, ranges, at, i));
+    }
+    return out;
 }
 
-// Some distance that is met; of the motion the least at its nodes.
-std::optional<double> distance_of(const Model& model, const PairRequest& pair, Question question) {
-    if (question == Question::assembled) return distance_at(model, {}, pair);
-    if (question == Question::ranges) {
-        const auto ranges = core::clearance::joint_ranges(model);
+// Nothing: the scene has no such question.
+std::optional<Positions> positions_of(Model model, Question question) {
+    Positions out{std::move(model), {}, {}};
+    std::vector<core::kinematics::Pose> start;
+    for (const auto& body : out.model.bodies) start.push_back(body.pose_start);
+    if (question == Question::assembled) {
+        out.poses = {start};
+    } else if (question == Question::ranges) {
+        auto ranges = core::clearance::joint_ranges(out.model);
         if (!ranges) return std::nullopt;
-        return core::clearance::certify_ranges(model, *ranges, {pair}, options()).front().upper;
-    }
-    core::stepper::Trajectory trajectory;
-    if (model.mechanism.rows.empty()) {
-        trajectory = core::stepper::follow_scripts(model, steps);
+        out.ranges = *std::move(ranges);
+        out.poses = corners_of(out.model, *out.ranges);
+    } else if (out.model.mechanism.rows.empty()) {
+        out.poses = core::stepper::follow_scripts(out.model, steps).poses;
     } else {
-        auto motion = core::stepper::follow_joints(model, steps, 1);
+        auto motion = core::stepper::follow_joints(out.model, steps, 1);
         if (!motion) return std::nullopt;
-        trajectory = std::move(motion->trajectory);
+        out.poses = std::move(motion->trajectory.poses);
     }
+    return out;
+}
+
+bool is_same(const Positions& a, const Positions& b) {
+    for (std::size_t i = 0; i < a.model.bodies.size(); ++i)
+        if (a.model.bodies[i].mesh.vertices != b.model.bodies[i].mesh.vertices) return false;
+    const auto same_pose = [](const core::kinematics::Pose& x, const core::kinematics::Pose& y) {
+        return x.rotation == y.rotation && x.position == y.position;
+    };
+    if (a.ranges && !(a.ranges->linkage == b.ranges->linkage)) return false;
+    return std::equal(a.poses.begin(), a.poses.end(), b.poses.begin(), b.poses.end(),
+                      [&](const auto& x, const auto& y) { return std::equal(x.begin(), x.end(), y.begin(), y.end(), same_pose); });
+}
+
+double distance_in(const Positions& positions, const PairRequest& pair) {
+    Model model = positions.model;
+    ClearanceOptions fine = options();
+    fine.tolerance = 1e-9;
     double least = HUGE_VAL;
-    for (const auto& poses : trajectory.poses) least = std::min(least, distance_at(model, poses, pair));
+    for (const auto& poses : positions.poses) {
+        for (std::size_t i = 0; i < poses.size(); ++i) model.bodies[i].pose_start = poses[i];
+        least =
+            std::min(least, core::clearance::certify_clearance(model, core::clearance::as_assembled(model), {pair}, fine).front().upper);
+    }
     return least;
 }
 
 double deviation_of(const core::scene::Scene& scene, const Place& place) {
     const Dimension dimension = core::scene::dimension_at(scene, place);
-    if (dimension == Dimension::length) return 4e-3;
+    if (dimension == Dimension::length) return 8e-3;
     if (dimension == Dimension::angle) return 0.05;
     return 0.2 * std::max(0.1, std::abs(core::scene::value_at(scene, place)));
 }
 
-// Of the places that have nothing to do with where bodies are one component is enough.
-bool is_looked_at(const Place& place) {
+// Which places are looked at where not all are: of what decides where bodies are one component of each body and joint, of the rest the
+// first of each row. @param rows  Of this question so far.
+bool is_looked_at(const Place& place, std::set<int>& rows) {
+    const bool is_new = rows.insert(place.row).second;
     switch (core::scene::kind_of(place)) {
-        case PlaceKind::gravity:
-        case PlaceKind::start_velocity:
-        case PlaceKind::body_load:
-        case PlaceKind::spring_point:
-        case PlaceKind::point_load:
+        case PlaceKind::shape_dimension:
+        case PlaceKind::joint_limits:
+        case PlaceKind::spring_limits:
+        case PlaceKind::motor_values:
+        case PlaceKind::motor_rate:
+        case PlaceKind::prescribed_rate:
+            return true;
+        case PlaceKind::position:
+        case PlaceKind::joint_point:
+            return place.entry == (place.item + place.row) % 3;
+        case PlaceKind::rotation:
             return place.entry == place.item % 3;
         default:
-            return true;
+            return is_new;
     }
 }
 
@@ -333,7 +387,7 @@ struct Counts {
     int refused = 0, held = 0, without = 0;
 };
 
-void look_at(const Case& of, const Place& place, Question question, const std::vector<double>& as_designed, Counts& counts) {
+void look_at(const Case& of, const Place& place, Question question, const Positions& designed, Counts& counts) {
     const core::scene::Scene scene = description::described_scene(of.design);
     const std::string pointer = core::scene::pointer_to(scene, place);
     const double deviation = deviation_of(scene, place);
@@ -347,98 +401,68 @@ void look_at(const Case& of, const Place& place, Question question, const std::v
         return;
     }
     for (const double end : {-deviation, deviation}) {
-        const std::optional<Model> model = made_anew(of.design, place, end);
-        for (std::size_t k = 0; model && k < of.pairs.size(); ++k) {
-            const std::optional<double> distance = distance_of(*model, of.pairs[k], question);
-            if (!distance) continue;
-            const PairClearance& pair = box.pairs[k];
-            INFO(of.design.scene.bodies[static_cast<std::size_t>(pair.a)].name
-                 << " and " << of.design.scene.bodies[static_cast<std::size_t>(pair.b)].name << " at " << end << ": " << *distance
-                 << " in [" << pair.lower << ", " << pair.upper << "] " << pair.reason);
-            CHECK(pair.lower <= *distance + slack);
-            CHECK(pair.upper - pair.lower <= 2 * accuracy);
-            if (pair.deviations.empty()) CHECK(std::abs(*distance - as_designed[k]) <= (question == Question::ranges ? accuracy : slack));
-            ++(pair.deviations.empty() ? counts.without : counts.held);
+        std::optional<Model> model = made_anew(of.design, place, end);
+        const std::optional<Positions> anew = model ? positions_of(*std::move(model), question) : std::nullopt;
+        if (!anew) continue;
+        const bool is_as_designed = is_same(*anew, designed);
+        for (std::size_t k = 0; k < of.pairs.size(); ++k) {
+            const std::optional<PairClearance>& pair = box.pairs[k];
+            INFO("pair " << k << " at " << end);
+            ++(pair ? counts.held : counts.without);
+            if (!pair && is_as_designed) continue;
+            const double distance = distance_in(*anew, of.pairs[k]);
+            if (!pair) {
+                CHECK(std::abs(distance - distance_in(designed, of.pairs[k])) <= slack);
+                continue;
+            }
+            INFO(distance << " in [" << pair->lower << ", " << pair->upper << "] " << pair->reason);
+            CHECK(pair->lower <= distance + slack);
+            CHECK(pair->upper - pair->lower <= 2 * accuracy);
         }
     }
 }
 
 }  // namespace
 
-TEST_CASE("Every place that a deviation moves, in every question, against the scene made anew", "[toleranced][places]") {
-    std::set<int> rows;
+namespace {
+
+void look_at_places(bool all) {
+    std::set<int> known;
     std::map<Question, Counts> counts;
     for (const Case& of : cases()) {
         const core::scene::Scene scene = description::described_scene(of.design);
         const Place none = core::scene::find_place(scene, "/gravity/0").value();
         for (const Question question : {Question::assembled, Question::ranges, Question::motion}) {
-            const std::optional<Model> designed = made_anew(of.design, none, 0);
-            REQUIRE(designed);
-            if (!ranges_of(question, *designed)) continue;  // the case has no such question
-            std::vector<double> as_designed;
-            for (const PairRequest& pair : of.pairs) as_designed.push_back(distance_of(*designed, pair, question).value_or(std::nan("")));
+            std::optional<Model> model = made_anew(of.design, none, 0);
+            REQUIRE(model);
+            if (!ranges_of(question, *model)) continue;  // the case has no such question
+            const std::optional<Positions> designed = positions_of(*std::move(model), question);
+            if (!designed) continue;  // a loop over ranges has no oracle here
+            std::set<int> rows;
             for (const Place& place : core::scene::places_of(scene)) {
-                rows.insert(place.row);
+                known.insert(place.row);
                 if (std::isnan(core::scene::value_at(scene, place)) || !core::scene::faults_at(scene, place).empty()) continue;
-                if (is_looked_at(place)) look_at(of, place, question, as_designed, counts[question]);
+                if (is_looked_at(place, rows) || all) look_at(of, place, question, *designed, counts[question]);
             }
         }
     }
     // All rows of the table are among them: a new one wants a case here.
-    CHECK(static_cast<int>(rows.size()) == core::scene::row_count());
+    CHECK(static_cast<int>(known.size()) == core::scene::row_count());
     for (const auto& [question, count] : counts) {
         INFO(static_cast<int>(question) << ": " << count.refused << " " << count.held << " " << count.without);
         CHECK(count.refused > 10);
-        CHECK(count.held > 100);
-        CHECK(count.without > 100);
+        CHECK(count.held > 20);
+        CHECK(count.without > 20);
     }
 }
 
-TEST_CASE("Every place that a deviation moves, in the statistics of tolerances, against the scene made anew", "[toleranced][places]") {
-    int looked_at = 0, moving = 0;
-    for (Case& of : std::vector{machine(true), linkage(CurveKind::linear), script(5, 1.2)}) {
-        of.design.steps = 2;
-        const int post = count_of(of.design.scene.bodies) - 1, body = of.pairs[0].a;
-        of.design.constraints = {
-            {"clearance", {}, std::make_shared<quantities::Clearance>(quantities::ClearanceRange{.a = body, .b = post})},
-            {"place",
-             {},
-             std::make_shared<quantities::MarkerPosition>(quantities::MarkerPosition::Of{body, Vector3(0.1, 0.01, 0)},
-                                                          quantities::Over::end)}};
-        const core::scene::Scene scene = description::described_scene(of.design);
-        const auto values_of = [&](const Design& design, const VectorX& p) -> std::optional<std::array<double, 2>> {
-            const Result<DesignProblem> problem = DesignProblem::create(design);
-            if (!problem) return std::nullopt;
-            const DesignEvaluation at = problem->evaluate(p, {false, {}, {}});
-            if (!at.usable) return std::nullopt;
-            return std::array{at.constraints[0].value, at.constraints[1].value};
-        };
-        const auto designed = values_of(of.design, VectorX());
-        REQUIRE(designed);
-        for (const Place& place : core::scene::places_of(scene)) {
-            if (std::isnan(core::scene::value_at(scene, place)) || !core::scene::faults_at(scene, place).empty() || !is_looked_at(place))
-                continue;
-            const std::string pointer = core::scene::pointer_to(scene, place);
-            const double deviation = deviation_of(scene, place);
-            const Deviating made = deviating(of.design, pointer, deviation, core::scene::dimension_at(scene, place));
-            Design anew = of.design;
-            core::scene::at(anew.scene, place) += deviation;
-            const auto item = static_cast<std::size_t>(place.item);
-            if (core::scene::kind_of(place) == PlaceKind::rotation) settle_rotation(anew.scene.bodies[item]);
-            if (core::scene::kind_of(place) == PlaceKind::shape_dimension) continue;  // a shape of its own dimensions: moved_places_test
-            const auto sample = values_of(made.design,
-                                          description::with_deviations(made.design, made.tolerances, VectorX::Constant(1, deviation))),
-                       wanted = values_of(anew, VectorX());
-            INFO(of.name << ": " << pointer << " + " << deviation);
-            CHECK(sample.has_value() == wanted.has_value());
-            if (!sample || !wanted) continue;
-            for (std::size_t k = 0; k < 2; ++k) CHECK((*sample)[k] == Approx((*wanted)[k]).margin(1e-7));
-            ++looked_at;
-            moving += std::abs((*sample)[1] - (*designed)[1]) > 1e-5 ? 1 : 0;
-        }
-    }
-    CHECK(looked_at > 200);
-    CHECK(moving > 50);
+}  // namespace
+
+TEST_CASE("Each kind of place that a deviation moves, in every question, against the scene made anew", "[toleranced][places]") {
+    look_at_places(false);
+}
+TEST_CASE("Every place that a deviation moves, in every question, against the scene made anew", "[toleranced][places][slow]") {
+    look_at_places(true);
 }
 
 }  // namespace fettle::design::problem::deviating_places_test
