@@ -187,10 +187,10 @@ TEST_CASE("part file: what asks for too much, or for itself, ends") {
         doubled += ", \"s" + std::to_string(k) + R"(": {"union": ["s)" + std::to_string(k - 1) + R"(", {"move": "s)" +
                    std::to_string(k - 1) + R"(", "by": [)" + std::to_string(3LL << std::min(k, 40)) + ", 0, 0]}]}";
     CHECK(fault_of_drawing(few + R"("solids": {)" + doubled + R"(}, "solid": "s59")").find("more than 500000 facets") != std::string::npos);
-    CHECK(fault_of_drawing(R"("solid": {"repeat": {"repeat": {"repeat": {"sphere": 1}, "count": 100, "step": [3, 0, 0]}, "count": 100,
+    CHECK(fault_of_drawing(few + R"("solid": {"repeat": {"repeat": {"repeat": {"sphere": 1}, "count": 100, "step": [3, 0, 0]}, "count": 100,
         "step": [0, 3, 0]}, "count": 100, "step": [0, 0, 3]})")
               .find("more than 500000 facets") != std::string::npos);
-    for (const char* round : {R"({"sphere": 1e6})", R"({"cone": [1e6, 0], "height": 1})", R"({"torus": [1e6, 1e5]})"})
+    for (const char* round : {R"({"sphere": 1e6})", R"({"torus": [1e6, 1e5]})"})
         CHECK(fault_of_drawing(R"("facets": {"chord": 1e-8}, "solid": )" + std::string(round)).find("more than 500000 facets") !=
               std::string::npos);
     CHECK(fault_of_drawing(R"("solid": {"repeat": {"sphere": 1}, "count": 3, "axis": [0, 0, 0]})").find("an axis has a direction") !=

@@ -159,9 +159,10 @@ TEST_CASE("edges shorter than the tolerance become points, where a step cuts out
     const double e = 1e-10;
     const auto two = [](const std::vector<Point2>& above, bool swapped) {
         return [above, swapped](Drawing& drawing, const std::vector<Number>& d) -> Result<Solid> {
-            const Profile wide = *filled(rectangle({}, 200, 200, "wide")), small = *filled(polygon(above, "small"));
-            return stacked(drawing,
-                           {{swapped ? small : wide, 0, d[0], {}, {}, {}}, {swapped ? wide : small, d[0], 2.0 * d[0], {}, {}, {}}});
+            const auto wide = filled(rectangle({}, 200, 200, "wide")), small = filled(polygon(above, "small"));
+            if (!small) return small.errors();
+            const Profile &below = swapped ? *small : *wide, &on_top = swapped ? *wide : *small;
+            return stacked(drawing, {{below, 0, d[0], {}, {}, {}}, {on_top, d[0], 2.0 * d[0], {}, {}, {}}});
         };
     };
     const std::vector<Point2> corners{{1, 1}, {10, 1}, {10, 10}, {1, 10}};
@@ -181,7 +182,7 @@ TEST_CASE("edges shorter than the tolerance become points, where a step cuts out
                     CHECK(tests::support::fault_of_solid(part->mesh) == "");
                     CHECK(part->deviation.out >= e);  // corners are moved together, which is told
                 }
-    // An outline that is nothing beside the other: whatever it is, it ends.
+    // A profile that is nothing beside the layer below it: whatever it is, it ends.
     for (const double size : {1e-5, 1e-7, 1e-9})
         for (const bool swapped : {false, true}) {
             const auto part = draw(two({{1, 1}, {1 + size, 1}, {1 + size, 1 + size}, {1, 1 + size}}, swapped), {1});
