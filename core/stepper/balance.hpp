@@ -21,7 +21,7 @@ struct Balance {
     /// distance, within which contact does not tell energies [J].
     double energy_available = 0;
     double energy_rounding = 0;  ///< of the energies that energy_error is the difference of [J]
-    /// -energy_error without the steps in which a drive starts, stops or jumps (StepOutputs::drive_jumps) and the two after them [J].
+    /// -energy_error without the steps in which a drive starts, stops or jumps (StepOutputs::drive_jumps) and the three after them [J].
     double energy_lost = 0;
     double largest_loss = 0, largest_loss_time = 0;  ///< the step with the largest share of that: how much, and when it ends [J], [s]
     double momentum_error = 0;                       ///< |sum over the steps of StepOutputs::momentum_defect| [kg m/s]
