@@ -26,7 +26,7 @@ std::string wheel_scene(const std::string& frame, const std::string& wheel, cons
         {"name": "block", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 5, "size_y": 5, "size_z": 5}},
          "position": ["= far", 0, 0]}],
         "joints": [{"name": "j", "type": ")" +
-           type + R"(", "a": "frame", "b": "wheel", "point": [0, 0, 0], "axis": [0, 0, 1])" +
+           type + R"(", "a": "frame", "b": "wheel", "point": [0, 0, 0])" + (type == std::string("fixed") ? "" : R"(, "axis": [0, 0, 1])") +
            (type == std::string("revolute") ? R"(, "limits": [-5, 90]}], "motors": [{"name": "m", "joint": "j", "speed": 360}])" : "}]") +
            more + "}";
 }
