@@ -17,7 +17,7 @@
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
 #include "fettle/design/reading/scene_text.hpp"
-#include "fettle/design/urdf/robot_notes.hpp"
+#include "fettle/design/urdf/robot_notes_json.hpp"
 #include "fettle/design/urdf/urdf_writer.hpp"
 
 namespace fettle::design::cli {

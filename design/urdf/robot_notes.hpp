@@ -6,7 +6,6 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,12 +36,5 @@ struct RobotNotes {
     std::map<std::string, BodyNotes> bodies;  ///< by name
     std::map<std::string, JointNotes> joints;
 };
-
-/// Those of a scene's file. Errors: of the file; what is there and cannot be meant, by its place.
-Result<RobotNotes> read_robot_notes(const std::string& scene_path);
-
-/// As a scene's file has them, lengths in millimetres.
-nlohmann::ordered_json notes_json(const BodyNotes& notes);
-nlohmann::ordered_json notes_json(const JointNotes& notes, bool turns);
 
 }  // namespace fettle::design::urdf

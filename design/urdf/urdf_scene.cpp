@@ -15,7 +15,7 @@
 #include "fettle/core/mesh_files/mesh_writer.hpp"
 #include "fettle/core/scene/inertial.hpp"
 #include "fettle/design/urdf/joint_starts.hpp"
-#include "fettle/design/urdf/robot_notes.hpp"
+#include "fettle/design/urdf/robot_notes_json.hpp"
 
 namespace fettle::design::urdf {
 

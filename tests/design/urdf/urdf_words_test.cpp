@@ -11,6 +11,7 @@
 #include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/setup/build_model.hpp"
 #include "fettle/design/reading/scene_shapes.hpp"
+#include "fettle/design/urdf/robot_notes_json.hpp"
 #include "fettle/design/urdf/urdf_parser.hpp"
 #include "fettle/design/urdf/urdf_scene.hpp"
 #include "fettle/design/urdf/urdf_writer.hpp"

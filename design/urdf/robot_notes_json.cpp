@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/urdf/robot_notes.hpp"
+#include "fettle/design/urdf/robot_notes_json.hpp"
 
 #include <algorithm>
 #include <cmath>
