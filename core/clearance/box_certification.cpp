@@ -56,8 +56,7 @@ BoxSearchOptions BoxCertification::search_options(PairClearance& out, int coordi
     out.tolerance = coordinates > 2 && options_.coarse > 0 ? std::max(options_.tolerance, options_.coarse * size) : options_.tolerance;
     BoxSearchOptions search;
     search.tolerance = is_recorded() ? 0.75 * out.tolerance : out.tolerance;
-    // Without a minimum the answer that they stay apart is little; the distance is worth some time.
-    search.stop = {out.minimum, options_.answer_is_enough, second / 2, out.minimum > 0 ? second : 4 * second};
+    search.stop = {out.minimum, options_.answer_is_enough, second / 2, second};
     search.max_bounds = options_.max_bounds;
     search.should_stop = options_.should_stop;
     return search;

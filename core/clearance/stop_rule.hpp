@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// When a search for a least distance has found enough, where what is asked is an answer and not the distance itself: is a minimum kept,
-/// or, without one, do the two stay apart? Then their bounds may be farther apart than the tolerance once the answer is known.
+/// or, without one, about how far are the two apart? Then their bounds may be farther apart than the tolerance once the answer is known.
 /// docs/method/clearance.md#when-a-search-stops.
 #pragma once
 
@@ -22,7 +22,10 @@ struct StopRule {
         if (!answer_is_enough || bounds < quick || !std::isfinite(upper)) return tolerance;
         return std::max(tolerance, minimum > 0 ? std::abs(upper - minimum) / 11 : upper / 1000);
     }
-    bool is_answered(double lower, double upper) const { return minimum > 0 ? lower >= minimum || upper < minimum : lower > 0; }
+    /// Without a minimum: how far they are apart, to a tenth.
+    bool is_answered(double lower, double upper) const {
+        return minimum > 0 ? lower >= minimum || upper < minimum : lower > 0 && lower >= 0.9 * upper;
+    }
     bool ends(double lower, double upper, long bounds) const { return answer_is_enough && bounds >= patient && is_answered(lower, upper); }
 };
 

@@ -21,7 +21,7 @@ using certificate::TolerancedPair;
 using certificate::TolerancedProver;
 using certificate::VariableBox;
 
-constexpr long toleranced_bounds_a_second = 20'000;
+constexpr long looped_bounds_a_second = 20'000;  // where loops are closed, some seconds
 // Of one set of deviations; the parts refer to each other.
 struct MadeSolid {
     MadeSolid(int body, const MadeBodies& made, const geometry::Mesh& drawn)
@@ -91,7 +91,8 @@ private:
             out.reason = "its numbers are so large that rounding hides the distance";
             return;
         }
-        const BoxSearchOptions search = search_options(out, count_of(pair.coordinates), prover.size(), toleranced_bounds_a_second);
+        const long a_second = pair.loops.empty() ? 4 * looped_bounds_a_second : looped_bounds_a_second;
+        const BoxSearchOptions search = search_options(out, count_of(pair.coordinates), prover.size(), a_second);
         const TolerancedSearchResult found = search_toleranced(bodies, search);
         take_bounds(found, out);
         if (found.nearest.element_a >= 0) take_nearest(bodies, found, out);

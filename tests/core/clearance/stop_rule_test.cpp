@@ -88,6 +88,9 @@ TEST_CASE("A tenth of what is above the minimum is the gap that ends a search") 
     CHECK_FALSE(patient.ends(0.05, 1, 1000));
     CHECK_FALSE(StopRule{0.1, false}.ends(0.1, 1, 1000));
     CHECK(StopRule{0.1, true}.gap(1e-6, std::numeric_limits<double>::infinity(), 0) == 1e-6);  // nothing is known yet
+    CHECK_FALSE(StopRule{0, true}.is_answered(0.8, 1));                                        // without a minimum: how far, about
+    CHECK(StopRule{0, true}.is_answered(0.95, 1));
+    CHECK_FALSE(StopRule{0, true}.is_answered(0, 0));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     CHECK_FALSE(patient.is_answered(nan, nan));
 }
