@@ -14,7 +14,6 @@
 namespace fettle::core::linear {
 namespace {
 
-constexpr int most_refinements = 64;      // each halves what is left: more than take a number to its rounding
 constexpr double refined_enough = 1e-15;  // of what rounding is measured by
 
 using Column = Eigen::Ref<const VectorX>;
@@ -174,8 +173,8 @@ LinearSystem::Solution LinearSystem::residual(const BlockHessian& hessian, const
     return out;
 }
 
-LinearSystem::Solution LinearSystem::solve_refined(const BlockHessian& hessian, const RowJacobian& rows, const MatrixX& r,
-                                                   const MatrixX& c) const {
+LinearSystem::Solution LinearSystem::solve_refined(const BlockHessian& hessian, const RowJacobian& rows, const MatrixX& r, const MatrixX& c,
+                                                   int most_passes) const {
     const MatrixX b = stacked(r, c);
     if (b.size() == 0) return {r, c};
     MatrixX x = implementation_->solve(b);
@@ -191,7 +190,7 @@ LinearSystem::Solution LinearSystem::solve_refined(const BlockHessian& hessian, 
         largest.push_back(now.largest());
     }
     if (rows.count() == 0) return {x + implementation_->solve(left), c};
-    for (int pass = 0; pass < most_refinements && !open.empty(); ++pass) {
+    for (int pass = 0; pass < most_passes && !open.empty(); ++pass) {
         MatrixX refined = implementation_->solve(left.leftCols(count_of(open)));
         std::vector<Eigen::Index> still;
         for (std::size_t n = 0; n < open.size(); ++n) {

@@ -41,14 +41,19 @@ public:
         MatrixX multipliers;  ///< per row
     };
 
+    static constexpr int usual_passes = 6;
+    static constexpr int all_passes = 64;  ///< each halves what is left: more than take a number to its rounding
+
     /// Once through the factor, all right-hand sides in one pass: for steps and corrections that are checked by what they come to.
     /// @param c  as many columns as r; without rows nothing
     /// @return NaNs where is_usable() is false: the matrix of what a scene says may be anything
     Solution solve(const MatrixX& r, const MatrixX& c = {}) const;
 
     /// With refinement by the matrix that was factorised: once without rows, which is enough for how stiff contact makes H; with rows,
-    /// which delta is to be taken out of, until what is left is rounding, or falls no more by half.
-    Solution solve_refined(const BlockHessian& hessian, const RowJacobian& rows, const MatrixX& r, const MatrixX& c = {}) const;
+    /// which delta is to be taken out of, until what is left is rounding, or falls no more by half. @param most_passes  with rows: the
+    /// usual ones are enough unless contact is far stiffer than what rows leave free, where each pass gains little.
+    Solution solve_refined(const BlockHessian& hessian, const RowJacobian& rows, const MatrixX& r, const MatrixX& c = {},
+                           int most_passes = usual_passes) const;
 
     /// r - H y - C^T m and c - C y.
     Solution residual(const BlockHessian& hessian, const RowJacobian& rows, const MatrixX& r, const MatrixX& c, const Solution& x) const;

@@ -34,6 +34,7 @@ constexpr int patient_shifts = 8;              // of the exact Hessian, where no
 constexpr double relaxed_motion = 0.25;        // of dhat: pushed bodies that move no more have given way
 constexpr double prescribed_tolerance = 1e-9;  // of the scene's size (docs/method/joints.md#prescribed-coordinates)
 constexpr int stagnant_iterations = 12;        // without a smaller residual, when rounding is all that is left
+constexpr int usual_iterations = 40;           // of a round; one that takes more under joints has its solves refined fully
 constexpr double saddle_growth = 10;           // of the residual over its least: more than rounding makes it waver
 constexpr double telling_shift = 1;            // of the inertia: up to it a step is at least half of the one under inertia alone
 constexpr int most_friction_rounds = 30;      // when they are to converge: normal forces that do not settle must not hold up the simulation
@@ -65,6 +66,7 @@ public:
     }
 
     NewtonResult run() {
+        if (workspace_.rows) workspace_.rows->refine_fully(false);
         if (!take_known_contacts()) find_first_contacts();
         frictional_ = model_.friction.rounds != 0 && model_.friction.mu.maxCoeff() > 0;
         do {
@@ -281,6 +283,12 @@ private:
         return ++since_least_share_ >= tries;
     }
 
+    // Where contact is far stiffer than what is left free under joints, what the usual solves leave out is what keeps the iteration going.
+    void refine_fully() {
+        workspace_.rows->refine_fully(true);
+        refines_fully_ = true;
+    }
+
     // One Newton iteration. @return whether to go on.
     bool iterate() {
         if (options_.should_stop && options_.should_stop())
@@ -298,11 +306,14 @@ private:
                         failure_message(*direction, solved ? too_rough : "not solved within `max_newton_iterations` iterations"));
         if (solved && is_stagnant(*direction)) {
             if (direction->residual <= usable_residual || is_as_near_as_numbers(*direction)) return stop(NewtonStatus::converged);
-            if (direction->residual <= saddle_growth * least_residual_)
+            if (workspace_.rows && !refines_fully_)
+                refine_fully();
+            else if (direction->residual <= saddle_growth * least_residual_)
                 return stop(NewtonStatus::not_converged, failure_message(*direction, too_rough));
-            since_least_ = 0;  // leaving a saddle, whose first gains are below rounding
+            since_least_ = 0;  // by better solves, or leaving a saddle, whose first gains are below rounding
         }
         ++result_.iterations;
+        if (workspace_.rows && !refines_fully_ && result_.iterations >= first_of_round_ + usual_iterations) refine_fully();
         const double fraction = search(*direction);
         // Cut short by the potential, not by CCD: contacts that change from sliding one way to the other, over the valley where they stick.
         if (!problem_.friction.pairs.empty() && fraction < short_step * limiting_.fraction)
@@ -578,6 +589,7 @@ private:
     int projected_iterations_ = 0;
     double least_residual_ = std::numeric_limits<double>::infinity();
     int since_least_ = 0;
+    bool refines_fully_ = false;
     double least_share_ = std::numeric_limits<double>::infinity();  // the same of the largest Direction::unbalanced
     int since_least_share_ = 0;
     NewtonResult result_;

@@ -63,7 +63,7 @@ void RowSystem::solve_for_step(const linear::LinearSystem& system, const kinemat
         for (int k = 0; k < 6; ++k)
             if (dofs.index[i][k] >= 0) step[i][k] = 0;
     const VectorX wanted = remaining_ - (1 - drive) * unmet_ - multiply(jacobian_, step);
-    const linear::LinearSystem::Solution solution = system.solve_refined(hessian, jacobian_, r, wanted);
+    const linear::LinearSystem::Solution solution = system.solve_refined(hessian, jacobian_, r, wanted, passes_);
     multipliers_ = solution.multipliers;
     scatter(dofs, solution.y, step);
 }

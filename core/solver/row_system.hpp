@@ -20,6 +20,9 @@ public:
     void linearise(const energy::StepProblem& problem, const std::vector<kinematics::ChartPoint>& points,
                    const std::vector<kinematics::Pose>& poses, contact::HessianKind kind, kinematics::BlockHessian& hessian);
 
+    /// From now on, or no more: solves by as many passes of refinement as gain anything (linear_system.hpp).
+    void refine_fully(bool fully) { passes_ = fully ? linear::LinearSystem::all_passes : linear::LinearSystem::usual_passes; }
+
     /// C, of what was linearised last.
     const linear::RowJacobian& jacobian() const { return jacobian_; }
 
@@ -55,6 +58,7 @@ private:
     linear::RowJacobian jacobian_;
     VectorX remaining_, unmet_, multipliers_;
     double unmet_norm_ = 0;
+    int passes_ = linear::LinearSystem::usual_passes;
 };
 
 /// Largest |value - target| of the rows, in lengths [m].

@@ -514,8 +514,9 @@ TEST_CASE("report: an exploration's has every design's numbers in the design's u
     CHECK(refused(deep + "\n") == "missing_key");
     CHECK(refused(head + "}\n") == "missing_key");  // no result yet
     CHECK(refused(head + "}\n" + deep + "\n") == "missing_key");
-    folder.write("odd.jsonl", head + ", \"program\": 5}\n" + deep + "\n" +
-                                  R"({"key": "k", "status": "failed", "kind": [], "seed": {}, "reason": {"f64": "AAAA"}, "parameters": {}})" + "\n");
+    folder.write("odd.jsonl",
+                 head + ", \"program\": 5}\n" + deep + "\n" +
+                     R"({"key": "k", "status": "failed", "kind": [], "seed": {}, "reason": {"f64": "AAAA"}, "parameters": {}})" + "\n");
     REQUIRE(run("report " + folder.file("odd.jsonl") + " --out " + folder.file("odd.html")).code == 0);
     const Json odd = data_of(contents(folder.file("odd.html")));
     CHECK(odd["program"].is_string());
