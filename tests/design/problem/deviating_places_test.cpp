@@ -41,7 +41,6 @@ namespace {
 const Vector3 along_x = Vector3::UnitX(), along_z = Vector3::UnitZ();
 constexpr double step = 0.05;
 constexpr int steps = 8;
-constexpr double accuracy = 2e-3;  // [m]
 constexpr double slack = 1e-9;
 
 core::scene::Curve table(std::vector<double> times, std::vector<double> values, CurveKind kind = CurveKind::linear) {
@@ -66,6 +65,7 @@ struct Case {
     std::string name;
     Design design;
     std::vector<PairRequest> pairs;
+    double accuracy = 2e-3;  // [m] of bounds; less where a proof takes long
 };
 
 // A box that is drawn, static.
@@ -109,6 +109,8 @@ Case machine(bool motors) {
                 0.05),
         thread, joint("axle", JointKind::revolute, {"", Vector3(0.1, -0.3, 0), along_z}, {"wheel", Vector3::Zero(), along_z}),
         joint("way", JointKind::prismatic, {"", Vector3(0.2, -0.4, 0), along_x}, {"rack", Vector3::Zero(), along_x})};
+    scene.mechanism.joints[1].forces.stiffness = 40;
+    scene.mechanism.joints[1].forces.preload = 0.5;
     for (const auto& [name, kind, first, second, ratio] :
          {std::tuple("gear", JointKind::gear, "hinge", "axle", -0.5), std::tuple("pinion", JointKind::rack, "axle", "way", 0.1)}) {
         core::scene::Joint coupling = joint(name, kind, {}, {});
@@ -190,7 +192,7 @@ Case linkage(CurveKind kind) {
         joint("C", JointKind::revolute, {"", pivot, along_z}, {"rocker", Vector3(0, 0, -0.06), along_z}),
         joint("B", JointKind::revolute, {"coupler", Vector3(0.3, 0, 0), along_z}, {"rocker", Vector3(0.2, 0, -0.03), along_z})};
     scene.mechanism.motors = {motor("drive", "O", table({0, 0.2, 0.4}, {0.1, 0.5, 0.3}, kind))};
-    Case out{"linkage", {}, {{1, 3}, {2, 3}}};
+    Case out{"linkage", {}, {{1, 3}, {2, 3}}, 2e-2};
     out.design.scene = std::move(scene);
     add_post(out.design, Vector3(0.25, 0.45, 0.06));
     return out;
@@ -220,14 +222,14 @@ Result<std::optional<LoopedRanges>> ranges_of(Question question, const Model& mo
     return Ranges{*std::move(found)};
 }
 
-ClearanceOptions options() {
+ClearanceOptions options(double accuracy) {
     ClearanceOptions out;
     out.tolerance = accuracy;
     out.measure_overlap = out.sample_nodes = false;
     return out;
 }
 
-Asked within(const Design& design, const std::vector<Tolerance>& tolerances, const std::vector<PairRequest>& pairs, Question question) {
+Asked within(const Design& design, const std::vector<Tolerance>& tolerances, const Case& of, Question question) {
     const Result<DesignProblem> problem = DesignProblem::create(design);
     for (const Error& error : problem.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
     REQUIRE(problem);
@@ -238,10 +240,11 @@ Asked within(const Design& design, const std::vector<Tolerance>& tolerances, con
     const auto toleranced = toleranced_bodies(problem->design(), tolerances, *model, *ranges);
     if (!toleranced) return {toleranced.errors(), {}};
     Asked out;
-    for (const PairRequest& pair : pairs) {
+    for (const PairRequest& pair : of.pairs) {
         const bool matters = !core::certificate::toleranced_pair(*toleranced, pair.a, pair.b).deviations.empty();
-        out.pairs.push_back(matters ? std::optional(core::clearance::certify_toleranced(*model, *toleranced, {pair}, options()).front())
-                                    : std::nullopt);
+        out.pairs.push_back(
+            matters ? std::optional(core::clearance::certify_toleranced(*model, *toleranced, {pair}, options(of.accuracy)).front())
+                    : std::nullopt);
     }
     return out;
 }
@@ -280,6 +283,7 @@ std::vector<std::vector<core::kinematics::Pose>> corners_of(const Model& model, 
     std::vector<std::vector<core::kinematics::Pose>> out;
     for (unsigned corner = 0; corner < 1U << coordinates.size(); ++corner) {
         PairClearance at;
+        at.a = at.b = -1;  // every coordinate moves all bodies of its own
         for (int k = 0; k < count_of(coordinates); ++k) {
             at.coordinates.push_back(k);
             at.at.push_back((corner >> k & 1U) != 0 ? coordinates[static_cast<std::size_t>(k)].high
@@ -326,8 +330,7 @@ bool is_same(const Positions& a, const Positions& b) {
 
 double distance_in(const Positions& positions, const PairRequest& pair) {
     Model model = positions.model;
-    ClearanceOptions fine = options();
-    fine.tolerance = 1e-9;
+    const ClearanceOptions fine = options(1e-9);
     double least = HUGE_VAL;
     for (const auto& poses : positions.poses) {
         for (std::size_t i = 0; i < poses.size(); ++i) model.bodies[i].pose_start = poses[i];
@@ -344,25 +347,19 @@ double deviation_of(const core::scene::Scene& scene, const Place& place) {
     return 0.2 * std::max(0.1, std::abs(core::scene::value_at(scene, place)));
 }
 
-// Which places are looked at where not all are: of what decides where bodies are one component of each body and joint, of the rest the
-// first of each row. @param rows  Of this question so far.
-bool is_looked_at(const Place& place, std::set<int>& rows) {
-    const bool is_new = rows.insert(place.row).second;
+// Which places are looked at where not all are: what decides where bodies are, one component of each body and joint.
+bool is_looked_at(const Place& place) {
     switch (core::scene::kind_of(place)) {
-        case PlaceKind::shape_dimension:
-        case PlaceKind::joint_limits:
-        case PlaceKind::spring_limits:
         case PlaceKind::motor_values:
         case PlaceKind::motor_rate:
         case PlaceKind::prescribed_rate:
             return true;
         case PlaceKind::position:
         case PlaceKind::joint_point:
-            return place.entry == (place.item + place.row) % 3;
         case PlaceKind::rotation:
-            return place.entry == place.item % 3;
+            return place.entry == (place.item + place.row) % 3;
         default:
-            return is_new;
+            return false;
     }
 }
 
@@ -393,7 +390,7 @@ void look_at(const Case& of, const Place& place, Question question, const Positi
     const double deviation = deviation_of(scene, place);
     INFO(of.name << ", question " << static_cast<int>(question) << ": " << pointer << " +- " << deviation);
     const Deviating asked = deviating(of.design, pointer, deviation, core::scene::dimension_at(scene, place));
-    const Asked box = within(asked.design, asked.tolerances, of.pairs, question);
+    const Asked box = within(asked.design, asked.tolerances, of, question);
     if (!box.refused.empty()) {
         INFO(box.refused.front().message);
         CHECK(box.refused.front().message.find("`" + pointer + "`") != std::string::npos);
@@ -417,7 +414,7 @@ void look_at(const Case& of, const Place& place, Question question, const Positi
             }
             INFO(distance << " in [" << pair->lower << ", " << pair->upper << "] " << pair->reason);
             CHECK(pair->lower <= distance + slack);
-            CHECK(pair->upper - pair->lower <= 2 * accuracy);
+            CHECK(pair->upper - pair->lower <= 2 * of.accuracy);
         }
     }
 }
@@ -426,44 +423,45 @@ void look_at(const Case& of, const Place& place, Question question, const Positi
 
 namespace {
 
-void look_at_places(bool all) {
+// @param accuracy  of bounds, [m]; nothing: each case its own, and all places
+void look_at_places(const std::optional<double>& accuracy) {
     std::set<int> known;
     std::map<Question, Counts> counts;
-    for (const Case& of : cases()) {
+    for (Case of : cases()) {
+        of.accuracy = accuracy.value_or(of.accuracy);
         const core::scene::Scene scene = description::described_scene(of.design);
         const Place none = core::scene::find_place(scene, "/gravity/0").value();
         for (const Question question : {Question::assembled, Question::motion, Question::ranges}) {
-            if (question == Question::ranges && !all) continue;  // takes minutes
             std::optional<Model> model = made_anew(of.design, none, 0);
             REQUIRE(model);
             if (!ranges_of(question, *model)) continue;  // the case has no such question
             const std::optional<Positions> designed = positions_of(*std::move(model), question);
             if (!designed) continue;  // a loop over ranges has no oracle here
-            std::set<int> rows;
             for (const Place& place : core::scene::places_of(scene)) {
                 known.insert(place.row);
                 if (std::isnan(core::scene::value_at(scene, place)) || !core::scene::faults_at(scene, place).empty()) continue;
-                if (is_looked_at(place, rows) || all) look_at(of, place, question, *designed, counts[question]);
+                if (!accuracy || is_looked_at(place)) look_at(of, place, question, *designed, counts[question]);
             }
         }
     }
-    // All rows of the table are among them: a new one wants a case here.
+    // All rows are among them: a new one wants a case here.
     CHECK(static_cast<int>(known.size()) == core::scene::row_count());
     for (const auto& [question, count] : counts) {
         INFO(static_cast<int>(question) << ": " << count.refused << " " << count.held << " " << count.without);
-        CHECK(count.refused > 10);
         CHECK(count.held > 20);
+        if (accuracy) continue;
+        CHECK(count.refused > 10);
         CHECK(count.without > 20);
     }
 }
 
 }  // namespace
 
-TEST_CASE("Each kind of place that a deviation moves, in every question, against the scene made anew", "[toleranced][places][slow]") {
-    look_at_places(false);
+TEST_CASE("Every place that a deviation moves, in every question, against the scene made anew", "[toleranced][places]") {
+    look_at_places({});
 }
-TEST_CASE("Every place that a deviation moves, in every question, against the scene made anew", "[toleranced][places][slow]") {
-    look_at_places(true);
+TEST_CASE("What moves bodies, in every question, against the scene made anew, by bounds that are near", "[toleranced][places][slow]") {
+    look_at_places(2e-3);
 }
 
 }  // namespace fettle::design::problem::deviating_places_test
