@@ -10,6 +10,7 @@
 
 #include "fettle/core/base/result.hpp"
 #include "fettle/core/certificate/certificate.hpp"
+#include "fettle/core/clearance/true_bounds.hpp"
 #include "fettle/design/clearance/baseline.hpp"
 #include "fettle/design/clearance/joined_pairs.hpp"
 #include "fettle/design/clearance/pairs.hpp"
@@ -38,19 +39,8 @@ struct ReportedPair {
     Change change;          ///< against the baseline
 };
 
-/// Of the parts that the meshes were drawn for, whose round surfaces are round [m].
-struct TrueBounds {
-    double lower = 0, upper = 0;  ///< of the pair's distance; infinity: not measured
-    bool lower_is_proven = false, upper_is_proven = false;
-};
-/// From the bounds of the meshes and how far these are from the parts (geometry::Deviation). Nothing: neither side has such a mesh, or the
-/// meshes have no proven distance.
-std::optional<TrueBounds> true_bounds(const Subject& subject, const ReportedPair& pair);
-/// The same of two bodies of a model. Nothing for bodies that touch or pass through each other, too.
-std::optional<TrueBounds> true_bounds(const core::model::Model& model, const core::clearance::PairClearance& pair);
-/// Of a clash that facets may be the cause of: by how much those of the two parts reach beyond the round surfaces that they stand for,
-/// together [m]. Meshes that are no deeper in each other than that may be of parts that are apart; finer facets tell.
-std::optional<double> clash_of_facets(const core::model::Model& model, const core::clearance::PairClearance& pair);
+/// Of the parts that the meshes were drawn for. Nothing where core::clearance::true_bounds has none, and over tolerances.
+std::optional<core::clearance::TrueBounds> true_bounds(const Subject& subject, const ReportedPair& pair);
 
 struct ClearanceReport {
     std::vector<ReportedPair> pairs;                       ///< worst first

@@ -162,7 +162,7 @@ Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vect
         add_witness(json, pair, subject, names);
     }
     add_overlap(json, least);
-    if (const auto reach = clash_of_facets(subject.model, least)) json["facets_beyond_round"] = *reach;
+    if (const auto reach = core::clearance::clash_of_facets(subject.model, least)) json["facets_beyond_round"] = *reach;
     if (!pair.joined_by.empty()) json["joined_by"] = pair.joined_by;
     if (const auto parts = true_bounds(subject, pair))
         json["true_surfaces"] = {{"lower", parts->lower},

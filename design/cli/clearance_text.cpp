@@ -119,7 +119,7 @@ std::string overlapped(const ReportedPair& pair, const Lengths& lengths) {
 
 // Of a clash that round parts need not have.
 std::string by_facets(const ReportedPair& pair, const Subject& subject, const Lengths& lengths) {
-    const auto reach = pair.finding == Finding::clash ? clearance::clash_of_facets(subject.model, pair.least) : std::nullopt;
+    const auto reach = pair.finding == Finding::clash ? core::clearance::clash_of_facets(subject.model, pair.least) : std::nullopt;
     if (!reach) return {};
     return "facets reach up to " + lengths.rough(*reach) + " " + lengths.unit() +
            " beyond the round surfaces that they stand for: whether the round parts share material, finer facets tell (\"facets\")";

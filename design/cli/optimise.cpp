@@ -32,7 +32,7 @@ struct OptimiseArguments {
     std::string path, optimiser, out;
     int starts = 0;  // 0: one run
     std::optional<int> seed;
-    bool resume = false, repair = false, no_report = false;
+    bool resume = false, repair = false, no_report = false, details = false;
 };
 
 std::string output_folder(const OptimiseArguments& options, const reading::DesignFile& file) {
@@ -77,6 +77,10 @@ void add_interruption(Json& json, const std::vector<StartResult>& rows, const st
 
 int run_sided(const Run& run, const std::vector<StartResult>& rows, Starts starts);
 
+std::string report_of(const Json& answer) {
+    return answer.contains("report") && answer["report"].is_string() ? answer["report"].get<std::string>() : "";
+}
+
 // One run, on the sides of its seed.
 int run_one(const Run& run, const std::vector<StartResult>& rows, Starts starts) {
     const Result<studies::FileOfSeed> begun = studies::file_of_seed(run.file, run.problem, run.facts.seed);
@@ -117,15 +121,19 @@ int run_sided(const Run& run, const std::vector<StartResult>& rows, Starts start
     for (const std::string& warning : outcome.at_start.warnings)  // which the search has narrated
         console.found({run.options.path, CheckOutcome::remarked, "warning", warning, run.options.path});
     tell_warnings(console, answers::motion_warnings(run.problem.design(), outcome.final), run.options.path);
-    std::string told = outcome_text(run.problem.design(), outcome, console, run.facts);
-    if (outcome.report.best.usable && done->unwritten.empty()) told += written_text(run.facts);
+    const bool is_kept = outcome.report.best.usable && done->unwritten.empty();
+    std::string told = answer_text(answers::summary_of(run.problem.design(), outcome, run.facts), console);
+    if (run.options.details) told += "\n" + outcome_text(run.problem.design(), outcome, console, run.facts);
+    if (run.options.details && is_kept) told += written_text(run.facts);
     if (!rows.empty()) {
         const std::string of = was_stopped ? "the best so far, of seed " : "best of " + std::to_string(rows.size()) + " starts, seed ";
         told = of + std::to_string(run.facts.seed) + ":\n" + told + "all starts:\n" + starts_text(rows);
     }
     if (was_stopped) told = console.coloured("interrupted", false) + ": not all starts have been run\n" + told;
+    std::string page;
     if (!run.options.no_report && done->unwritten.empty())
-        leave_report(folder.directory, run.common, console, json, told, report::at_hand(run.file, run.problem, outcome));
+        leave_report(folder.directory, run.common, console, json, page, report::at_hand(run.file, run.problem, outcome));
+    told += is_kept ? next_text(report_of(json), folder.directory) : page;
     if (was_stopped || outcome.report.status == OptimiserStatus::interrupted)
         told += "go on where it stopped: " + resume_command(run.options, folder.directory) + "\n";
     for (Check& check : outcome_checks(run.problem.design(), outcome, run.options.path)) console.found(std::move(check));
@@ -218,6 +226,8 @@ Command add_optimise(CommandLine& program, const CommonOptions& common) {
                "With --starts: seed of the random starts (default 1); else: begin at the random start of this seed")
         .between(0, most_lists * 1000.0);
     app.flag("--repair", options->repair, "Find the smallest change that meets every requirement, instead of the best design");
+    app.flag("--details", options->details,
+             "Tell all: what held each parameter, what the requirements cost, how far proofs hold for what is round");
     app.flag("--no-report", options->no_report, "No report.html");
     app.flag("--resume", options->resume, "Replay the folder's history, and go on where a killed run stopped");
     app.closing_words("Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out --json");

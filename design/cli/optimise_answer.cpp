@@ -6,10 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/base/text.hpp"
-#include "fettle/design/clearance/report.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/quantities/clearance.hpp"
 
 namespace fettle::design::cli {
 
@@ -48,15 +46,12 @@ std::string play_advice(const OptimiseOutcome& outcome) {
 
 // Clearances that the meshes have and the round surfaces, for which facets stand, are not proven to have.
 std::string round_surfaces_text(const Design& design, const problem::DesignEvaluation& final) {
-    if (final.runs.empty() || !final.runs.front().model) return {};
     std::string text;
     for (size_t i = 0; i < final.constraints.size(); ++i) {
         const auto& [name, bounds, quantity] = design.constraints[i];
         const description::Measurement& measured = final.constraints[i];
-        const bool is_clearance = dynamic_cast<const quantities::Clearance*>(quantity.get()) != nullptr;
-        if (!is_clearance || !measured.clearance || bounds.over_tolerances || description::violation(bounds, measured) > 0) continue;
-        const auto round = clearance::true_bounds(*final.runs.front().model, *measured.clearance);
-        if (!round || (round->lower >= bounds.lower && round->lower_is_proven)) continue;
+        const auto round = answers::less_when_round(design.constraints[i], measured, final);
+        if (!round) continue;
         const std::string unit = description::unit_name(design.constraints[i]);
         const auto at_least = [&, per = bounds.unit](double lower) {
             return description::bound_text(lower, description::Towards::down, per, unit);
@@ -148,6 +143,41 @@ std::string changes_text(const Design& design, const optimisers::OptimiserReport
 
 }  // namespace
 
+std::string answer_text(const answers::Summary& summary, const Console& console) {
+    using Row = answers::SummaryRow;
+    constexpr std::size_t most_rows = 10, widest = 48;
+    std::string text = console.coloured(summary.sentence, summary.is_good) + "\n";
+    if (!summary.why.empty()) text += summary.why + "\n";
+    const std::vector<Row> rows = answers::chosen_rows(summary.rows, most_rows);
+    if (rows.empty()) return text;
+    std::size_t name = 0, before = 6, now = 3, asked = 9;
+    for (const Row& row : rows) {
+        name = std::max(name, std::min(widest, row.name.size()));
+        before = std::max(before, row.before.size());
+        now = std::max(now, row.now.size());
+        asked = std::max(asked, (row.asked + ", " + row.unit).size());
+    }
+    const auto line = [&](const std::string& what, const std::string& b, const std::string& n, const std::string& a, const std::string& v) {
+        std::string out = formatted("  %-*s  %*s  %*s  %-*s  ", static_cast<int>(name), what.c_str(), static_cast<int>(before), b.c_str(),
+                                    static_cast<int>(now), n.c_str(), static_cast<int>(asked), a.c_str()) +
+                          v;
+        out.erase(out.find_last_not_of(' ') + 1);
+        return out + "\n";
+    };
+    text += line("", "before", "now", "asked for", "");
+    for (const Row& row : rows) {
+        const bool wanted = row.verdict == Row::Verdict::wanted;
+        const std::string asked_for = wanted && !row.unit.empty() ? row.asked + ", " + row.unit : row.asked;
+        std::string verdict = wanted ? "" : answers::words(row.known);
+        if (row.verdict == Row::Verdict::violated) verdict += ", " + console.coloured("NOT MET", false);
+        if (row.verdict == Row::Verdict::in_doubt) verdict += ", " + console.coloured("in doubt", false);
+        text += line(row.name, row.before.empty() ? "-" : row.before, row.now, asked_for, verdict);
+    }
+    if (const std::size_t more = summary.rows.size() - rows.size(); more > 0)
+        text += "  and " + std::to_string(more) + " more, none of them violated or in doubt (--details)\n";
+    return text;
+}
+
 std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, const Console& console, const answers::RunFacts& run) {
     const optimisers::OptimiserReport& report = outcome.report;
     const bool good = report.status == OptimiserStatus::optimal;
@@ -200,6 +230,11 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
 
 std::string written_text(const answers::RunFacts& run) {
     return "written to " + run.out + ": design.final.json, trajectory.json, motion.glb, history.jsonl, result.json\n";
+}
+
+std::string next_text(const std::string& report, const std::string& folder) {
+    const std::string look = report.empty() ? folder : report;
+    return "Look: " + look + "   Print: fettle export " + folder + " --to print.3mf --arrange plate\n";
 }
 
 std::vector<Check> outcome_checks(const Design& design, const OptimiseOutcome& outcome, const std::string& file) {

@@ -6,15 +6,21 @@
 #include <vector>
 
 #include "fettle/design/answers/optimise_json.hpp"
+#include "fettle/design/answers/summary.hpp"
 #include "fettle/design/cli/console.hpp"
 #include "fettle/design/cli/finding_files.hpp"
 
 namespace fettle::design::cli {
 
+/// What one reads first: a sentence and a table of at most ten lines.
+std::string answer_text(const answers::Summary& summary, const Console& console);
+/// All of it, for --details.
 std::string outcome_text(const description::Design& design, const studies::OptimiseOutcome& outcome, const Console& console,
                          const answers::RunFacts& run);
 /// Which files there are.
 std::string written_text(const answers::RunFacts& run);
+/// Where to look, and what to type to print it. @param report  the page's file; empty: there is none
+std::string next_text(const std::string& report, const std::string& folder);
 /// Each requirement as a check, and that the design is the best near by.
 std::vector<Check> outcome_checks(const description::Design& design, const studies::OptimiseOutcome& outcome, const std::string& file);
 

@@ -52,6 +52,7 @@ void add_head(Json& data, const ReportSource& source) {
 void add_optimisation(Json& data, const ReportSource& source) {
     const Json& result = source.result;
     data["objective"] = {{"start", member(result, "objective_start")}, {"end", member(result, "objective")}};
+    data["summary"] = member(result, "summary");
     data["evaluations"] = member(result, "evaluations");
     data["failed"] = member(result, "failed_evaluations");
     data["violation"] = member(result, "constraint_violation");

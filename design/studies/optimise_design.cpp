@@ -85,8 +85,14 @@ public:
             if (options_.replay_only && !has_ended_) throw optimisers::Interrupted();
             ++computed_;
             const bool values = wanted == Recorded::values;
-            return history_entry(design_, p, model.evaluate(p, values ? problem::without_gradients(with_derivatives_) : with_derivatives_));
+            HistoryEntry entry =
+                history_entry(design_, p, model.evaluate(p, values ? problem::without_gradients(with_derivatives_) : with_derivatives_));
+            if (&model == &problem_) note_start(entry);
+            return entry;
         };
+        if (options.history != nullptr)
+            for (const HistoryEntry& entry : options.history->replayed())
+                if (entry.model.empty()) replayed_.push_back(&entry);
     }
 
     OptimiseOutcome run(const optimisers::Optimiser& optimiser) {
@@ -113,6 +119,7 @@ private:
     optimisers::Problem begun() {
         optimisers::Problem seen = problem::optimiser_problem(problem_, with_derivatives_);
         seen.start = outcome_.start = start_of_seed(problem_, options_.seed);
+        for (const HistoryEntry* entry : std::exchange(replayed_, {})) note_start(*entry);
         for (const core::scene::Joint& joint : description::design_of_scenario(design_, 0).scene.mechanism.joints)
             if (joint.assemble) outcome_.sides.push_back({joint.name, *joint.assemble});
         seen.values = answered(problem_, {}, compute_, options_.history, Recorded::values);
@@ -123,6 +130,15 @@ private:
             return e;
         };
         return seen;
+    }
+
+    void note_start(const HistoryEntry& entry) {
+        MeasuredAtStart& at = outcome_.measured_at_start;
+        const optimisers::Evaluation& e = entry.evaluation;
+        if (!e.usable || entry.point != outcome_.start || !at.constraints.empty() || !at.terms.empty()) return;
+        const VectorX& measured = e.measured.size() > 0 ? e.measured : e.constraints;
+        at.constraints.assign(measured.begin(), measured.end());
+        for (const auto& [name, value] : entry.terms) at.terms.push_back(value);
     }
 
     void look_at_start(const optimisers::Evaluation& e) {
@@ -275,6 +291,7 @@ private:
     Compute compute_;
     std::vector<problem::SmootherDesign> smoother_;
     std::vector<FailedTrial> failures_;
+    std::vector<const HistoryEntry*> replayed_;  // of the design's own model, until the start is known
     int computed_ = 0, refused_ = 0;
     bool has_begun_ = false, has_ended_ = false;
     OptimiseOutcome outcome_;

@@ -32,11 +32,17 @@ struct OptimiseOptions {
     bool replay_only = false;
 };
 
+/// What was asked for, as the design as it was before measures it, SI; empty if it could not be evaluated.
+struct MeasuredAtStart {
+    std::vector<double> constraints, terms;  ///< in the design's order
+};
+
 struct OptimiseOutcome {
     optimisers::OptimiserReport report;
     VectorX start;  ///< where it began
     /// On which sides joints say that closed linkages are assembled: the same at the start and at the end.
     std::vector<core::model::JointSide> sides;
+    MeasuredAtStart measured_at_start;
     std::optional<double> objective_start;  ///< the design's own objective there, if it could be evaluated
     /// What the derivatives of the first design say that could be evaluated: narrated before the search goes on from it.
     gradient_audit::GradientWarnings at_start;

@@ -4,6 +4,8 @@ import * as THREE from "three";
 
 import { indexAt } from "./data.js";
 
+const mostHidingTriangles = 60000, cornersOfPart = 24;
+
 const a = new THREE.Quaternion(), b = new THREE.Quaternion();
 
 export class Mechanism {
@@ -43,6 +45,27 @@ export class Mechanism {
       // Thin stacks come apart along the stack as well as flat ones do along their plane.
       part.away.set((own.x * least) / Math.max(size.x, 0.3 * least), (own.y * least) / Math.max(size.y, 0.3 * least), (own.z * least) / Math.max(size.z, 0.3 * least));
     });
+  }
+
+  // What share of the parts that move is hidden by those that do not, seen from far off in this direction; by some of their corners.
+  hiddenShare(direction) {
+    const moves = (part) => part.poses.length > 7, solids = this.parts.filter((part) => part.meshes[0]?.isMesh);
+    const still = solids.filter((part) => !moves(part)).map((part) => part.meshes[0]);
+    const size = (mesh) => (mesh.geometry.index ?? mesh.geometry.attributes.position).count / 3;
+    if (!still.length || still.reduce((sum, mesh) => sum + size(mesh), 0) > mostHidingTriangles) return 0;
+    this.root.updateMatrixWorld(true);
+    const ray = new THREE.Raycaster(), corner = new THREE.Vector3(), reach = this.box.getSize(new THREE.Vector3()).length();
+    let hidden = 0, all = 0;
+    for (const part of solids.filter(moves)) {
+      const corners = part.meshes[0].geometry.attributes.position, every = Math.max(1, Math.floor(corners.count / cornersOfPart));
+      for (let k = 0; k < corners.count; k += every) {
+        corner.fromBufferAttribute(corners, k).applyMatrix4(part.group.matrixWorld);
+        ray.set(corner.addScaledVector(direction, 1e-4 * reach), direction);
+        hidden += ray.intersectObjects(still, false).length > 0;
+        all += 1;
+      }
+    }
+    return all ? hidden / all : 0;
   }
 
   // `held`: poses to be at instead, of each part the seven numbers of a pose.

@@ -37,6 +37,7 @@ class Motion {
     this.fillScenarios();
     this.fillParts();
     this.fillSection();
+    this.openWhatHides();
     this.listen();
     byId("overlap-key").hidden = !data.pairs.some(isShared);
     byId("canvas").setAttribute("aria-label", `${data.name}: ${data.views[0].bodies.map((body) => body.name).slice(0, 12).join(", ")}`);
@@ -236,6 +237,14 @@ class Motion {
       this.viewer.exploded = Number(event.target.value);
       this.viewer.draw();
     });
+  }
+
+  // Where parts that stand still hide what moves, the page opens on a section.
+  openWhatHides() {
+    const mostHidden = 0.4;
+    if (!this.moves() || !(this.viewer.firstHiddenShare() > mostHidden)) return;
+    byId("section").checked = true;
+    this.applySection();
   }
 
   // Across the flattest extent, so that the longest are seen in section.

@@ -70,6 +70,11 @@ export class Viewer {
     this.box = new THREE.Box3().setFromPoints(this.points);
   }
 
+  // What share of what moves is hidden as the page opens.
+  firstHiddenShare() {
+    return this.mechanisms.values().next().value.hiddenShare(this.homeDirection());
+  }
+
   // Another mechanism alone, with the camera where it is.
   showOnly(name) {
     this.mode = name;

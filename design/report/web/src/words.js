@@ -58,9 +58,6 @@ function byWhat(data) {
 
 const unmet = (data) => data.requirements.filter((r) => !r.met).map((r) => r.name);
 
-// A gain beside the whole objective.
-const share = (gain, data) => (data.objective.end ? `${number((100 * gain) / Math.abs(data.objective.end), 2)}\u00a0% of it` : number(gain, 2));
-
 // Requirements that are met as simulated, and not with the play of the fits taken up: in which way, and what to do.
 function doubts(data) {
   const doubted = data.requirements.filter((r) => r.in_doubt);
@@ -75,30 +72,19 @@ function optimised(data) {
   return { tone: told.tone === "good" ? "open" : told.tone, head: told.head.replace(/\.$/, ", in doubt."), rest: told.rest + doubt };
 }
 
+// What the terminal says (design/answers/summary.hpp); of an answer that an earlier program left, its status.
 function verdict(data) {
-  const shared = data.pairs.filter(isShared);
-  const bad = unmet(data), o = data.optimality, count = data.requirements.length;
-  const all = count === 1 ? "The requirement is met" : count === 2 ? "Both requirements are met" : `All ${count} requirements are met`;
-  const why = data.why_not_optimal ? ` ${sentence(data.why_not_optimal)}` : "";
-  const proven = count ? `${all}, ${byWhat(data)}.` : "There are no requirements.";
-  if (data.repair && ["optimal", "feasible"].includes(data.status)) {
-    const far = `The change of the file's values is ${number(data.repair.distance, 3)} of the ranges between their bounds`;
-    return data.status === "optimal"
-      ? { tone: "good", head: "Repaired.", rest: `${proven} ${far}; no smaller one is in sight.` }
-      : { tone: "open", head: "Repaired, not shown to be by the smallest change.", rest: `${proven} ${far}.${why}` };
-  }
-  switch (data.status) {
-    case "optimal":
-      return { tone: "good", head: "Optimal.", rest: `${proven} No change near by promises to lower the objective by more than ${share(o.worth, data)}.` };
-    case "feasible":
-      return { tone: "open", head: "Feasible, not shown to be optimal.", rest: `${proven}${why}` };
-    case "infeasible":
-      return { tone: "bad", head: shared.length ? `Infeasible, with ${plural(shared.length, "interference")}.` : "Infeasible.", rest: `Not met: ${some(bad)}.` };
-    case "interrupted":
-      return { tone: "open", head: "Interrupted.", rest: `This is the best design so far${bad.length ? `; not met: ${some(bad)}` : ""}. Nothing is said of optimality.` };
-    default:
-      return { tone: "bad", head: "Not begun.", rest: "Neither the start nor a design near it could be evaluated." };
-  }
+  const tone = { optimal: "good", infeasible: "bad", feasible: "open", interrupted: "open" }[data.status] ?? "bad";
+  const { sentence: head, why } = data.summary ?? { sentence: sentence(data.status), why: data.why_not_optimal };
+  const shared = data.pairs.filter(isShared).length, bad = unmet(data);
+  const rest = [
+    data.requirements.length && !bad.length ? `Judged ${byWhat(data)}.` : "",
+    bad.length ? `Not met: ${some(bad)}.` : "",
+    shared ? `${sentence(plural(shared, "interference"))}` : "",
+    data.repair ? `The change of the file's values is ${number(data.repair.distance, 3)} of the ranges between their bounds.` : "",
+    why ? sentence(why) : "",
+  ];
+  return { tone, head, rest: rest.filter(Boolean).join(" ") };
 }
 
 function simulated(data) {
