@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A certificate of clearance as data, so that someone else can check it: certificate_checker.hpp does, with nothing in common with the
-/// search that made it. It claims, for each pair of bodies and over all that it is asked for,
+/// A certificate of clearance as data, so that someone else can check it: certificate_checker.hpp does, without the search that made it
+/// (what the two share is said there). It claims, for each pair of bodies and over all that it is asked for,
 ///   lower <= min dist(A, B) <= upper   of their surfaces, and what is known of their solids: `Solids`,
 /// about the meshes and the path of a trajectory (records/trajectory_io.hpp), both of which must be at hand to check it: hashes name them.
 /// Pairs that it does not list it says nothing of: uncovered_pairs.

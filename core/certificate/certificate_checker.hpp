@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// Checks a certificate of clearance (certificate.hpp) against meshes and path. Shares no bounding code with the search that makes
-/// certificates: all arithmetic is on intervals rounded outwards (geometry/interval.hpp), boxes are computed from the vertices, and the
-/// bound of a leaf is another one.
+/// Checks a certificate of clearance (certificate.hpp) against meshes and path. Calls nothing of the search that makes
+/// certificates: all arithmetic is on intervals rounded outwards (geometry/interval.hpp), boxes are computed from the vertices. Over a path
+/// and over ranges of joints the bound of a leaf is another one than the search's. Over tolerances (toleranced_prover.hpp) and of joints
+/// (joint_prover.hpp) the search calls these provers to find its bounds: there a check is one of the record, and an error of a prover would
+/// stand in both.
 ///
 /// What is checked, so that acceptance is a proof (trusting the processor's rounding, the C library's sine to 2 ulps, and this code):
 /// - meshes and path are those that the certificate names, by their hashes (else it is stale); the elements listed for a body include every

@@ -141,7 +141,7 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
                "Write the margin curves: certified bounds for each pair and stretch of the path (with --ranges: a row for each pair, with "
                "the joints' positions where it is worst)");
     app.option("--certificate", options.certificate,
-               "Write the proof as data, and beside it the trajectory that it is about; fettle validate checks it independently");
+               "Write the proof as data, and beside it the trajectory that it is about; fettle validate checks it without the search");
     app.option("--out", options.out, "Folder for result.json (the answer), trajectory.json (meshes and path) and report.html");
     app.flag("--no-report", options.no_report, "With --out: no report.html");
     app.option("--baseline", options.baseline, "Compare with an earlier report (--json): which findings are new, existing, resolved");

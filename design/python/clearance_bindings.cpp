@@ -323,7 +323,7 @@ void bind_clearance(py::module_& module) {
                 return core::certificate::check_certificate(self, model, *path);
             },
             py::arg("model"), py::arg("trajectory") = py::none(),
-            "Checked by code that shares nothing with the search: a CertificateReport. trajectory: None is the start, for what is as "
+            "Checked without the search: a CertificateReport. trajectory: None is the start, for what is as "
             "assembled or over ranges of joints.");
     module.def(
         "certify_clearance",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A clearance that is proven: a hammer on a hinge swings past a post; how near does it come, over the whole continuous motion? The proof is
-// data, and is checked by code that shares nothing with the search that found it.
+// data, and is checked without the search that found it.
 #include <cstdio>
 
 #include "fettle/core/certificate/certificate_checker.hpp"
