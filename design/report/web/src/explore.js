@@ -183,7 +183,9 @@ function parallel(parent, designs) {
   };
   const chart = canvasChart(parent, 360, (c, w, h) => {
     [width, height] = [w, h];
-    const wide = (width - 120) / (axes.length - 1), labels = axes.map((axis) => labelLines(c, named(designs, axis.k), wide));
+    // Between its neighbours, and within the picture.
+    const wide = (n) => Math.min((width - 120) / (axes.length - 1), 2 * Math.min(across(n), width - across(n)));
+    const labels = axes.map((axis, n) => labelLines(c, named(designs, axis.k), wide(n)));
     room.top = 28 + 14 * Math.max(2, ...labels.map((lines) => lines.length));
     const shade = designs.shade === null ? null : designs.columns[designs.shade], [s0, s1] = shade ? span(shade.values, 0) : [0, 1];
     for (const wanted of [false, true]) {
@@ -225,7 +227,7 @@ function parallel(parent, designs) {
       c.fillText(high, x, room.top - 6);
       c.fillText(low, x, height - room.bottom + 16);
       c.fillStyle = css("--ink");
-      labels[n].forEach((row, r, list) => c.fillText(row.trim(), x, room.top - 22 - 14 * (list.length - 1 - r), Math.max(40, wide - 4)));
+      labels[n].forEach((row, r, list) => c.fillText(row.trim(), x, room.top - 22 - 14 * (list.length - 1 - r), Math.max(40, wide(n) - 4)));
     });
   });
   const place = (event) => {

@@ -86,7 +86,7 @@ export class Mechanism {
     }
   }
 
-  // Outermost points of all parts over the motion, from some of its instants.
+  // Outermost points of all parts over the motion, from some of its instants, each {at, away}: where its part goes when they are taken apart.
   reach() {
     if (this.points) return this.points;
     const count = Math.min(this.times.length, 24);
@@ -94,7 +94,7 @@ export class Mechanism {
     for (let n = 0; n < count; ++n) {
       this.setTime(this.times[Math.round((n * (this.times.length - 1)) / Math.max(1, count - 1))], 0);
       for (const part of this.parts)
-        if (n === 0 || part.poses.length > 7) this.points.push(...part.solid.outermost.map((point) => point.clone().applyMatrix4(part.group.matrix)));
+        if (n === 0 || part.poses.length > 7) this.points.push(...part.solid.outermost.map((point) => ({ at: point.clone().applyMatrix4(part.group.matrix), away: part.away })));
     }
     return this.points;
   }

@@ -234,8 +234,7 @@ class Motion {
     });
     byId("section-axis").value = this.firstAxis();
     byId("explode").addEventListener("input", (event) => {
-      this.viewer.exploded = Number(event.target.value);
-      this.viewer.draw();
+      this.viewer.explode(Number(event.target.value));
     });
   }
 
@@ -322,7 +321,8 @@ class Motion {
     const pair = this.data.pairs[k], { viewer } = this;
     this.pause();
     if (viewer.mode !== "after" && this.data.views.length > 1) this.setMode("after");
-    byId("explode").value = viewer.exploded = 0;
+    byId("explode").value = 0;
+    viewer.explode(0);
     const marked = this.markOf(pair, Math.max(1e-9, 0.51 * (this.data.step || 0))), { a, b } = marked, middle = a.clone().add(b).multiplyScalar(0.5);
     const along = b.clone().sub(a), gap = along.length();
     along.normalize();

@@ -67,7 +67,8 @@ export class Viewer {
   // What the picture is to have room for: these over their whole motions.
   look(names) {
     this.points = names.flatMap((name) => this.mechanism(name).reach());
-    this.box = new THREE.Box3().setFromPoints(this.points);
+    this.box = new THREE.Box3().setFromPoints(this.points.map(({ at }) => at));
+    this.apart = this.points.reduce((most, { away }) => Math.max(most, away.length()), 0);
   }
 
   // What share of what moves is hidden as the page opens.
@@ -108,6 +109,17 @@ export class Viewer {
     this.draw();
   }
 
+  // Takes the parts apart by this share; what was seen whole is seen whole.
+  explode(share) {
+    const direction = () => this.camera.position.clone().sub(this.controls.target).normalize();
+    const before = this.fit(direction()).target;
+    this.exploded = share;
+    const shift = this.fit(direction()).target.sub(before);
+    this.controls.target.add(shift);
+    this.camera.position.add(shift);
+    this.refit();
+  }
+
   // Asks for one picture, soon.
   draw() {
     if (this.asked) return;
@@ -121,7 +133,7 @@ export class Viewer {
     const size = this.renderer.getSize(new THREE.Vector2());
     const side = this.mode === "side";
     this.camera.aspect = (side ? size.x / 2 : size.x) / size.y;
-    const reach = this.box.getBoundingSphere(new THREE.Sphere()).radius * (1 + 2 * this.exploded) || 1;
+    const reach = this.box.getBoundingSphere(new THREE.Sphere()).radius + this.apart * this.exploded || 1;
     const distance = this.camera.position.distanceTo(this.box.getCenter(new THREE.Vector3()));
     this.camera.near = Math.max(distance - reach * 1.6, this.camera.position.distanceTo(this.controls.target) * 0.05, reach * 1e-4);
     this.camera.far = distance + reach * 1.6;
@@ -296,14 +308,14 @@ export class Viewer {
     const right = new THREE.Vector3().crossVectors(this.up, direction).normalize(), above = new THREE.Vector3().crossVectors(direction, right);
     const target = this.box.getCenter(new THREE.Vector3()), flat = new THREE.Box2(), at = new THREE.Vector3();
     for (const point of this.points) {
-      at.copy(point).sub(target);
+      at.copy(point.at).addScaledVector(point.away, this.exploded).sub(target);
       flat.expandByPoint(new THREE.Vector2(at.dot(right), at.dot(above)));
     }
     const middle = flat.getCenter(new THREE.Vector2());
     target.addScaledVector(right, middle.x).addScaledVector(above, middle.y);
     let distance = 0;
     for (const point of this.points) {
-      at.copy(point).sub(target).multiplyScalar(1 + this.exploded);
+      at.copy(point.at).addScaledVector(point.away, this.exploded).sub(target);
       distance = Math.max(distance, at.dot(direction) + Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(above)) / tall));
     }
     return { target, distance: distance * 1.12 || 1 };
