@@ -36,6 +36,7 @@ using studies::Response;
 using studies::SampledResponse;
 
 constexpr std::size_t most_bars = 16;
+constexpr double dust = 1e-3;            // a share of the variance that is not worth a bar
 constexpr int predicted_samples = 8192;  // of the prediction alone, for its line in the histograms
 constexpr double group_reach = 3;        // standard deviations of what a group shares, drawn as its limits
 
@@ -117,8 +118,9 @@ public:
         std::string main = "<section id=\"hero\" class=\"plain\" aria-label=\"The verdict\"><header id=\"verdict\" tabindex=\"-1\">" +
                            element("h1", xml_text(name())) + lead() + facts() + list_of(notices(), "notices") + "</header></section>\n";
         std::string sections;
+        if (study_.reason.empty()) sections += table_of_responses();
         if (study_.reason.empty())
-            for (const Response& response : study_.responses) sections += of_response(response);
+            for (const Response* response : worst_first()) sections += of_response(*response);
         sections += failures() + section("Tolerances", "What deviates, by how much.", table_of_tolerances());
         sections +=
             "<section><details><summary>All of it as text</summary>" + element("pre", xml_text(source_.answer)) + "</details></section>";
@@ -237,6 +239,48 @@ private:
         return table_of({"Of", "Stated", "Limits", "Distribution", "Sigma", "Shares with"}, rows);
     }
 
+    // What is met: of the samples, else by the linear prediction. Of what nothing is required: all.
+    double share_met(const Response& response) const {
+        if (!has_bounds(response)) return 2;
+        return response.sampled ? tolerances::counted_yield(response.sampled->met, count_of(study_.samples), confidence).found.within
+                                : response.linear_yield.within;
+    }
+
+    // Those that are met least often, then those of which nothing is required.
+    std::vector<const Response*> worst_first() const {
+        std::vector<const Response*> out;
+        for (const Response& response : study_.responses) out.push_back(&response);
+        std::stable_sort(out.begin(), out.end(), [&](const Response* a, const Response* b) {
+            return std::pair(share_met(*a), a->linear_yield.within) < std::pair(share_met(*b), b->linear_yield.within);
+        });
+        return out;
+    }
+
+    std::string table_of_responses() const {
+        const bool is_sampled = !study_.samples.empty();
+        std::vector<std::string> head{"Of", "As drawn", "Required", "Sigma", "Yield, predicted"};
+        if (is_sampled) head.emplace_back("Yield, sampled");
+        head.emplace_back("Most by");
+        std::vector<std::vector<std::string>> rows;
+        for (const Response* response : worst_first()) {
+            const CountedUnit unit = answers::unit_of(file_.design, *response);
+            const auto amount = [&](double si) { return description::amount_text(si, unit.si, unit.name, 5); };
+            const bool judged = has_bounds(*response);
+            rows.push_back({response->name, amount(response->nominal),
+                            judged ? description::required_text(response->bounds, unit.name) : "",
+                            amount(response->linear.standard_deviation), judged ? yield_text(response->linear_yield.within) : ""});
+            if (is_sampled)
+                rows.back().push_back(judged && response->sampled ? yield_text(tolerances::counted_yield(
+                                                                        response->sampled->met, count_of(study_.samples), confidence))
+                                                                  : "");
+            const auto most = std::max_element(response->contributions.begin(), response->contributions.end(),
+                                               [](const Contribution& a, const Contribution& b) { return a.share < b.share; });
+            const bool is_moved = most != response->contributions.end() && most->share > 0;
+            rows.back().push_back(is_moved ? most->of + " (" + percent(most->share) + ")" : "");
+        }
+        return section("All at a glance", "Worst first. Each has its own part below, in this order.", table_of(head, rows));
+    }
+
     std::string of_response(const Response& response) const {
         const CountedUnit unit = answers::unit_of(file_.design, response);
         const auto amount = [&](double si) { return description::amount_text(si, unit.si, unit.name, 5); };
@@ -317,8 +361,10 @@ private:
         if (bars.empty()) return element("p", "No tolerance changes it.");
         const auto reach = [](const TornadoBar& bar) { return std::max(std::abs(bar.at_lower), std::abs(bar.at_upper)); };
         std::stable_sort(bars.begin(), bars.end(), [&](const TornadoBar& a, const TornadoBar& b) { return reach(a) > reach(b); });
-        const std::size_t left_out = bars.size() - std::min(bars.size(), most_bars);
-        bars.resize(bars.size() - left_out);
+        const std::size_t all = bars.size();
+        std::erase_if(bars, [&, first = bars.front().of](const TornadoBar& bar) { return bar.share < dust && bar.of != first; });
+        bars.resize(std::min(bars.size(), most_bars));
+        const std::size_t left_out = all - bars.size();
         std::string keys = key_of("<rect class=\"lower\" y=\"1\" width=\"16\" height=\"8\"/>", "at the lower limit") +
                            key_of("<rect class=\"upper\" y=\"1\" width=\"16\" height=\"8\"/>", "at the upper limit") +
                            element("li", "on the right: share of the variance");

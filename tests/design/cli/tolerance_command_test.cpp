@@ -55,6 +55,9 @@ TEST_CASE("tolerance: a report to look at") {
     CHECK(has(page, "weight &lt;b&gt; &amp; co"));
     CHECK(has(page, std::to_string(json.at("samples").at("met").get<int>()) + " of 64 samples meet every requirement"));
     CHECK(has(page, "Command: "));
+    // One table of all comes first.
+    CHECK(page.find("All at a glance") < page.find("What moves it"));
+    CHECK(count_of(page, "All at a glance") == 1);
     // Each that could not be made is marked in both scatters.
     CHECK(count_of(page, "l4 9h-8z") == 2 * static_cast<std::size_t>(failed));
     CHECK(has(page, "prefers-color-scheme:dark"));
