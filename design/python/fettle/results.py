@@ -517,6 +517,18 @@ class OptimiseOutcome(Record):
     unbuildable: List[str] = dataclasses.field(default_factory=list)
     replayed: int = 0
 
+    def _repr_html_(self) -> str:
+        report, final = self.report, self.final
+        title = f"{report.status}: {report.message}"
+        rows: List[Sequence[Any]] = [["objective", "-" if self.objective_start is None else f"{self.objective_start:.6g}", f"{report.objective:.6g}", ""]]
+        rows += [[f"parameter {k}", f"{start:.6g}", f"{now:.6g}", ""] for k, (start, now) in enumerate(zip(self.start, report.point))]
+        rows += [
+            [f"constraint {k}", "", f"{each.value:.6g}", "proven" if each.is_proven else "computed"]
+            for k, each in enumerate(final.constraints)
+        ]
+        rows += [["largest violation", "", f"{report.violation:.3g}", ""], ["evaluations", "", str(report.evaluations), ""]]
+        return columns(title, ["SI, in the order of the problem's names", "at the start", "now", ""], rows)
+
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
 class CheckRow(Record):
@@ -642,3 +654,12 @@ class CheckReport(Record):
     simulations: int = 0
     failures: List[str] = dataclasses.field(default_factory=list)
     interrupted: bool = False
+
+    def _repr_html_(self) -> str:
+        worst = sorted(self.rows, key=lambda row: -row.relative_error if math.isfinite(row.relative_error) else -math.inf)
+        rows = [
+            [row.quantity, row.parameter, f"{row.adjoint:.7g}", f"{row.difference:.7g}", f"{row.relative_error:.1e}", "" if row.resolved else "not resolved"]
+            for row in worst
+        ]
+        title = f"gradient check{', interrupted' if self.interrupted else ''}: largest relative error {self.largest_relative_error:.1e}, {self.simulations} simulations, SI"
+        return columns(title, ["quantity", "parameter", "adjoint", "difference", "relative error", ""], rows)

@@ -91,6 +91,18 @@ def test_notebooks_get_members_and_their_values(fall):
     assert "<script>" not in scene._repr_html_() + fettle.build_model(scene)._repr_html_() + scene.bodies[0]._repr_html_()
 
 
+def test_a_check_and_an_optimisation_show_their_numbers():
+    problem = fettle.DesignProblem(tilted_plate())
+    told = fettle.check_gradients(problem)._repr_html_()
+    assert "largest relative error" in told and "height" in told and "adjoint" in told and "CheckRow" not in told
+    outcome = fettle.optimise(problem)
+    told = outcome._repr_html_()
+    assert outcome.report.status in told and f"{outcome.report.point[0]:.6g}" in told and "Report(" not in told
+    rows = [fettle.CheckReport(rows=[fettle.CheckRow(f"q{k}", "<p>", relative_error=e) for k, e in enumerate((1e-9, float("nan"), 1e-3))])]
+    told = rows[0]._repr_html_()
+    assert told.index("q1") < told.index("q2") < told.index("q0") and "&lt;p&gt;" in told
+
+
 def test_an_exploration_shows_its_best(tmp_path):
     design = tilted_plate(MeanHeight(1))
     design.steps = 1
