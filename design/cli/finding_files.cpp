@@ -15,6 +15,7 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/hash.hpp"
 #include "fettle/core/files/json_dump.hpp"
+#include "fettle/core/files/json_lines.hpp"
 #include "fettle/design/answers/output_folder.hpp"
 
 namespace fettle::design::cli {
@@ -81,12 +82,23 @@ const char* level(CheckOutcome outcome) {
 // A finding's own file, else the command's.
 const std::string& place_of(const Check& check, const Checks& checks) { return check.file.empty() ? checks.about : check.file; }
 
+// Where in its file: the line that a fault's place names ("a.json#/bodies/0", "a.json:3:8"), else the first.
+int line_of(const Check& check, const std::string& place) {
+    if (check.file.empty() || !check.name.starts_with(place) || check.name.size() == place.size()) return 1;
+    const std::string within = check.name.substr(place.size());
+    if (within.starts_with(":")) return std::max(1, std::atoi(within.c_str() + 1));
+    if (!within.starts_with("#/")) return 1;
+    const Result<std::string> text = core::files::read_file(place);
+    return text ? core::files::line_of_pointer(*text, within.substr(1)) : 1;
+}
+
 Json result_of(const Check& check, const Checks& checks) {
     Json result{{"ruleId", rule_id(check.rule)}, {"kind", "fail"}, {"level", level(check.outcome)}};
     result["message"] = {{"text", check.name + ": " + check.message}};
     const std::string& place = place_of(check, checks);
     const std::string uri = uri_of(place.empty() ? "." : place);
-    result["locations"] = Json::array({{{"physicalLocation", {{"artifactLocation", {{"uri", uri}}}}}}});
+    result["locations"] =
+        Json::array({{{"physicalLocation", {{"artifactLocation", {{"uri", uri}}}, {"region", {{"startLine", line_of(check, place)}}}}}}});
     // The same finding in the next run. Of one file there can be several warnings and faults, which their messages tell apart; those of a
     // requirement have numbers that change with every design.
     const bool is_told_by_message = check.outcome == CheckOutcome::remarked || check.outcome == CheckOutcome::fault;

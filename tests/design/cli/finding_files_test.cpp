@@ -81,6 +81,7 @@ Found found(const TemporaryFolder& folder, const std::string& arguments) {
     for (const Json& result : all.results()) {
         CHECK(rules.count(result.at("ruleId").get<std::string>()) == 1);
         CHECK(!result.at("message").at("text").get<std::string>().empty());
+        CHECK(result.at("locations")[0].at("physicalLocation").at("region").at("startLine") >= 1);
         const std::string level = result.at("level");
         CHECK((level == "error" || level == "warning" || level == "note"));
     }
@@ -191,6 +192,16 @@ TEST_CASE("check files: warnings are remarks, about their file, and errors where
     CHECK(uri_of(found(folder, "clearance " + scene + " --minimum 3").results()[0]).ends_with("small.scene.json"));
     const Found broken = found(folder, "validate " + folder.write("broken.scene.json", "{\n \"fettle_scene\": }"));
     CHECK(uri_of(broken.results()[0]).ends_with("broken.scene.json"));
+    const auto line_of = [](const Json& result) {
+        return result.at("locations")[0].at("physicalLocation").at("region").at("startLine").get<int>();
+    };
+    CHECK(line_of(broken.results()[0]) == 2);
+    const Found unknown =
+        found(folder, "validate " +
+                          folder.write("c.scene.json", "{\"fettle_scene\": 1, \"units\": \"mm\",\n \"bodies\": [\n  {\"colour\": 1}\n]}"));
+    CHECK(std::any_of(unknown.results().begin(), unknown.results().end(), [&](const Json& result) {
+        return result.at("message").at("text").get<std::string>().find("colour") != std::string::npos && line_of(result) == 3;
+    }));
 }
 
 TEST_CASE("check files: a fault before the work replaces an earlier pass") {
