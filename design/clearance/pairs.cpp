@@ -231,7 +231,7 @@ private:
         return nullptr;
     }
 
-    // Patterns of --pairs ask for whatever they match.
+    // Patterns of --pairs ask for whatever they match and nothing exempts.
     bool is_judged(int i, int j) {
         if (std::binary_search(wanted_.begin(), wanted_.end(), std::pair<int, int>(std::minmax(i, j)))) return true;
         if (!options_.pairs.empty() || !moves_) return exempt_as(i, j) == nullptr;

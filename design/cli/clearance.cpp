@@ -11,6 +11,7 @@
 #include "fettle/design/cli/clearance_files.hpp"
 #include "fettle/design/cli/clearance_text.hpp"
 #include "fettle/design/cli/inputs.hpp"
+#include "fettle/design/tolerances/known_processes.hpp"
 #include "fettle/design/tolerances/process_clearance.hpp"
 
 namespace fettle::design::cli {
@@ -111,10 +112,12 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("--unit", options.subject.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
     app.option("--minimum", options.minimum, "Required clearance per side, with its unit: 0.3mm (without any: distances and clashes)");
     app.option("--process", options.pairs.process,
-               "Required clearance by process (below, or your own NAME.process.json) and size of the parts");
+               "Required clearance by process (below, or your own NAME.process.json) and size of the parts")
+        .words_or(tolerances::known_process_names(), "NAME");
     app.option("--pairs", options.pairs.pairs,
-               "Pairs A:B,C:D by names of bodies or groups, `*` for any letters, A:B=0.4mm with a minimum of its own (default: every pair "
-               "as assembled, every pair that may collide over a motion)");
+               "Pairs A:B,C:D by names of bodies or groups, A:B=0.4mm with a minimum of its own; `*` for any letters, of the pairs that "
+               "no joint, group or `ignore` of the scene exempts (default: every such pair as assembled, of those the ones that may "
+               "collide over a motion)");
     app.option("--ignore", options.pairs.ignore, "Pairs A:B,... that are not judged");
     Option touch = app.option("--allow-touch", options.pairs.touches,
                               "Pair A:B that may touch, face on face, but not intersect; A:B=0.02mm: no deeper than that (can be given "

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -85,7 +86,12 @@ OptionFacts facts_of(const CLI::Option& option) {
     if (facts.value.find('|') == std::string::npos) return facts;
     for (std::size_t at = 0; at <= facts.value.size();) {
         const std::size_t bar = std::min(facts.value.find('|', at), facts.value.size());
-        facts.words.push_back(facts.value.substr(at, bar - at));
+        const std::string word = facts.value.substr(at, bar - at);
+        const bool is_name = std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isupper(c) != 0; });
+        if (is_name)
+            facts.other_values = true;
+        else
+            facts.words.push_back(word);
         at = bar + 1;
     }
     return facts;
@@ -197,6 +203,13 @@ Option& Option::one_of(std::vector<std::string> words) {
     };
     option_->type_name(listed);
     option_->check(check);
+    return *this;
+}
+
+Option& Option::words_or(const std::vector<std::string_view>& words, const std::string& other) {
+    std::string listed;
+    for (const std::string_view word : words) listed += std::string(word) + "|";
+    option_->type_name(listed + other);
     return *this;
 }
 

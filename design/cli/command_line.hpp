@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's own
@@ -30,8 +31,9 @@ public:
     Option& above(double low);                 ///< a number
     Option& between(double low, double high);  ///< a number
     Option& one_of(std::vector<std::string> words);
-    Option& excludes(const Option& other);     ///< not both
-    Option& needs(const Option& other);        ///< not without it
+    Option& words_or(const std::vector<std::string_view>& words, const std::string& other);  ///< known words, or what `other` names: "NAME"
+    Option& excludes(const Option& other);                                                   ///< not both
+    Option& needs(const Option& other);                                                      ///< not without it
     Option& value_if_bare(std::string value);  ///< may be given without a value, and then has this one
     Option& one_value_each();                  ///< of a list: every value takes its own mention of the option
 
@@ -45,7 +47,8 @@ struct OptionFacts {
     bool by_place = false;
     bool required = false;
     std::string value;               ///< "TEXT", "INT", "FLOAT"; empty: a flag
-    std::vector<std::string> words;  ///< the only values; empty: any
+    std::vector<std::string> words;  ///< the known values; empty: any
+    bool other_values = false;       ///< values may be others than the known ones
     std::string description;
 };
 struct CommandFacts {

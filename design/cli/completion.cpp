@@ -24,7 +24,7 @@ std::string command_words(const CommandFacts& program) {
     return words;
 }
 
-/// Lines of `case "$command $previous"` that offer the only values of an option.
+/// Lines of `case "$command $previous"` that offer the known values of an option; where none fits, the shell offers files.
 std::string value_cases(const CommandFacts& program) {
     std::string cases;
     for (const CommandFacts& command : program.commands) {
@@ -68,7 +68,7 @@ std::string fish_option(const OptionFacts& option, const std::string& condition)
     if (!option.value.empty()) out += " -r";
     std::string words;
     for (const std::string& word : option.words) words += (words.empty() ? "" : " ") + word;
-    if (!words.empty()) out += " -f -a " + fish_quoted(words);
+    if (!words.empty()) out += (option.other_values ? " -a " : " -f -a ") + fish_quoted(words);
     return out + " -d " + fish_quoted(option.description) + "\n";
 }
 

@@ -179,7 +179,8 @@ Command add_coupon(CommandLine& program) {
                "X.3mf, X.stl or X.obj to print, X.svg or X.dxf to cut; the form for what you measure is X.csv beside it")
         .required();
     app.option("--process", options->process,
-               "What the measured process will be called (default mine); of a known one: what it is based on");
+               "What the measured process will be called (default mine); of a known one: what it is based on")
+        .words_or(tolerances::known_process_names(), "NAME");
     app.option("--steps", options->steps, "Features of each kind, of rising size (default 6)")
         .between(coupons::least_steps, coupons::most_steps);
     app.option("--sizes", options->sizes, "Sizes of a kind, hole=3mm..8mm: hole, pin, slot, wall, gap, height (can be given several times)")

@@ -11,6 +11,7 @@
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/report/tolerance_report.hpp"
 #include "fettle/design/studies/tolerance_file.hpp"
+#include "fettle/design/tolerances/known_processes.hpp"
 
 namespace fettle::design::cli {
 
@@ -104,9 +105,10 @@ Command add_tolerance(CommandLine& program, const CommonOptions& common) {
     app.option("DESIGN", options->path, "Design with `tolerances`, taken at its values").required();
     app.option("--samples", options->samples, "Whole simulations of made mechanisms (default 0: predictions alone)").between(0, 1000000);
     app.option(
-        "--process", options->process,
-        "What makes the features that entries name (\"hole\"), in place of the design's: fdm, sla, sls, mjf, cnc, laser, or your own "
-        "NAME.process.json");
+           "--process", options->process,
+           "What makes the features that entries name (\"hole\"), in place of the design's: fdm, sla, sls, mjf, cnc, laser, or your own "
+           "NAME.process.json")
+        .words_or(tolerances::known_process_names(), "NAME");
     app.option("--seed", options->seed, "Of the samples (default 1)").at_least(0);
     app.option("--samples-file", options->samples_file,
                "Where the samples are kept, a line each: those that are there are not simulated again, so that a run can be interrupted");

@@ -139,6 +139,10 @@ TEST_CASE("Completion and manual: made from the program's own options") {
     CHECK(completed("fettle --quiet draw --vi", 3) == "--view\n");
     CHECK(completed("fettle export x --arrange p", 4) == "plate parts\n");
     CHECK(completed("fettle optimise --optimiser sl", 3) == "slsqp\n");
+    CHECK(completed("fettle clearance a.stl --process \\\"\\\"", 4).find("fdm sla") == 0);
+    CHECK(completed("fettle tolerance a --process f", 4) == "fdm\n");
+    CHECK(completed("fettle tolerance a --process mi", 4) == "\n");  // the shell offers files
+    CHECK(run("completion fish").says("-l process -r -a 'fdm sla"));
     CHECK(run("completion fish").says("complete -c fettle -n __fish_use_subcommand -f -a simulate"));
     CHECK(run("completion zsh").says("bashcompinit"));
     CHECK(run("completion tcsh").code == 3);
