@@ -20,7 +20,7 @@ constexpr int most_pairs = 20'000;  ///< of intersecting triangles: beyond it no
 
 std::string place(const Vector3& x) {
     char text[96];
-    std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g) m", x.x(), x.y(), x.z());
+    std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g) mm", 1e3 * x.x(), 1e3 * x.y(), 1e3 * x.z());
     return text;
 }
 

@@ -17,7 +17,7 @@ namespace {
 std::string place_of(const geometry::Mesh& mesh, std::size_t triangle) {
     char text[160];
     const Vector3 x = mesh.vertices.col(mesh.triangles[triangle][0]);
-    std::snprintf(text, sizeof text, "triangle %zu at (%.6g, %.6g, %.6g) m", triangle, x.x(), x.y(), x.z());
+    std::snprintf(text, sizeof text, "triangle %zu at (%.6g, %.6g, %.6g) mm", triangle, 1e3 * x.x(), 1e3 * x.y(), 1e3 * x.z());
     return text;
 }
 

@@ -27,7 +27,7 @@ geometry::Box box_of(const Corners& x) { return {x[0].cwiseMin(x[1]).cwiseMin(x[
 
 std::string coordinates(const Vector3& x) {
     char text[96];
-    std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g) m", x.x(), x.y(), x.z());
+    std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g) mm", 1e3 * x.x(), 1e3 * x.y(), 1e3 * x.z());
     return text;
 }
 

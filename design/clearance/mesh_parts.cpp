@@ -95,7 +95,22 @@ core::scene::Body body_of(Mesh mesh, const std::string& path, const reading::Inp
     return body;
 }
 
+double longest_side(const Mesh& mesh) { return (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).maxCoeff(); }
+
 }  // namespace
+
+std::string doubted_side(double side, const std::string& unit) {
+    constexpr double largest = 3, printed = 0.3, smallest = 1e-4, micrometre = 1e-6;  // [m]
+    const Result<double> metres = unit.empty() ? Result<double>(1e-3) : core::base::metres_per_unit(unit, "--unit");
+    if (!metres || !(side > 0)) return {};
+    const bool is_large = side > (*metres > 1e-3 ? printed : largest), is_small = side<smallest&& * metres> micrometre;
+    if (!is_large && !is_small) return {};
+    std::string text = "its longest side is " + core::base::formatted("%.4g mm", 1e3 * side);
+    if (unit.empty()) return text + ", which is hardly meant; is the unit that the file states right?";
+    if (*metres != 1e-3)
+        return text + ", and would be " + core::base::formatted("%.4g mm", side / *metres) + " in mm; is --unit " + unit + " right?";
+    return text + ", which is hardly meant; is --unit " + unit + " right?";
+}
 
 std::optional<std::string> trajectory_in(const std::string& path) {
     std::error_code code;
@@ -135,7 +150,14 @@ Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::
         Result<std::vector<Mesh>> parts = core::mesh_files::read_mesh_parts(path, {scene.length_unit, true, input.should_stop});
         errors.insert(errors.end(), parts.errors().begin(), parts.errors().end());
         if (!parts) continue;
-        for (Mesh& mesh : *parts) scene.bodies.push_back(body_of(std::move(mesh), path, input, names, subject.warnings));
+        for (Mesh& mesh : *parts) {
+            constexpr double told_with_the_model = 10;  // [m]: of larger bodies check_scene says it
+            const double side = longest_side(mesh);
+            scene.bodies.push_back(body_of(std::move(mesh), path, input, names, subject.warnings));
+            const std::string doubt = doubted_side(side, core::mesh_files::states_its_unit(path) ? "" : unit);
+            if (!doubt.empty() && side <= told_with_the_model)
+                subject.warnings.push_back("body `" + scene.bodies.back().name + "`: " + doubt);
+        }
     }
     if (!errors.empty()) return errors;
     core::setup::BuildOptions options;

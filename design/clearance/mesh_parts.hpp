@@ -18,6 +18,12 @@ std::optional<std::string> trajectory_in(const std::string& path);
 /// Meshes by their extension, or a folder that has no trajectory. In a list the first decides.
 bool are_meshes(const std::vector<std::string>& paths);
 
+/// What is to be said of a part of a mesh file whose longest side is hardly meant; empty: nothing. Files without a unit are nearly always
+/// in mm, and parts that are printed below 300 mm: of a longer one in another unit its size in mm is told.
+/// @param side  Longest side of its box [m].
+/// @param unit  That of --unit; empty: the file states its own.
+std::string doubted_side(double side, const std::string& unit);
+
 struct MeshParts {
     core::model::Model model;  ///< all static; length_unit is --unit, else of 3MF the millimetre
     std::vector<std::string> files;

@@ -14,6 +14,7 @@
 #include "fettle/core/solids/mesh_validity.hpp"
 #include "fettle/core/solids/shells.hpp"
 #include "fettle/design/answers/answer_json.hpp"
+#include "fettle/design/clearance/mesh_parts.hpp"
 #include "fettle/design/cli/answers.hpp"
 #include "fettle/design/cli/body_facts.hpp"
 #include "fettle/design/cli/inputs.hpp"
@@ -35,10 +36,10 @@ struct Verdict {
     std::string text;  ///< of the facts
 };
 
-// A mesh file without a unit: its places are numbers, not metres.
-std::string without_metres(std::string text) {
-    for (std::size_t at = text.find(") m"); at != std::string::npos; at = text.find(") m", at + 1)) {
-        if (at + 3 == text.size() || std::isalnum(static_cast<unsigned char>(text[at + 3])) == 0) text.erase(at + 1, 2);
+// A mesh file without a unit, read as if in mm: its places are numbers.
+std::string without_unit(std::string text) {
+    for (std::size_t at = text.find(") mm"); at != std::string::npos; at = text.find(") mm", at + 1)) {
+        if (at + 4 == text.size() || std::isalnum(static_cast<unsigned char>(text[at + 4])) == 0) text.erase(at + 1, 3);
     }
     return text;
 }
@@ -46,7 +47,7 @@ std::string without_metres(std::string text) {
 // @param unit  Of a file that states none; empty: its places are numbers.
 Verdict validate_mesh_file(const std::string& path, const std::string& unit, bool strict) {
     Verdict verdict;
-    const Result<double> metres = unit.empty() ? Result<double>(1.0) : core::base::metres_per_unit(unit, "--unit");
+    const Result<double> metres = unit.empty() ? Result<double>(1e-3) : core::base::metres_per_unit(unit, "--unit");
     if (!metres) {
         verdict.errors = metres.errors();
         return verdict;
@@ -66,11 +67,18 @@ Verdict validate_mesh_file(const std::string& path, const std::string& unit, boo
     }
     const bool has_unit = !unit.empty() || core::mesh_files::states_its_unit(path);
     if (!has_unit) {
-        for (std::string& warning : verdict.warnings) warning = without_metres(warning);
-        for (Error& error : verdict.errors) error.message = without_metres(error.message);
+        for (std::string& warning : verdict.warnings) warning = without_unit(warning);
+        for (Error& error : verdict.errors) error.message = without_unit(error.message);
     }
-    const Vector3 size = (has_unit ? 1000 : 1) * (mesh->vertices.rowwise().maxCoeff() - mesh->vertices.rowwise().minCoeff());
-    const double volume = (has_unit ? 1e9 : 1) * core::geometry::capped_solid_moments(mesh->vertices, mesh->triangles)(3, 3);
+    const Vector3 size = 1e3 * (mesh->vertices.rowwise().maxCoeff() - mesh->vertices.rowwise().minCoeff());
+    const double volume = 1e9 * core::geometry::capped_solid_moments(mesh->vertices, mesh->triangles)(3, 3);
+    if (verdict.errors.empty()) {
+        const std::string doubt = clearance::doubted_side(1e-3 * size.maxCoeff(), core::mesh_files::states_its_unit(path) ? ""
+                                                                                  : has_unit                              ? unit
+                                                                                                                          : "mm");
+        if (!doubt.empty())
+            verdict.warnings.push_back(has_unit ? doubt : "if the file is in mm, as most are: " + doubt.substr(0, doubt.find(';')));
+    }
     verdict.facts["vertices"] = mesh->vertices.cols();
     verdict.facts["triangles"] = mesh->triangles.size();
     verdict.facts["shells"] = mesh->shell_names;

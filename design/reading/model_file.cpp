@@ -107,6 +107,21 @@ Result<LoadedModel> load_scene(const std::string& path, const InputOptions& opti
     return loaded;
 }
 
+/// Faults of a part file that is taken as a scene of one body: at their places in the file, which the user knows of nothing else.
+Errors faults_of_part(Errors errors, const std::string& path) {
+    const std::string file = std::filesystem::path(path).filename().string();
+    for (Error& error : errors) {
+        if (!error.where.starts_with(path + "#")) continue;
+        // Of what the part's own reader says the message begins with its place: "/folder/a.part.json#/solid: ...".
+        const std::size_t end = error.message.find(": "), named = error.message.rfind(file, end);
+        const bool has_place = end != std::string::npos && named != std::string::npos && named + file.size() < end &&
+                               (named == 0 || error.message[named - 1] == '/');
+        error.where = path + (has_place ? error.message.substr(named + file.size(), end - named - file.size()) : "");
+        if (has_place) error.message.erase(0, end + 2);
+    }
+    return errors;
+}
+
 }  // namespace
 
 FileKind file_kind(const std::string& path) {
@@ -126,7 +141,9 @@ Result<core::scene::Scene> read_scene_or_part(const std::string& path, const cor
     const std::string name = file.substr(0, file.size() - core::part_files::part_file_ending.size());
     const nlohmann::json body{{"name", name}, {"type", "static"}, {"shape", {{"part", file}}}};
     const nlohmann::json scene{{"fettle_scene", 1}, {"units", "mm"}, {"bodies", {body}}};
-    return core::scene_files::parse_scene(core::files::dumped(scene), path, options);
+    Result<core::scene::Scene> read = core::scene_files::parse_scene(core::files::dumped(scene), path, options);
+    if (!read) return faults_of_part(read.errors(), path);
+    return read;
 }
 
 Errors not_wanted(const std::string& path, FileKind kind, const std::string& wanted) {

@@ -243,8 +243,8 @@ TEST_CASE("open, inconsistently oriented and non-manifold edges") {
     loose.vertices.conservativeResize(3, 10);
     loose.vertices.rightCols(2) << 5, 6, 5, 5, 5, 5;
     geometry::build_connectivity(loose, {{0, 8}});
-    CHECK(mentions(validate_mesh(loose, strict), "edge 18 from (0, 0, 0) m to (5, 5, 5) m belongs to no triangle"));
-    CHECK(mentions(validate_mesh(loose, strict), "vertex 9 at (6, 5, 5) m belongs to no triangle"));
+    CHECK(mentions(validate_mesh(loose, strict), "edge 18 from (0, 0, 0) mm to (5000, 5000, 5000) mm belongs to no triangle"));
+    CHECK(mentions(validate_mesh(loose, strict), "vertex 9 at (6000, 5000, 5000) mm belongs to no triangle"));
     CHECK(validate_mesh(loose, {false, true}).empty());
 }
 

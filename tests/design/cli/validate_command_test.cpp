@@ -98,6 +98,27 @@ TEST_CASE("validate: a mesh without a unit is not told in metres") {
     CHECK_FALSE(faulty.says(") m"));
 }
 
+TEST_CASE("validate, clearance: a mesh file in a unit that is hardly meant is doubted") {
+    const Folder folder;
+    Mesh other = part;
+    other.vertices.row(0).array() += 100;
+    const std::string a = folder.write("a.obj", obj_of(part)), b = folder.write("b.obj", obj_of(other));  // 60 long
+    for (const std::string unit : {"cm", "in", "m"}) {
+        CAPTURE(unit);
+        CHECK(run("validate --unit " + unit + " " + a, true).says("and would be 60 mm in mm; is --unit " + unit + " right?"));
+        const Answer answer = run("clearance --minimum 0.1mm --unit " + unit + " " + a + " " + b, true);
+        CHECK(answer.code == 0);
+        CHECK((answer.says("body `a`: its longest side is") || answer.says("body `a`: its size is 60 m")));
+    }
+    CHECK(run("validate --unit mm --json " + a).json().at("warnings").empty());
+    CHECK(run("validate --json " + a).json().at("warnings").empty());
+    other.vertices *= 1000;
+    const std::string large = folder.write("large.obj", obj_of(other));
+    CHECK(
+        mentions(run("validate --json " + large).json().at("warnings"), "if the file is in mm, as most are: its longest side is 6e+04 mm"));
+    CHECK(mentions(run("validate --json --unit mm " + large).json().at("warnings"), "is --unit mm right?"));
+}
+
 TEST_CASE("validate: real meshes pass with warnings, and not when strict") {
     const Folder folder;
     const auto twins = fettle::tests::joined(part, fettle::tests::box_mesh({30, 20, 6}, {90, 60, 18}));
@@ -177,6 +198,21 @@ TEST_CASE("validate: a part file is a part") {
         "solid": {"extrude": {"circle": 1}, "to": "= long"}})");
     CHECK(run("validate " + file).says(": a valid part"));
     CHECK(run("validate --json " + file).json().at("kind") == "part");
+    // Its faults are at places of the file, which has no bodies.
+    const std::string faulty = folder.write("faulty.part.json", R"({"fettle_part": 1, "dimensions": {"long": 5},
+        "solid": {"extrude": {"circle": 1}}})");
+    const std::string broken = folder.write("broken.part.json", "{\"fettle_part\": 1,");
+    for (const std::string& command : {"validate ", "simulate ", "clearance --minimum 1mm "}) {
+        const Answer answer = run(command + faulty, true);
+        CAPTURE(answer.out);
+        CHECK(answer.code == 3);
+        CHECK(answer.says(faulty + "#/solid: "));
+        CHECK_FALSE(answer.says("/bodies"));
+        const Answer unread = run(command + broken, true);
+        CHECK(unread.code == 3);
+        CHECK(unread.says(broken + ":"));
+        CHECK_FALSE(unread.says("/bodies"));
+    }
 }
 
 // Of a certificate of each kind: what it is about, in text and JSON, and what it is worth without the file that it was made from.
