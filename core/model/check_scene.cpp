@@ -389,6 +389,42 @@ void doubt_units(const scene::Scene& scene, SceneCheck& check) {
     }
 }
 
+/// A cubic curve goes beyond what its table has: between 0, 90, 90 and 0 by a tenth.
+void doubt_curves(const scene::Scene& scene, SceneCheck& check) {
+    constexpr double worth_saying = 0.01;  // of the table's range
+    constexpr int samples = 16;            // of a stretch
+    for (const scene::Motor& motor : scene.mechanism.motors) {
+        const scene::Curve& curve = motor.curve;
+        if (curve.kind != scene::CurveKind::cubic || curve.times.size() != curve.values.size() || curve.times.size() < 3) continue;
+        const auto [least, most] = std::minmax_element(curve.values.begin(), curve.values.end());
+        double farthest = worth_saying * (*most - *least), when = -1;
+        for (std::size_t k = 0; k + 1 < curve.times.size(); ++k) {
+            // A stretch depends on its own two entries and on their neighbours.
+            const auto first = static_cast<std::ptrdiff_t>(k == 0 ? 0 : k - 1),
+                       last = static_cast<std::ptrdiff_t>(std::min(k + 3, curve.times.size()));
+            const scene::Curve near{curve.kind,
+                                    0,
+                                    {curve.times.begin() + first, curve.times.begin() + last},
+                                    {curve.values.begin() + first, curve.values.begin() + last},
+                                    std::nullopt};
+            for (int i = 1; i < samples; ++i) {
+                const double time = curve.times[k] + (curve.times[k + 1] - curve.times[k]) * i / samples, value = curve_value(near, time);
+                const double beyond = std::max(value - *most, *least - value);
+                if (beyond > farthest) {
+                    farthest = beyond;
+                    when = time;
+                }
+            }
+        }
+        if (when < 0) continue;
+        check.warnings.push_back((motor.where.empty() ? "" : motor.where + ": ") + "motor `" + motor.name +
+                                 "`: its cubic curve goes beyond its table, by " +
+                                 base::formatted("%.2g", 100 * farthest / (*most - *least)) + "% of the table's range at " +
+                                 base::format_quantity(when, "s", 3) +
+                                 "; `\"profile\": \"linear\"` and \"trapezoid\" stay within, and more entries bring the cubic one nearer");
+    }
+}
+
 }  // namespace
 
 SceneCheck check_scene(const scene::Scene& scene, bool check_meshes) {
@@ -406,7 +442,9 @@ SceneCheck check_scene(const scene::Scene& scene, bool check_meshes) {
     for (const scene::Body& body : scene.bodies) meshes.push_back(&body.mesh);
     check.shapes = geometry::first_of_shape(meshes);
     for (std::size_t i = 0; i < meshes.size(); ++i) bodies.add(scene.bodies[i], check.shapes[i], place_of(scene, scene.bodies[i]), check);
-    if (check_meshes && check.errors.empty()) doubt_units(scene, check);
+    if (!check_meshes || !check.errors.empty()) return check;
+    doubt_units(scene, check);
+    doubt_curves(scene, check);
     return check;
 }
 

@@ -155,19 +155,28 @@ private:
     std::optional<PathHash> hash_;  // of what has been read
 };
 
-// A file of version 1 was one object over many lines.
-bool is_version_1(const std::string& path, std::string_view text) {
+// Why a text that is one JSON document over many lines is no trajectory: a file of version 1 was one, and other kinds of files are.
+// Nothing: it is no such document.
+std::optional<base::Error> other_document(const std::string& path, std::string_view text) {
     auto document = JsonDocument::parse(std::string(text), path);
-    return document && document->root().is_object() && document->root()[format_key].number() == 1;
+    if (!document) return std::nullopt;
+    const JsonNode root = document->root();
+    if (!root.is_object() || !root[format_key].exists())
+        return base::Error{
+            ErrorCode::missing_key, path,
+            "is no trajectory: its first line has no `" + std::string(format_key) + "`; `fettle simulate SCENE --out DIR` writes one"};
+    if (root[format_key].number() == 1)
+        return base::Error{ErrorCode::unsupported, path,
+                           "a trajectory of format version 1, which is no longer read; write it anew (`fettle simulate SCENE --out DIR`)"};
+    return std::nullopt;
 }
 
 }  // namespace
 
 base::Result<StoredTrajectory> parse_trajectory(const std::string& path, std::string_view text) {
     base::Result<StoredTrajectory> read = Reader(path).read(text);
-    if (!read && is_version_1(path, text))
-        return base::Error{ErrorCode::unsupported, path,
-                           "a trajectory of format version 1, which is no longer read; write it anew (`fettle simulate SCENE --out DIR`)"};
+    if (read) return read;
+    if (const std::optional<base::Error> other = other_document(path, text)) return *other;
     return read;
 }
 

@@ -18,17 +18,17 @@ Matrix3 spread_of(const Matrix3& inertia) { return 0.5 * inertia.trace() * Matri
 
 std::string fault_of(const Inertial& inertial) {
     const Matrix3& j = inertial.inertia;
-    if (!(inertial.mass > 0) || !std::isfinite(inertial.mass)) return "the mass is greater than 0, and finite";
-    if (!inertial.centre.allFinite() || !j.allFinite()) return "the centre and the inertia are finite numbers";
+    if (!(inertial.mass > 0) || !std::isfinite(inertial.mass)) return "the mass is not a finite number above 0";
+    if (!inertial.centre.allFinite() || !j.allFinite()) return "a number of the centre or of the inertia is not finite";
     const double size = j.trace();
     if (!(size > 0) || !((j - j.transpose()).cwiseAbs().maxCoeff() <= rounding * size))
-        return "the inertia is a symmetric matrix with positive moments about its axes";
+        return "the inertia is not a symmetric matrix with positive moments about its axes";
     const Vector3 moments = linear::symmetric_eigenvalues<3>(j);
     std::ostringstream found;
     found << "; the principal moments are " << moments[0] << ", " << moments[1] << " and " << moments[2] << " kg m^2";
-    if (!(moments[0] > 0)) return "the inertia is positive definite" + found.str();
+    if (!(moments[0] > 0)) return "the inertia is not positive definite" + found.str();
     if (!(moments[2] <= moments[0] + moments[1] + rounding * size))
-        return "no principal moment of inertia is more than the sum of the other two" + found.str();
+        return "a principal moment of inertia is more than the sum of the other two, which no body has" + found.str();
     return {};
 }
 

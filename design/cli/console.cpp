@@ -155,7 +155,8 @@ void Console::narrate(const std::string& line) {
 
 std::string Console::pace(int done, int of) const {
     const double seconds = std::chrono::duration<double>(Clock::now() - progress_begun_).count();
-    if (seconds < 1 || done <= first_done_) return "";
+    constexpr int enough = 3;  // done; of fewer the first, which is longer than the others, would be taken for all
+    if (seconds < 1 || done < first_done_ + enough) return "";
     const double rate = (done - first_done_) / seconds, left = (of - done) / rate;
     char text[80];
     if (left < 100) {

@@ -25,6 +25,35 @@ using fettle::tests::only_error;
 using fettle::tests::scene_of;
 using fettle::tests::support::contains;
 
+TEST_CASE("A cubic curve that goes beyond its table is told", "[model]") {
+    scene::Scene scene = scene_of({box_body("cube", {0, 0, 0}, {1, 1, 1})});
+    scene::Motor motor;
+    motor.name = "drive";
+    motor.curve = {scene::CurveKind::cubic, 0, {0, 1, 2, 3}, {0, 90, 90, 0}, std::nullopt};
+    const auto doubts = [&](const scene::Curve& curve) {
+        scene.mechanism.motors = {motor};
+        scene.mechanism.motors[0].curve = curve;
+        const std::vector<std::string> warnings = check_scene(scene, true).warnings;
+        return std::count_if(warnings.begin(), warnings.end(), [](const std::string& text) {
+            return contains(text, "motor `drive`: its cubic curve goes beyond its table, by");
+        });
+    };
+    // Slopes at the middle entries: 45 and -45, so at 1.5 s 90 + (45 + 45)/8 = 101.25: 12.5% of 90.
+    CHECK(doubts(motor.curve) == 1);
+    CHECK(curve_value(motor.curve, 1.5) == Approx(101.25));
+    scene.mechanism.motors = {motor};
+    CHECK(contains(check_scene(scene, true).warnings.back(), "by 12% of the table's range at 1.5 s"));
+    scene::Curve within = motor.curve;
+    within.values = {0, 30, 60, 90};
+    CHECK(doubts(within) == 0);
+    within.values = {5, 5, 5, 5};
+    CHECK(doubts(within) == 0);
+    scene::Curve linear = motor.curve;
+    linear.kind = scene::CurveKind::linear;
+    CHECK(doubts(linear) == 0);
+    CHECK(doubts({scene::CurveKind::cubic, 0, {0, 1}, {0, 90}, std::nullopt}) == 0);
+}
+
 TEST_CASE("A motion or load beyond any mechanism is refused", "[model]") {
     scene::Body cube = box_body("cube", {0, 0, 0}, {1, 1, 1});
     cube.linear_velocity.x() = 1e150;

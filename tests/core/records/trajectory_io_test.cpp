@@ -240,6 +240,18 @@ TEST_CASE("A trajectory of the first format is refused by name", "[stepper]") {
     CHECK(read.errors().front().message.find("version 1") != std::string::npos);
 }
 
+TEST_CASE("Another kind of file is told to be no trajectory, and not that its JSON is at fault", "[stepper]") {
+    const ChangedFile file;
+    for (const char* other : {"{\"fettle_scene\": 1,\n\"bodies\": []}\n", "{\"fettle_scene\": 1}", "[\n1,\n2]"}) {
+        const auto read = file.read(other);
+        REQUIRE_FALSE(read);
+        CHECK(read.errors().size() == 1);
+        CHECK(read.errors().front().code == ErrorCode::missing_key);
+        CHECK(read.errors().front().message.find("no trajectory") != std::string::npos);
+    }
+    CHECK(file.read("{\"fettle_trajectory\": 2,\n").errors().front().code == ErrorCode::parse);
+}
+
 TEST_CASE("A trajectory whose last line is cut off is taken up to there, with a warning", "[stepper]") {
     const ChangedFile file;
     const std::size_t last_line = file.text.rfind('\n', file.text.size() - 2) + 1;
