@@ -87,7 +87,7 @@ public:
         stretch_ = norms * norms * rounded_up;
     }
 
-    std::optional<Overlap> run(int cells) { return run(cells, common_box()); }
+    std::optional<Overlap> run(int cells) { return run(common_box(), cells / 2, cells - cells / 2); }
 
     /// By what the two have in common, whose thickest piece is looked at for the largest ball.
     std::optional<Overlap> run(int cells, const CommonPart& common) {
@@ -97,7 +97,7 @@ public:
             const double thickness = piece.volume() / piece.area();
             if (!(thickness > thickest)) continue;
             thickest = thickness;
-            overlap = run(cells, box_of(piece));
+            overlap = run(box_of(piece), 0, cells);
         }
         if (!overlap) return overlap;
         const double volume = common.volume(), rounding = 2 * (slack_ + common.moved) * common.area() + 1e-12 * volume;
@@ -115,7 +115,7 @@ public:
     }
 
 private:
-    std::optional<Overlap> run(int cells, const Box& common) {
+    std::optional<Overlap> run(const Box& common, int cells_for_volume, int cells_for_depth) {
         if (!((common.high - common.low).minCoeff() > 0)) return std::nullopt;
         open_ = {};
         deep_.clear();
@@ -124,8 +124,8 @@ private:
         root.center = 0.5 * (common.low + common.high);
         root.half = 0.5 * (common.high - common.low) * rounded_up;
         look_at(root);
-        search(cells / 2, false);
-        search(cells - cells / 2, true);
+        search_volume(cells_for_volume);
+        search_depth(cells_for_depth);
         Overlap overlap;
         overlap.depth_lower = best_ > 0 ? 2 * best_ : 0;
         overlap.center = at_.rotation_b * best_at_;
@@ -182,8 +182,7 @@ private:
         open_.push(cell);
     }
 
-    void search(int cells, bool for_depth) {
-        if (for_depth) return search_depth(cells);
+    void search_volume(int cells) {
         for (int i = 0; i < cells && !open_.empty(); i += 2) {
             const Cell cell = open_.top();
             open_.pop();

@@ -105,11 +105,13 @@ std::string bounds_text(double lower, double upper, const std::string& unit) {
     return (lower > 0 ? formatted("%.3g to ", 0.995 * lower) : std::string("at most ")) + formatted("%.3g ", 1.005 * upper) + unit;
 }
 
-// "0.246 mm deep, 2.31 mm^3 shared".
+// "0.246 mm deep, 2.31 mm^3 shared"; where it takes a longer move to part them than what they share is thick: "at least 3.98 mm deep".
 std::string overlapped(const core::clearance::Overlap& o, const Lengths& lengths) {
     const double unit = lengths.metres(), cubed = unit * unit * unit;
-    return bounds_text(o.depth_lower / unit, o.depth_upper / unit, lengths.unit()) + " deep, " +
-           bounds_text(o.volume_lower / cubed, o.volume_upper / cubed, lengths.unit() + "^3") + " shared";
+    const bool is_known = o.depth_upper <= 1.01 * o.depth_lower;
+    return (is_known || !(o.depth_lower > 0) ? bounds_text(o.depth_lower / unit, o.depth_upper / unit, lengths.unit())
+                                             : formatted("at least %.3g ", 0.995 * o.depth_lower / unit) + lengths.unit()) +
+           " deep, " + bounds_text(o.volume_lower / cubed, o.volume_upper / cubed, lengths.unit() + "^3") + " shared";
 }
 
 std::string overlapped(const ReportedPair& pair, const Lengths& lengths) {

@@ -160,8 +160,10 @@ exports::PictureMarker marker_of(const PairClearance& pair, const core::model::M
     if (!pair.overlap || !(pair.overlap->depth_lower > 0))
         return {pair.witness.point_a, pair.witness.point_b, pair_name + "interference", true};
     const RoundedLengths lengths(unit, 2);
-    const std::string depth = lengths.fixed(pair.overlap->depth_lower, Towards::down) + " to " +
-                              lengths.fixed(pair.overlap->depth_upper, Towards::up) + " " + unit + " deep";
+    const std::string low = lengths.fixed(pair.overlap->depth_lower, Towards::down),
+                      high = lengths.fixed(pair.overlap->depth_upper, Towards::up);
+    const std::string depth =
+        (pair.overlap->depth_upper <= 1.01 * pair.overlap->depth_lower ? high : "at least " + low) + " " + unit + " deep";
     return {pair.overlap->center, pair.overlap->center, pair_name + "interference, " + depth, true, pair.overlap->depth_upper};
 }
 

@@ -54,6 +54,10 @@ Answer asked(const DesignFolder& folder, const std::string& question) {
 TEST_CASE("clearance: a frame through the wheel that it carries is a clash, whatever is asked") {
     if (!core::parts::can_cut_solids()) FETTLE_SKIP("this build cannot cut solids");
     const DesignFolder folder(design, wheel_scene(leg, disc));
+    // One figure of the depth: what parts them is a move of 26 mm at most, and they share what is 4 mm thick.
+    const std::string told = run("clearance " + folder.file("small.scene.json")).out;
+    CAPTURE(told);
+    CHECK(told.find("at least 3.98 mm deep, 160 mm^3 shared") != std::string::npos);
     for (const char* question : all_questions) {
         const Answer answer = asked(folder, question);
         CAPTURE(question, answer.out);
