@@ -11,7 +11,7 @@
 #include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/files/json_keys.hpp"
 #include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/part_files/solid_reader.hpp"
+#include "fettle/core/part_files/facet_bound.hpp"
 
 namespace fettle::core::part_files {
 
@@ -27,6 +27,7 @@ struct PartFile::Contents {
     parts::Facets facets;
     PartNumbers numbers{1e-3};
     SolidMaker solid;
+    FacetBound facet_bound;
     std::shared_ptr<const std::map<std::string, ProfileMaker>> profiles;
     std::vector<std::shared_ptr<const void>> named;  // what `solid` points to
 };
@@ -192,6 +193,7 @@ Result<PartFile> PartFile::parse(const std::string& text, const std::string& nam
     contents->profiles = profiles.named_makers();
     contents->named = {profiles.named_makers(), solids.named_makers()};
     if (!document->errors().empty()) return document->errors();
+    contents->facet_bound = read_facet_bound(numbers, profiles, root["solids"], root["solid"]);
     return PartFile(std::move(contents));
 }
 
@@ -246,10 +248,17 @@ Result<parts::DrawnPart> PartFile::drawn(const std::vector<double>& values, cons
                                          const parts::Structure& structure, const parts::DrawnOptions& options) const {
     Errors errors = faults(values);
     if (!errors.empty()) return errors;
+    const auto sheet_of = [&](parts::Drawing& drawing) {
+        std::vector<Number> dimensions;
+        for (const double value : values) dimensions.push_back(drawing.dimension(value));
+        return Sheet{drawing, contents_->numbers.values(std::move(dimensions)), {}, {}, 0};
+    };
+    if (structure.decisions.empty()) {  // what was drawn before has as many facets now
+        parts::Drawing drawing(facets.value_or(contents_->facets));
+        if (const auto bound = contents_->facet_bound(sheet_of(drawing)); !bound) return bound.errors();
+    }
     parts::Drawing drawing(facets.value_or(contents_->facets), structure, options.compare_counts);
-    std::vector<Number> dimensions;
-    for (const double value : values) dimensions.push_back(drawing.dimension(value));
-    Sheet sheet{drawing, contents_->numbers.values(std::move(dimensions)), {}, {}, 0};
+    Sheet sheet = sheet_of(drawing);
     const Result<parts::Solid> solid = contents_->solid(sheet);
     if (!solid) return solid.errors();
     return located(parts::drawn(drawing, *solid, name(), options), name());

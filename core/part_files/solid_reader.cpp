@@ -32,7 +32,6 @@ struct SolidReader::Ends {
 
 namespace {
 
-constexpr double most_facets = 500'000;
 constexpr double most_turns = 1000;
 
 // Vertices that a profile becomes, at most, by the drawing's facets.
@@ -45,23 +44,20 @@ double vertex_count(const Profile& profile, const parts::Facets& facets) {
             if (std::holds_alternative<parts::Line>(segment.curve))
                 out += 1;
             else
-                out += arc == nullptr ? of_other_curves : parts::segments_of(facets, arc->radius.value, 2 * std::numbers::pi);
+                out += arc == nullptr ? of_other_curves : parts::segments_wanted(facets, arc->radius.value, 2 * std::numbers::pi);
         }
     }
     return out;
 }
 
-std::optional<Error> too_fine(double facets, const std::string& where) {
-    if (facets <= most_facets) return std::nullopt;
-    return Error{ErrorCode::out_of_range, where, "this would have more than 500000 facets: take a larger chord, or fewer segments"};
-}
+std::optional<Error> too_fine(double facets, const std::string& where) { return too_many_facets(facets, "up to ", where); }
 
 std::optional<Error> too_fine(const Profile& profile, double layers, const Sheet& sheet, const std::string& where) {
     return too_fine(vertex_count(profile, sheet.drawing.facets) * layers, where);
 }
 
 double circle_segments(const Sheet& sheet, const Number& radius) {
-    return parts::segments_of(sheet.drawing.facets, radius.value, 2 * std::numbers::pi);
+    return parts::segments_wanted(sheet.drawing.facets, radius.value, 2 * std::numbers::pi);
 }
 
 Result<parts::Point3> direction_of(const PartPoint3& axis, const Sheet& sheet, const std::string& where) {
@@ -77,7 +73,7 @@ double whole_turn_segments(const Sheet& sheet, const Profile& profile) {
     double largest = 0;
     for (const parts::Loop& loop : profile.loops)
         for (const parts::Segment& segment : loop.segments) largest = std::max(largest, value(parts::end_of(segment.curve)).norm());
-    return largest > 0 ? parts::segments_of(sheet.drawing.facets, largest, 2 * std::numbers::pi) : 1;
+    return largest > 0 ? parts::segments_wanted(sheet.drawing.facets, largest, 2 * std::numbers::pi) : 1;
 }
 
 // Layers in order, those in a `repeat` as often as it says.
@@ -99,6 +95,20 @@ std::vector<JsonNode> repeated_layers(const JsonNode& stack, const PartNumbers& 
 }
 
 }  // namespace
+
+std::optional<Error> too_many_facets(double count, const char* how, const std::string& where) {
+    constexpr double most = 500'000;
+    if (count <= most) return std::nullopt;
+    return Error{ErrorCode::out_of_range, where,
+                 "this would have " + std::string(how) + base::formatted(count < 1e9 ? "%.0f" : "%.3g", count) +
+                     " facets; at most 500000 are drawn: take fewer copies, or coarser `facets` (a larger chord, fewer segments)"};
+}
+
+std::vector<std::pair<std::string_view, std::vector<std::string_view>>> SolidReader::keys() {
+    std::vector<std::pair<std::string_view, std::vector<std::string_view>>> out;
+    for (const Verb& verb : verbs()) out.emplace_back(verb.name, verb.keys);
+    return out;
+}
 
 const std::vector<SolidReader::Verb>& SolidReader::verbs() {
     using S = SolidReader;
@@ -130,8 +140,9 @@ std::optional<Error> SolidReader::fault_of(const Solid& solid, const std::string
 std::optional<Error> SolidReader::fault_of(const std::vector<Solid>& solids, const std::string& where) {
     double facets = 0;
     for (const Solid& solid : solids) facets += static_cast<double>(solid.triangles.size());
-    return too_fine(facets, where);
+    return too_many_facets(facets, "", where);
 }
+
 Result<Solid> SolidReader::drawn_once(const std::string& name, const SolidMaker& maker, Sheet& sheet) {
     const std::pair key(name, sheet.drawing.facets.lean);
     const auto known = sheet.solids.find(key);
@@ -280,8 +291,7 @@ SolidsMaker SolidReader::repeated(const JsonNode& node, const std::string& name)
         if (count == 0) return std::vector<Solid>();
         const Result<Solid> made = what(sheet);
         if (!made) return made.errors();
-        if (static_cast<double>(made->triangles.size()) * count > most_facets)
-            return Error{ErrorCode::out_of_range, where, "these copies would have more than 500000 facets in all"};
+        if (const auto error = too_many_facets(static_cast<double>(made->triangles.size()) * count, "", where)) return *error;
         if (is_linear) return parts::linear_copies(*made, count, step.at(sheet));
         const auto direction = direction_of(axis, sheet, where);
         if (!direction) return direction.errors();

@@ -16,12 +16,17 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/part_files/profile_reader.hpp"
 #include "fettle/core/parts/extrude.hpp"
 
 namespace fettle::core::part_files {
+
+/// Where something at `where` would have more facets than are drawn. @param how  "at least ", "up to ", or nothing
+std::optional<Error> too_many_facets(double count, const char* how, const std::string& where);
 
 class SolidReader;
 using SolidMaker = ShapeReader<SolidReader, parts::Solid>::Maker;
@@ -32,6 +37,9 @@ public:
     /// All outlive this object. @param named  `solids` of the file.
     SolidReader(PartNumbers& numbers, ProfileReader& profiles, const files::JsonNode& named)
         : ShapeReader(numbers, named, "solid"), profiles_(profiles) {}
+
+    /// The verbs, and the keys that go with each.
+    static std::vector<std::pair<std::string_view, std::vector<std::string_view>>> keys();
 
 private:
     friend ShapeReader;

@@ -15,7 +15,6 @@ namespace {
 using geometry::Range;
 
 constexpr double half_turn = std::numbers::pi;
-constexpr int most_facets = 100'000;
 
 template <class... Visitors>
 struct Overloaded : Visitors... {
@@ -26,7 +25,7 @@ Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 // Of what is counted; the least where that is no number.
 int whole_number(double count, int least) {
-    return static_cast<int>(std::min<double>(most_facets, std::max<double>(least, std::ceil(count))));
+    return static_cast<int>(std::min<double>(most_segments, std::max<double>(least, std::ceil(count))));
 }
 
 double cross_of(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }

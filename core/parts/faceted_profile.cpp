@@ -90,6 +90,7 @@ Result<FacetedProfile> faceted(Drawing& drawing, const Profile& profile) {
             if (!std::holds_alternative<Line>(segment.curve)) {
                 const int count =
                     drawing.count("segments of " + quoted_curve(segment.feature), [&] { return facet_count(segment.curve, facets); });
+                if (count >= most_segments) return too_many_segments(segment.feature, quoted_curve(segment.feature), facets);
                 chain = chain_of(segment.curve, count, facets.lean);
             }
             out.curves.push_back({segment.curve, segment.feature, chain.out, chain.in, chain.proven});

@@ -8,26 +8,24 @@
 #include "fettle/core/parts/point.hpp"
 
 namespace fettle::core::parts {
-namespace {
-
-constexpr double most_segments = 100000;
-
-}  // namespace
-
 Lean opposite(Lean lean) {
     if (lean == Lean::cover) return Lean::within;
     return lean == Lean::within ? Lean::cover : Lean::through;
 }
 
-int segments_of(const Facets& facets, double radius, double angle) {
+double segments_wanted(const Facets& facets, double radius, double angle) {
     angle = std::abs(angle);
     const bool whole = angle >= full_turn * (1 - 1e-12);
-    const auto counted = [](double count) { return static_cast<int>(std::min(most_segments, std::max(1.0, std::ceil(count - 1e-9)))); };
-    if (!(facets.chord > 0)) return std::max(whole ? 3 : 1, counted(facets.segments * angle / full_turn));
+    const auto counted = [](double count) { return std::max(1.0, std::ceil(count - 1e-9)); };
+    if (!(facets.chord > 0)) return std::max(whole ? 3.0 : 1.0, counted(facets.segments * angle / full_turn));
     // r (1 / cos(half) - 1) <= chord, the larger of the two deviations; a flat turns by at most 120 degrees.
     const double half = std::min(std::numbers::pi / 3, std::acos(radius / (radius + facets.chord)));
-    const int least = counted(angle / (2 * half));
-    return whole ? std::max(4, (least + 3) / 4 * 4) : least;
+    const double least = counted(angle / (2 * half));
+    return whole ? std::max(4.0, std::ceil(least / 4) * 4) : least;
+}
+
+int segments_of(const Facets& facets, double radius, double angle) {
+    return static_cast<int>(std::min<double>(most_segments, segments_wanted(facets, radius, angle)));
 }
 
 }  // namespace fettle::core::parts

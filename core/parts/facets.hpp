@@ -28,8 +28,13 @@ struct Facets {
     Lean lean = Lean::cover;
 };
 
+/// Of one curve or turn. What would take more is drawn with so many, and its chord is not kept: who draws, refuses that.
+inline constexpr int most_segments = 100'000;
+
 /// Segments for an arc of `radius` [m] that turns by `angle` [rad]: the least number that keeps the chord, or by Facets::segments. At least
-/// 1; whole circles take at least 3 and, by chord, a multiple of 4, which keeps polygons symmetric. Never more than 100,000.
+/// 1; whole circles take at least 3 and, by chord, a multiple of 4, which keeps polygons symmetric. Perhaps infinite.
+double segments_wanted(const Facets& facets, double radius, double angle);
+/// The same, and never more than most_segments.
 int segments_of(const Facets& facets, double radius, double angle);
 
 }  // namespace fettle::core::parts

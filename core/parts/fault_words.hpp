@@ -4,8 +4,10 @@
 
 #include <string>
 
+#include "fettle/core/base/result.hpp"
 #include "fettle/core/base/types.hpp"
 #include "fettle/core/base/units.hpp"
+#include "fettle/core/parts/facets.hpp"
 
 namespace fettle::core::parts {
 
@@ -20,6 +22,13 @@ inline std::string millimetres(double metres) { return base::format_length(metre
 inline std::string place(const Vector2& p) { return "(" + millimetres(p.x()) + ", " + millimetres(p.y()) + ")"; }
 inline std::string place(const Vector3& p) {
     return "(" + millimetres(p.x()) + ", " + millimetres(p.y()) + ", " + millimetres(p.z()) + ")";
+}
+
+/// Of a curve or a turn, quoted, that takes as many segments as are drawn of one, or more.
+inline base::Error too_many_segments(const std::string& feature, const std::string& quoted, const Facets& facets) {
+    return {base::ErrorCode::out_of_range, feature,
+            quoted + " would have " + std::to_string(most_segments) + " segments or more" +
+                (facets.chord > 0 ? " to keep a chord of " + millimetres(facets.chord) + ": take a larger chord" : ": take fewer")};
 }
 
 }  // namespace fettle::core::parts

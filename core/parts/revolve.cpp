@@ -127,6 +127,7 @@ Result<Solid> turned_solid(Drawing& drawing, const Profile& profile, const Numbe
             quoted_profile(name) + " is turned by " + format_quantity(sweep, "deg", 4) + ": it must be more than 0 and less than 360 deg"};
     const int count =
         drawing.count("segments of the turn of " + quoted_profile(name), [&] { return segments_of(drawing.facets, farthest, sweep); });
+    if (count >= most_segments) return too_many_segments(name, "the turn of " + quoted_profile(name), drawing.facets);
     const Turn turn = angle != nullptr ? part_turn(*from, *angle, count, lean) : whole_turn(count);
     const std::size_t stations = turn.stations.size();
 

@@ -186,13 +186,21 @@ TEST_CASE("part file: what asks for too much, or for itself, ends") {
     for (int k = 1; k < 60; ++k)
         doubled += ", \"s" + std::to_string(k) + R"(": {"union": ["s)" + std::to_string(k - 1) + R"(", {"move": "s)" +
                    std::to_string(k - 1) + R"(", "by": [)" + std::to_string(3LL << std::min(k, 40)) + ", 0, 0]}]}";
-    CHECK(fault_of_drawing(few + R"("solids": {)" + doubled + R"(}, "solid": "s59")").find("more than 500000 facets") != std::string::npos);
+    CHECK(fault_of_drawing(few + R"("solids": {)" + doubled + R"(}, "solid": "s59")").find("at most 500000 are drawn") !=
+          std::string::npos);
     CHECK(fault_of_drawing(few + R"("solid": {"repeat": {"repeat": {"repeat": {"sphere": 1}, "count": 100, "step": [3, 0, 0]}, "count": 100,
         "step": [0, 3, 0]}, "count": 100, "step": [0, 0, 3]})")
-              .find("more than 500000 facets") != std::string::npos);
+              .find("at most 500000 are drawn") != std::string::npos);
     for (const char* round : {R"({"sphere": 1e6})", R"({"torus": [1e6, 1e5]})"})
-        CHECK(fault_of_drawing(R"("facets": {"chord": 1e-8}, "solid": )" + std::string(round)).find("more than 500000 facets") !=
+        CHECK(fault_of_drawing(R"("facets": {"chord": 1e-8}, "solid": )" + std::string(round)).find("at most 500000 are drawn") !=
               std::string::npos);
+    // A chord that is kept by no number of facets that are drawn.
+    const std::string fine = R"("facets": {"chord": "1e-12mm"}, "solid": )";
+    for (const char* round : {R"({"extrude": {"circle": 3}, "to": 5})", R"({"cone": [3, 0], "height": 5})",
+                              R"({"revolve": {"rectangle": [4, 1], "corner": [0, 0]}})"})
+        CHECK(fault_of_drawing(fine + round).find("at most 500000 are drawn") != std::string::npos);
+    CHECK(fault_of_drawing(fine + R"({"extrude": {"spline": [[0, 0], [9, 1], [3, 8]]}, "to": 5})").find("take a larger chord") !=
+          std::string::npos);
     CHECK(fault_of_drawing(R"("solid": {"repeat": {"sphere": 1}, "count": 3, "axis": [0, 0, 0]})").find("an axis has a direction") !=
           std::string::npos);
     CHECK(fault_of_drawing(R"("solid": {"extrude": {"circle": "= wide * 1e30 * 1e30"}, "to": 1})").find("farther away than 1e30 m") !=
