@@ -330,9 +330,14 @@ void report_pair(const Model& model, std::pair<int, int> pair, const std::vector
     if (why == NoContact::none) {
         const auto doubt = error ? std::nullopt : containment_doubt(a, b);
         if (doubt) report.warnings.push_back(*doubt);
-        if (error) report.errors.push_back(std::move(*error));
+        if (!error) return;
+        report.errors.push_back(std::move(*error));
+        report.overlapping.push_back(pair);
     } else if (error && why == NoContact::joined) {
-        if (auto overlap = unexplained_overlap(model, i, j, messages)) report.warnings.push_back(std::move(*overlap));
+        auto overlap = unexplained_overlap(model, i, j, messages);
+        if (!overlap) return;
+        report.warnings.push_back(std::move(*overlap));
+        report.overlapping.push_back(pair);
     } else if (error) {
         report.warnings.push_back(error->message + " (contact never acts between them: neither is dynamic)");
     }
@@ -362,6 +367,7 @@ StartReport report_start(const Model& model) {
     for (StartReport& of_pair : of_pairs) {
         std::move(of_pair.errors.begin(), of_pair.errors.end(), std::back_inserter(report.errors));
         std::move(of_pair.warnings.begin(), of_pair.warnings.end(), std::back_inserter(report.warnings));
+        std::move(of_pair.overlapping.begin(), of_pair.overlapping.end(), std::back_inserter(report.overlapping));
     }
     constexpr std::size_t most = 20;
     if (const std::size_t all = report.warnings.size(); all > most) {

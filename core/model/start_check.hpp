@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
@@ -14,6 +15,9 @@ namespace fettle::core::model {
 struct StartReport {
     base::Errors errors;                ///< why a simulation cannot start here
     std::vector<std::string> warnings;  ///< what it starts with all the same
+    /// Whom the scene's `ignore` would have to name, if they are not meant to meet: of the errors, and of the warnings those that joints
+    /// join. In order.
+    std::vector<std::pair<int, int>> overlapping;
 };
 
 /// For every pair of bodies that may collide: no two elements intersect or touch, none come as close as dmin (judged in floating point),

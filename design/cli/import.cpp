@@ -3,7 +3,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "fettle/core/base/text.hpp"
 #include "fettle/core/files/atomic_file.hpp"
+#include "fettle/core/files/json_dump.hpp"
+#include "fettle/core/model/start_check.hpp"
 #include "fettle/design/cli/inputs.hpp"
 #include "fettle/design/cli/read_files.hpp"
 #include "fettle/design/cli/session.hpp"
@@ -21,6 +24,20 @@ struct ImportArguments {
     std::string path, to;
     bool floating = false, ignore_mimic_limits = false;
 };
+
+// What it takes to simulate the scene as it is assembled, where bodies pass through each other there; empty: they do not.
+std::string ignore_line(const std::string& path, const CommonOptions& common) {
+    const auto loaded = load_model(path, common, false);
+    if (!loaded) return "the scene cannot be simulated as it is: " + loaded.errors().front().message;
+    const core::model::Model& model = loaded->model;
+    Json pairs = Json::array();
+    for (const auto& [a, b] : core::model::report_start(model).overlapping)
+        pairs.push_back(model.bodies[a].name + ":" + model.bodies[b].name);
+    if (pairs.empty()) return {};
+    return "as assembled " + core::base::counted(pairs.size(), "pair") +
+           " of bodies pass through each other; where they are not meant to meet, add to the scene: \"ignore\": " +
+           core::files::dumped(pairs);
+}
 
 int run_import(const ImportArguments& arguments, const CommonOptions& common, Console& console) {
     const std::string ending = ".scene.json";
@@ -56,7 +73,12 @@ int run_import(const ImportArguments& arguments, const CommonOptions& common, Co
     if (errors.empty()) errors = replaced_inputs(written, common.given);
     if (errors.empty()) errors = together.take_names();
     if (!errors.empty()) return console.input_errors(errors);
-    console.result({{"status", "ok"}, {"files", std::move(files)}, {"warnings", scene->warnings}}, told);
+    std::vector<std::string> warnings = scene->warnings;
+    if (std::string line = ignore_line(arguments.to, common); !line.empty()) {
+        tell_warnings(console, {line});
+        warnings.push_back(std::move(line));
+    }
+    console.result({{"status", "ok"}, {"files", std::move(files)}, {"warnings", warnings}}, told);
     return exit_done;
 }
 

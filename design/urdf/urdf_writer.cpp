@@ -193,6 +193,7 @@ private:
         for (const auto& spring : mechanism.springs) told["springs and dampers"].push_back(spring.name);
         for (const auto& motor : mechanism.motors) told["motors"].push_back(motor.name);
         for (const auto& load : mechanism.loads) told["loads"].push_back(load.name);
+        if (!scene_.ignore.empty()) told["pairs of `ignore`"] = scene_.ignore;
         for (const core::scene::Joint& joint : mechanism.joints) {
             if (joint.forces.stiffness > 0) told["the stiffness of the joints"].push_back(joint.name);
             if (joint.assemble) told["`assemble` of the joints"].push_back(joint.name);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "fettle/core/files/atomic_file.hpp"
 #include "fettle/core/geometry/mass_moments.hpp"
 #include "fettle/core/scene_files/scene_reader.hpp"
 #include "fettle/core/setup/build_model.hpp"
@@ -223,6 +224,43 @@ TEST_CASE("URDF: the program imports a robot that simulates, with the file's mas
         CHECK((*found->forces.limits)[0] == Approx((*joint.forces.limits)[0]).margin(1e-12));
         CHECK((*found->forces.limits)[1] == Approx((*joint.forces.limits)[1]));
     }
+}
+
+TEST_CASE("URDF: what passes through another as assembled is told on the way in, what is ignored on the way out") {
+    const TemporaryFolder folder;
+    const std::string mass = R"(<inertial><mass value="1"/></inertial>)";
+    const auto link = [&](const std::string& name, const std::string& x) {
+        return "<link name=\"" + name + "\">" + mass + "<collision><origin xyz=\"" + x +
+               " 0 0\"/><geometry><box size=\"0.1 0.1 0.1\"/></geometry></collision></link>";
+    };
+    const auto joint = [](const std::string& child) {
+        return "<joint name=\"to_" + child + "\" type=\"continuous\"><parent link=\"base\"/><child link=\"" + child +
+               "\"/><axis xyz=\"0 0 1\"/></joint>";
+    };
+    const auto robot = [&](const std::string& at_b, const std::string& at_c) {
+        return folder.write(
+            "r.urdf", "<robot name=\"r\">" + link("base", "0") + link("b", at_b) + link("c", at_c) + joint("b") + joint("c") + "</robot>");
+    };
+    const std::string to = folder.file("r.scene.json");
+    const Answer crossing = run("import " + robot("0.09", "0.15") + " --to " + to + " --json");
+    REQUIRE(crossing.code == 0);
+    REQUIRE(crossing.json()["warnings"].size() == 1);
+    const std::string told = crossing.json()["warnings"][0];
+    CHECK(contains(told, "2 pairs of bodies pass through each other"));
+    const std::size_t at = told.find("\"ignore\": ");
+    REQUIRE(at != std::string::npos);
+    CHECK(json::parse("{" + told.substr(at) + "}")["ignore"] == json({"base:b", "b:c"}));
+    CHECK(run("simulate " + to + " --steps 5").code != 0);
+
+    // With that line it simulates; and the file that leaves says what it cannot say.
+    json scene = json::parse(core::files::read_file(to).value());
+    scene["ignore"] = {"base:b", "b:c"};
+    folder.write("r.scene.json", scene.dump());
+    CHECK(run("simulate " + to + " --steps 5 --json").json()["status"] == "ok");
+    const Answer exported = run("export " + to + " --to " + folder.file("back/r.urdf") + " --json");
+    REQUIRE(exported.code == 0);
+    CHECK(contains(exported.json()["warnings"].dump(), R"(left out: pairs of `ignore` \"base:b\", \"b:c\")"));
+    CHECK(run("import " + robot("0.2", "0.4") + " --to " + to + " --json").json()["warnings"].empty());
 }
 
 TEST_CASE("URDF: inertia in, about its own centre and axes; what is fixed to a link weighs with it") {
