@@ -21,6 +21,7 @@ using core::clearance::PairClearance;
 using core::clearance::PairRequest;
 
 constexpr std::size_t most_nearest = 12;           // rows of a simulation
+constexpr int most_together = 2000;                // steps
 constexpr int most_searched = 60;                  // of no more pairs each is searched by itself
 constexpr long most_evaluations = 2'000'000;       // of a pair: what is longer is told with wider bounds
 constexpr double share = 1e-2, wide_reach = 1.25;  // how well, and how far beyond the least, nearest pairs are looked for
@@ -84,6 +85,48 @@ core::clearance::ClearanceOptions options_over_motion(double tolerance, const st
     options.max_evaluations = most_evaluations;
     options.should_stop = should_stop;
     return options;
+}
+
+// Calls visit(motion, first) with stretches of at most `most_together` steps, the first of which is `first`: a search holds several
+// kilobytes of each step.
+template <class Visit>
+void for_stretches(const core::stepper::Trajectory& trajectory, const Visit& visit) {
+    const auto count = count_of(trajectory.steps);
+    if (count <= most_together) return visit(trajectory, 0);
+    for (int first = 0; first < count; first += most_together) {
+        const int last = std::min(count, first + most_together);
+        core::stepper::Trajectory stretch;
+        stretch.time_start = core::stepper::time_at(trajectory, first);
+        stretch.timestep = trajectory.timestep;
+        stretch.body_names = trajectory.body_names;
+        if (!trajectory.times.empty()) stretch.times.assign(trajectory.times.begin() + first, trajectory.times.begin() + last + 1);
+        stretch.poses.assign(trajectory.poses.begin() + first, trajectory.poses.begin() + last + 1);
+        stretch.steps.assign(trajectory.steps.begin() + first, trajectory.steps.begin() + last);
+        visit(stretch, first);
+    }
+}
+
+// Of one pair, what both say together.
+PairClearance together(const PairClearance& x, const PairClearance& y) {
+    PairClearance nearer = y.upper < x.upper ? y : x;
+    nearer.lower = std::min(x.lower, y.lower);
+    nearer.intersecting = x.intersecting || y.intersecting;
+    nearer.solids = core::certificate::are_apart(x.solids) ? y.solids : x.solids;
+    return nearer;
+}
+
+std::vector<PairClearance> searched_each(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
+                                         const std::vector<PairRequest>& requests, const core::clearance::ClearanceOptions& options) {
+    std::vector<PairClearance> all;
+    for_stretches(trajectory, [&](const core::stepper::Trajectory& stretch, int first) {
+        std::vector<PairClearance> found = core::clearance::certify_clearance(model, stretch, requests, options);
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            if (found[k].witness.step >= 0) found[k].witness.step += first;
+            if (!all.empty()) found[k] = together(all[k], found[k]);
+        }
+        all = std::move(found);
+    });
+    return all;
 }
 
 // The nearest of the windows of each pair.
@@ -238,7 +281,7 @@ Json nearest_pairs(const core::model::Model& model, const core::stepper::Traject
     const core::clearance::ClearanceOptions options = options_over_motion(share * least, should_stop);
     const bool few = requests.size() <= static_cast<std::size_t>(most_searched);
     std::vector<PairClearance> pairs =
-        few ? core::clearance::certify_clearance(model, trajectory, requests, options)
+        few ? searched_each(model, trajectory, requests, options)
             : nearest_of_pairs(core::clearance::certify_near(model, trajectory, wide_reach * least, options).windows);
     std::stable_sort(pairs.begin(), pairs.end(), [](const PairClearance& x, const PairClearance& y) { return x.upper < y.upper; });
     for (std::size_t k = 0; k < pairs.size() && k < most_nearest; ++k) rows.push_back(row_of(pairs[k], model, trajectory));
@@ -264,8 +307,14 @@ Json margin_curves(const Json& rows, const core::model::Model& model, const core
         const double lower = bound_or(row["lower"], 0) * millimetre, upper = bound_or(row["upper"], 0) * millimetre;
         core::clearance::ClearanceOptions options = options_over_motion(std::max({share * lower, upper - lower, 1e-8}), should_stop);
         options.margin_curve = true;
-        const auto found = core::clearance::certify_clearance(model, trajectory, {{a, b, 0}}, options);
-        const auto& margin = found.front().margin;
+        std::vector<core::clearance::MarginInterval> margin;
+        for_stretches(trajectory, [&](const core::stepper::Trajectory& stretch, int first) {
+            const std::vector<PairClearance> found = core::clearance::certify_clearance(model, stretch, {{a, b, 0}}, options);
+            for (core::clearance::MarginInterval each : found.front().margin) {
+                each.step += first;
+                margin.push_back(each);
+            }
+        });
         if (margin.size() == stretches) curves.push_back(margin_curve(rows, k, margin));
     }
     if (curves.empty()) return {};

@@ -68,12 +68,12 @@ core::scene::Body box(const std::string& name, const Vector3& size, const Vector
 }
 
 // Two cubes of 10 mm, 5 mm apart, that part at 20 mm/s while the second turns about their axis; a third like the first stands far away.
-Motion parting_cubes(int steps) {
+Motion parting_cubes(int steps, double speed = 0.02) {
     core::scene::Scene scene;
     scene.timestep = 0.01;
     for (const auto& [name, x] : {std::pair{"still", 0.0}, std::pair{"moving", 0.015}, std::pair{"far", 0.2}})
         scene.bodies.push_back(box(name, Vector3::Constant(0.01), Vector3(x, 0, 0)));
-    scene.bodies[1].prescribed[0]->rate = 0.02;
+    scene.bodies[1].prescribed[0]->rate = speed;
     scene.bodies[1].prescribed[3]->rate = M_PI;
     Motion motion{core::setup::build_model(scene).value(), {}};
     motion.trajectory = core::stepper::follow_scripts(motion.model, steps);
@@ -188,6 +188,29 @@ TEST_CASE("report: bands of clearance hold the distance, and the nearest pair co
     const Json stopped = nearest_pairs(motion.model, motion.trajectory, 5e-3, [] { return true; });
     for (const Json& row : stopped) CHECK(row["lower"].get<double>() <= 200);
     CHECK(margin_curves(Json::array(), motion.model, motion.trajectory, go_on).is_null());
+}
+
+TEST_CASE("report: a long motion, which is searched stretch by stretch, is one motion") {
+    Motion motion = parting_cubes(4100, 4e-3);
+    for (core::model::Body& body : motion.model.bodies) body.type = core::scene::BodyType::dynamic_body;
+    const Json rows = nearest_pairs(motion.model, motion.trajectory, 5e-3, go_on);
+    REQUIRE(rows.size() == 3);
+    CHECK(rows[0]["b"] == "moving");
+    CHECK(rows[0]["lower"].get<double>() <= 5);
+    CHECK(rows[0]["upper"].get<double>() == Approx(5).margin(0.06));
+    CHECK(rows[0]["time"].get<double>() == Approx(0).margin(0.1));
+    CHECK(rows[0]["steps"] == Json({0, 4100}));
+    CHECK(rows[1]["a"] == "moving");  // comes within 175 - 41 * 4 = 11 mm, turned by half a turn each second
+    CHECK(rows[1]["lower"].get<double>() <= 11);
+    CHECK(rows[1]["upper"].get<double>() == Approx(11).margin(0.06));
+    CHECK(rows[1]["time"].get<double>() == Approx(41).margin(0.1));
+    const Json curves = margin_curves(rows, motion.model, motion.trajectory, go_on);
+    const auto time = unpacked<double>(curves["time"], "f64");
+    for (const Json& pair : curves["pairs"]) CHECK(unpacked<float>(pair["lower"], "f32").size() + 1 == time.size());
+    const auto lower = unpacked<float>(curves["pairs"][1]["lower"], "f32"), upper = unpacked<float>(curves["pairs"][1]["upper"], "f32");
+    CHECK(lower.front() > 170);
+    CHECK(lower.back() <= 11.05);
+    CHECK(upper.back() >= 11);
 }
 
 TEST_CASE("report: a band is nowhere below what is proven of the same steps") {

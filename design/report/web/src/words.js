@@ -99,7 +99,7 @@ function simulated(data) {
     case "interrupted":
       return { tone: "open", head: "Interrupted.", rest: "What is shown is as far as it came." };
     default:
-      return { tone: "bad", head: { blocked: "Blocked.", not_held: "Not held.", not_converged: "Not converged." }[data.status] ?? `${data.status}.`, rest: `It ended after ${plural(data.steps, "step")}.` };
+      return { tone: "bad", head: { blocked: "Blocked.", not_held: "Not held.", not_converged: "Not converged.", energy_gained: "Energy from nowhere.", joints_part: "Joints part." }[data.status] ?? `${data.status}.`, rest: `It ended after ${plural(data.steps, "step")}.` };
   }
 }
 
