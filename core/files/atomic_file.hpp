@@ -90,8 +90,7 @@ private:
 /// One file. @return nothing, or why not (file_unwritable); then `path` is as it was.
 [[nodiscard]] base::Errors write_file_atomically(const std::filesystem::path& path, std::string_view contents);
 
-/// The contents of a file; from pipes no more than 1 GiB. Errors: file_not_found, file_unreadable (a folder, no permission, a device that
-/// has no end).
+/// The contents of a file. Errors: file_not_found, file_unreadable (a folder, a pipe, a device, no permission).
 base::Result<std::string> read_file(const std::filesystem::path& path);
 
 }  // namespace fettle::core::files
