@@ -26,12 +26,12 @@ struct ClosedLoop {
 /// Of a prescribed motion (driven_ranges.hpp): what moves by itself, a motor's joint or a body's coordinates, and what it moves.
 struct DrivenSource {
     std::string name;
-    int motor = -1;                           ///< a place in the scene's motors; -1: a script's
-    int body = -1, dof = -1;                  ///< of a script: whose, and which one moves; -1: several do
-    scene::Curve curve;                       ///< as designed
-    int coordinate = 0;                       ///< whose range, or time, it decides
-    double units = 1;                         ///< of the coordinate, per unit of the curve
-    std::vector<std::pair<int, int>> screws;  ///< bodies, and which of their screws
+    int motor = -1;                             ///< a place in the scene's motors; -1: a script's
+    int body = -1, dof = -1;                    ///< of a script: whose, and which one moves; -1: several do
+    scene::Curve curve;                         ///< as designed
+    int coordinate = 0;                         ///< whose range, or time, it decides
+    double units = 1;                           ///< of the coordinate, per unit of the curve
+    std::vector<std::pair<int, int>> screws{};  ///< bodies, and which of their screws
 };
 
 struct LoopedRanges {
