@@ -292,8 +292,10 @@ TEST_CASE("optimise notes what is proven of the meshes, and not of the round sur
     for (const std::string lean : {"within", "cover"}) {
         const DesignFolder folder(design, scene);
         folder.write("rod.part.json", replaced(rod, "LEAN", lean));
-        const Answer answer = run("optimise " + folder.design() + " --no-report --out " + folder.file("out"));
+        const Answer answer = run("optimise " + folder.design() + " --details --no-report --out " + folder.file("out"));
         CAPTURE(lean, answer.out);
+        CHECK(answer.says("  proven for the facets\n") == (lean == "within"));
+        CHECK(answer.says("  proven\n") == (lean == "cover"));
         CHECK(answer.code == 0);
         CHECK(answer.says("for the round surfaces that their facets stand for") == (lean == "within"));
         CHECK(answer.says("what to do: require more") == (lean == "within"));

@@ -187,7 +187,7 @@ TEST_CASE("messages: lengths are in the file's unit, and one step is one step") 
 
 TEST_CASE("messages: each evaluation says which requirement it misses, by how much, and what it is for") {
     const DesignFolder folder;
-    const Answer answer = run("optimise " + folder.design() + " --optimiser sqp --no-report --out " + folder.file("out"), true);
+    const Answer answer = run("optimise " + folder.design() + " --optimiser sqp --details --no-report --out " + folder.file("out"), true);
     CAPTURE(answer.out);
     CHECK(answer.says("meets every requirement"));
     CHECK(answer.says("the best so far"));

@@ -45,7 +45,7 @@ TEST_CASE("optimise: a robust design, and its check") {
     CHECK(weight.at("over_tolerances").at("sigma") == 3);
     CHECK(weight.at("over_tolerances").at("tolerances") == 2);
     CHECK(weight.at("over_tolerances").at("drawn").get<double>() == Approx(length * 1e-4).epsilon(1e-3));
-    const Answer text = run("optimise " + folder.design() + " --no-report --resume --out " + folder.file("out"));
+    const Answer text = run("optimise " + folder.design() + " --details --no-report --resume --out " + folder.file("out"));
     CHECK(text.out.find("required at least 1 g at 3 sigma of the tolerances: met: as drawn 1.07") != std::string::npos);
     CHECK(text.out.find("over 2 tolerances, to first order of the derivatives: computed, not proven") != std::string::npos);
     const Answer made = run("tolerance " + folder.file("out/design.final.json") + " --json");
