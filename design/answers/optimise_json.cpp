@@ -47,21 +47,53 @@ Json terms_json(const Design& design, const DesignEvaluation& final) {
     return list;
 }
 
-// What the design measures by its own model and by its smoothest one, SI.
-Json measured_json(const std::string& name, const description::Measurement& own, const description::Measurement& other) {
-    return {{"name", name}, {"as_written", own.value}, {"play_taken_up", other.value}};
+// What the design measures by its own model and with the play of its fits taken up, SI.
+// @param quantity  what no motion changes has no other value
+Json measured_json(const std::string& name, const description::Quantity& quantity, const description::Measurement& own,
+                   const description::Measurement& other) {
+    return {{"name", name}, {"as_written", own.value}, {"play_taken_up", quantity.is_at_rest() ? Json() : Json(other.value)}};
 }
 
 Json by_models_json(const Design& design, const OptimiseOutcome& outcome) {
     const DesignEvaluation &own = outcome.final, &other = outcome.play_taken_up;
     if (!other.usable) return {};
     Json terms = Json::array(), constraints = Json::array();
-    for (size_t k = 0; k < own.terms.size(); ++k) terms.push_back(measured_json(design.objective[k].name, own.terms[k], other.terms[k]));
+    for (size_t k = 0; k < own.terms.size(); ++k)
+        terms.push_back(measured_json(design.objective[k].name, *design.objective[k].quantity, own.terms[k], other.terms[k]));
     for (size_t i = 0; i < own.constraints.size(); ++i)
-        constraints.push_back(measured_json(design.constraints[i].name, own.constraints[i], other.constraints[i]));
+        constraints.push_back(
+            measured_json(design.constraints[i].name, *design.constraints[i].quantity, own.constraints[i], other.constraints[i]));
     Json in_doubt = Json::array();
     for (const size_t i : outcome.in_doubt) in_doubt.push_back(design.constraints[i].name);
     return {{"model", outcome.play_taken_up_by}, {"terms", terms}, {"constraints", constraints}, {"in_doubt", in_doubt}};
+}
+
+// What the design that was found owes to its facets and its time step; null: not known.
+Json resolution_json(const Design& design, const OptimiseOutcome& outcome, const RunFacts& facts) {
+    const studies::FinerReport& report = outcome.finer;
+    if (report.runs.empty()) return {};
+    Json runs = Json::array(), terms = Json::array(), constraints = Json::array(), flips = Json::array();
+    for (const studies::FinerRun& run : report.runs) {
+        runs.push_back({{"run", run.key},
+                        {"objective", finite_or_null(run.objective)},
+                        {"change_of_best", finite_or_null(change_of_best(outcome, facts, run))}});
+        if (!run.failure.empty()) runs.back()["failure"] = run.failure;
+    }
+    for (const studies::FinerValue& value : studies::finer_values(design, outcome.final, report)) {
+        Json entry{{"name", value.name}, {"found", value.found}};
+        for (const studies::FinerRun& run : report.runs) {
+            const auto& measured = value.of_objective ? run.terms : run.constraints;
+            entry[run.key] = run.failure.empty() ? Json(measured[static_cast<size_t>(value.index)].value) : Json();
+        }
+        entry["change"] = finite_or_null(value.share);
+        if (!value.of_objective) {
+            entry["met"] = value.is_met;
+            entry["met_finer"] = value.is_met_finer;
+            if (studies::is_flip(value)) flips.push_back(value.name);
+        }
+        (value.of_objective ? terms : constraints).push_back(std::move(entry));
+    }
+    return {{"runs", runs}, {"terms", terms}, {"constraints", constraints}, {"flips", flips}};
 }
 
 Json stages_json(const optimisers::OptimiserReport& report) {
@@ -89,10 +121,19 @@ Json optimality_json(const Design& design, const optimisers::Optimality& o) {
     Json multipliers = Json::object();
     for (size_t i = 0; i < design.constraints.size(); ++i)
         multipliers[design.constraints[i].name] = o.multipliers[i] * design.constraints[i].bounds.unit;
-    Json json{{"multipliers", multipliers}, {"predicted_gain", o.predicted_gain},
-              {"worth", o.worth},           {"radius", o.radius},
-              {"residual", residual},       {"held_by", held},
-              {"improvable", improvable},   {"noise_in_objective", o.noise_in_objective},
+    Json of_relations = Json::object();
+    const size_t m = design.constraints.size();
+    for (size_t i = 0; i < design.relations.size() && m + i < static_cast<size_t>(o.multipliers.size()); ++i)
+        of_relations[design.relations[i].name] = o.multipliers[static_cast<Eigen::Index>(m + i)] * design.relations[i].bounds.unit;
+    Json json{{"multipliers", multipliers},
+              {"relation_multipliers", of_relations},
+              {"predicted_gain", o.predicted_gain},
+              {"worth", o.worth},
+              {"radius", o.radius},
+              {"residual", residual},
+              {"held_by", held},
+              {"improvable", improvable},
+              {"noise_in_objective", o.noise_in_objective},
               {"judged", o.judged}};
     if (o.noise.size() > 0) {
         json["noise"] = {{"objective", o.noise[0]}};
@@ -157,6 +198,8 @@ Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, 
     json["optimality"] = report.best.usable && report.optimality.step.size() > 0 ? optimality_json(design, report.optimality) : Json();
     json["stages"] = stages_json(report);
     json["by_models"] = by_models_json(design, outcome);
+    if (!outcome.play_not_compared.empty()) json["play_not_compared"] = outcome.play_not_compared;
+    json["resolution"] = resolution_json(design, outcome, run);
     json["budget_spent"] = report.budget_spent;
     json["constraint_violation_start"] = report.start.usable ? Json(report.start.violation) : Json();
     json["constraint_violation"] = report.best.usable ? Json(report.best.violation) : Json();

@@ -57,6 +57,10 @@ public:
     }
 
 private:
+    bool holds(const std::string& requirement) const {
+        return std::any_of(costs_.begin(), costs_.end(), [&](const Cost& cost) { return cost.requirement == requirement; });
+    }
+
     SummaryRow of_constraint(std::size_t i) const {
         const auto& [name, bounds, quantity] = design_.constraints[i];
         const Measurement& measured = outcome_.final.constraints[i];
@@ -71,7 +75,7 @@ private:
                                                                                                     : SummaryRow::Known::proven;
         const bool doubtful = std::count(outcome_.in_doubt.begin(), outcome_.in_doubt.end(), i) > 0;
         row.verdict = !(description::violation(bounds, measured) <= 0) ? Verdict::violated : doubtful ? Verdict::in_doubt : Verdict::met;
-        row.holds = std::any_of(costs_.begin(), costs_.end(), [i](const Cost& cost) { return cost.constraint == i; });
+        row.holds = holds(name);
         return row;
     }
 
@@ -83,6 +87,7 @@ private:
         row.now = short_text(value, relation.bounds);
         row.asked = description::required_text(relation.bounds, "");
         row.verdict = description::violation(relation, value) <= 0 ? Verdict::met : Verdict::violated;
+        row.holds = holds(relation.name);
         return row;
     }
 
@@ -143,6 +148,20 @@ std::string doubt_text(const OptimiseOutcome& outcome) {
            (outcome.in_doubt.size() == 1 ? " is" : " are") + " not met";
 }
 
+// What is met by the facets and time steps of the design alone.
+std::string resolution_doubt(const Design& design, const OptimiseOutcome& outcome) {
+    std::vector<std::string> names;
+    std::string run;
+    for (const studies::FinerValue& value : studies::finer_values(design, outcome.final, outcome.finer)) {
+        if (!studies::is_flip(value) || !value.is_met) continue;
+        names.push_back(value.name);
+        run = value.run->name;
+    }
+    if (names.empty()) return {};
+    return "rests on facets or time steps: " + run + " " + names.front() + " is not met" +
+           (names.size() > 1 ? ", nor " + counted(names.size() - 1, "other") : "");
+}
+
 std::string joined(const std::vector<std::string>& lines) {
     std::string text;
     for (const std::string& line : lines) text += (text.empty() || line.empty() ? "" : "; ") + line;
@@ -164,7 +183,7 @@ Summary summary_of(const Design& design, const OptimiseOutcome& outcome, const R
     std::string not_optimal = why_not_optimal(design, outcome, run);
     if (!not_optimal.empty()) not_optimal = "not shown to be the best: " + not_optimal;
     const bool has_failed = report.status == OptimiserStatus::infeasible;
-    summary.why = joined({has_failed ? report.message : "", not_optimal, doubt_text(outcome)});
+    summary.why = joined({has_failed ? report.message : "", not_optimal, doubt_text(outcome), resolution_doubt(design, outcome)});
     summary.is_good = report.status == OptimiserStatus::optimal && summary.why.empty();
     return summary;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fettle/core/base/text.hpp"
+#include "fettle/design/description/requirement_text.hpp"
 
 namespace fettle::design::answers {
 
@@ -18,12 +19,22 @@ std::string roughest_name(const Design& design, const optimisers::Optimality& o)
 
 std::vector<Cost> costs_of(const Design& design, const optimisers::Optimality& o) {
     std::vector<Cost> costs;
-    for (size_t i = 0; i < design.constraints.size() && o.step.size() > 0; ++i) {
-        const double y = o.multipliers[i] * design.constraints[i].bounds.unit;
-        if (y != 0 && std::abs(y) * 0.01 >= o.worth * 0.1) costs.push_back({i, design.constraints[i].name, y});
-    }
+    const auto add = [&](size_t row, const std::string& name, const description::Bounds& bounds, const std::string& unit) {
+        if (o.step.size() == 0 || !(static_cast<Eigen::Index>(row) < o.multipliers.size())) return;
+        const double y = o.multipliers[static_cast<Eigen::Index>(row)] * bounds.unit;
+        if (y != 0 && std::abs(y) * 0.01 >= o.worth * 0.1) costs.push_back({name, bounds, unit, y});
+    };
+    const size_t m = design.constraints.size();
+    for (size_t i = 0; i < m; ++i)
+        add(i, design.constraints[i].name, design.constraints[i].bounds, description::unit_name(design.constraints[i]));
+    for (size_t i = 0; i < design.relations.size(); ++i) add(m + i, design.relations[i].name, design.relations[i].bounds, "");
     std::stable_sort(costs.begin(), costs.end(), [](const Cost& a, const Cost& b) { return std::abs(a.per_unit) > std::abs(b.per_unit); });
     return costs;
+}
+
+double change_of_best(const OptimiseOutcome& outcome, const RunFacts& run, const studies::FinerRun& finer) {
+    if (run.repair || outcome.report.status != optimisers::OptimiserStatus::optimal) return std::nan("");
+    return studies::change_of_best(outcome.final, outcome.report.optimality.multipliers, finer);
 }
 
 std::string why_not_optimal(const Design& design, const OptimiseOutcome& outcome, const RunFacts& run) {

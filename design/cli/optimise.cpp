@@ -32,7 +32,7 @@ struct OptimiseArguments {
     std::string path, optimiser, out;
     int starts = 0;  // 0: one run
     std::optional<int> seed;
-    bool resume = false, repair = false, no_report = false, details = false;
+    bool resume = false, repair = false, no_report = false, no_resolution = false, details = false;
 };
 
 std::string output_folder(const OptimiseArguments& options, const reading::DesignFile& file) {
@@ -48,6 +48,7 @@ std::string resume_command(const OptimiseArguments& options, const std::string& 
     if (options.seed) text += " --seed " + std::to_string(*options.seed);
     if (!options.optimiser.empty()) text += " --optimiser " + options.optimiser;
     if (options.repair) text += " --repair";
+    if (options.no_resolution) text += " --no-resolution";
     return text + " --resume";
 }
 
@@ -104,6 +105,8 @@ int run_sided(const Run& run, const std::vector<StartResult>& rows, Starts start
         json = answer(outcome);
         return answers::add_outcome(files, folder.directory, outcome.final, json, run.common.command);
     };
+    if (!run.options.no_resolution && !was_stopped)
+        folder.measure_finer = reading::DesignReadOptions{run.common.mesh_dirs, programs_of(run.common)};
     studies::OptimiseOptions optimise;
     optimise.optimiser = run.options.optimiser;
     optimise.seed = run.facts.seed;
@@ -229,6 +232,7 @@ Command add_optimise(CommandLine& program, const CommonOptions& common) {
     app.flag("--details", options->details,
              "Tell all: what held each parameter, what the requirements cost, how far proofs hold for what is round");
     app.flag("--no-report", options->no_report, "No report.html");
+    app.flag("--no-resolution", options->no_resolution, "No simulations of the result with finer facets and time steps");
     app.flag("--resume", options->resume, "Replay the folder's history, and go on where a killed run stopped");
     app.closing_words("Example:  fettle optimise examples/slider_crank/slider_crank.design.json --out out --json");
     return {app, [options, &common](Console& console) { return run_optimise(*options, common, console); }};

@@ -7,6 +7,7 @@
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/design/cli/answers.hpp"
+#include "fettle/design/cli/resolution_text.hpp"
 #include "fettle/design/description/requirement_text.hpp"
 
 namespace fettle::design::cli {
@@ -23,6 +24,7 @@ std::string by_models_text(const Design& design, const OptimiseOutcome& outcome,
     std::string text;
     for (size_t i = 0; i < outcome.final.constraints.size(); ++i) {
         const auto& [name, bounds, quantity] = design.constraints[i];
+        if (quantity->is_at_rest()) continue;
         const double own = outcome.final.constraints[i].value, other = outcome.play_taken_up.constraints[i].value;
         if (std::abs(own - other) <= 1e-4 * std::abs(own)) continue;
         const std::string unit = description::unit_name(design.constraints[i]);
@@ -72,9 +74,10 @@ std::string share_text(double gain, double objective) {
 }
 
 // By so little may a requirement that holds ask for less.
-std::string eased_text(const description::Constraint& constraint, bool lower_bound) {
-    const std::string amount = description::amount_text(0.01, 1, description::unit_name(constraint));
-    if (constraint.bounds.lower == constraint.bounds.upper) return "with " + amount + (lower_bound ? " less" : " more") + " required";
+std::string eased_text(const answers::Cost& cost) {
+    const bool lower_bound = cost.per_unit > 0;
+    const std::string amount = description::amount_text(0.01, 1, cost.unit);
+    if (cost.bounds.lower == cost.bounds.upper) return "with " + amount + (lower_bound ? " less" : " more") + " required";
     return (lower_bound ? "with a lower limit that is " : "with an upper limit that is ") + amount + (lower_bound ? " lower" : " higher");
 }
 
@@ -85,9 +88,8 @@ std::string verdict_text(const Design& design, const optimisers::Optimality& o, 
     if (!costs.empty()) text += "what the requirements cost:\n";
     for (const answers::Cost& cost : costs) {
         const double worth = 0.01 * std::abs(cost.per_unit);
-        text += formatted("  %s: %s, %s could be lower by %.3g%s\n", cost.requirement.c_str(),
-                          eased_text(design.constraints[cost.constraint], cost.per_unit > 0).c_str(), minimised.c_str(), worth,
-                          share_text(worth, objective).c_str());
+        text += formatted("  %s: %s, %s could be lower by %.3g%s\n", cost.requirement.c_str(), eased_text(cost).c_str(), minimised.c_str(),
+                          worth, share_text(worth, objective).c_str());
     }
     for (const int k : o.improvable) {
         const description::Parameter& p = design.parameters[k];
@@ -220,6 +222,7 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
         text += "  what counts over the tolerances does so " + reserves + "; fettle tolerance with the tuned design simulates made ones\n";
     text += round_surfaces_text(design, outcome.final);
     text += by_models_text(design, outcome, console) + play_advice(outcome);
+    text += resolution_text(design, outcome, console, run);
     text += run.repair ? verdict_text(design, report.optimality, "the squared change", report.best.objective)
                        : verdict_text(design, report.optimality, "the objective", objective);
     if (const std::string why = answers::why_not_optimal(design, outcome, run); !why.empty())

@@ -22,9 +22,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::vector<std::string> arguments_of(const StartsRequest& request, const StartResult& start, const CommonOptions& common, int threads) {
-    std::vector<std::string> words{"optimise", request.design, "--seed",    std::to_string(start.seed),
-                                   "--out",    start.out,      "--threads", std::to_string(threads),
-                                   "--quiet",  "--no-report"};
+    std::vector<std::string> words{"optimise", request.design, "--seed",         std::to_string(start.seed),
+                                   "--out",    start.out,      "--threads",      std::to_string(threads),
+                                   "--quiet",  "--no-report",  "--no-resolution"};
     if (!request.optimiser.empty()) words.insert(words.end(), {"--optimiser", request.optimiser});
     if (request.resume) words.emplace_back("--resume");
     if (request.repair) words.emplace_back("--repair");

@@ -345,11 +345,11 @@ std::optional<optimisers::Rows> DesignProblem::rest_rows(const VectorX& p) const
     return rows;
 }
 
-Result<DesignProblem> DesignProblem::with_contact_width(double dhat) const {
+Result<DesignProblem> DesignProblem::with_contact_width(double dhat, Surfaces surfaces) const {
     Design design = design_;
-    description::change_scenes(design, [dhat](core::scene::Scene& scene) {
+    description::change_scenes(design, [&](core::scene::Scene& scene) {
         scene.dhat = dhat;
-        scene.round_contact = false;
+        if (surfaces == Surfaces::facets) scene.round_contact = false;
     });
     return create(std::move(design));
 }

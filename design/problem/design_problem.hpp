@@ -61,9 +61,10 @@ public:
     /// number is not finite.
     std::optional<optimisers::Rows> rest_rows(const VectorX& p) const;
 
-    /// The same design with contact of another width dhat [m], and the stiffness that goes with it; of facets as they are, whose sum stays
-    /// smooth where contact is wider than the play, as round surfaces' least distance does not.
-    Result<DesignProblem> with_contact_width(double dhat) const;
+    /// The same design with contact of another width dhat [m], and the stiffness that goes with it.
+    /// @param surfaces  facets: whose sum stays smooth where contact is wider than the play, as round surfaces' least distance does not
+    enum class Surfaces { facets, as_written };
+    Result<DesignProblem> with_contact_width(double dhat, Surfaces surfaces = Surfaces::facets) const;
     /// The design's relations at p: k values and their k x n Jacobian, exact; nothing is built.
     optimisers::Rows relations(const VectorX& p) const;
 

@@ -11,6 +11,10 @@ namespace fettle::design::problem {
 
 namespace {
 
+std::string name_of_width(const DesignProblem& problem, double width) {
+    return "contact " + core::base::length_text(width, problem.design().scene.length_unit) + " wide";
+}
+
 constexpr double worth_a_stage = 1.25;  // a width that is less than this times the design's own is none of its own
 
 std::vector<core::clearance::PairRequest> pairs_that_may_meet(const core::model::Model& model) {
@@ -52,10 +56,31 @@ std::vector<SmootherDesign> smoother_models(const DesignProblem& problem, const 
         const double width = std::ldexp(widest, -k);
         Result<DesignProblem> wide = problem.with_contact_width(width);
         if (!wide) continue;
-        const std::string name = "contact " + core::base::length_text(width, problem.design().scene.length_unit) + " wide";
-        models.push_back({name, width, std::move(wide).value()});
+        models.push_back({name_of_width(problem, width), width, std::move(wide).value()});
     }
     return models;
+}
+
+PlayTakenUp play_taken_up(const DesignProblem& problem, const DesignEvaluation& at) {
+    PlayTakenUp out;
+    const core::model::Model& model = *at.runs.front().model;
+    const Fits fits = fits_of(model);
+    const double width = widest_share * std::min(fits.play(), fits.nearest_other), least = worth_a_stage * model.dhat;
+    if (!(widest_share * fits.play() > least)) return out;
+    if (!(width > least)) {
+        out.why_not = "contact that reaches farther would reach across a gap of " +
+                      core::base::length_text(fits.nearest_other, problem.design().scene.length_unit) + " that is none of a fit's";
+        return out;
+    }
+    for (const Run& run : at.runs)
+        if (const auto touching = touching_without_fit(*run.model, run.simulation.trajectory, fits)) {
+            out.why_not = "`" + model.bodies[touching->a].name + "` and `" + model.bodies[touching->b].name +
+                          "` touch from one side, which contact that reaches farther changes as well";
+            return out;
+        }
+    Result<DesignProblem> wide = problem.with_contact_width(width, DesignProblem::Surfaces::as_written);
+    if (wide) out.model = {name_of_width(problem, width), width, std::move(wide).value()};
+    return out;
 }
 
 }  // namespace fettle::design::problem

@@ -93,11 +93,12 @@ OptimiseOutcome optimise_file(reading::DesignFile file, FileArguments arguments,
         const DesignProblem& problem = begun.problem;
         const std::string command = "fettle.optimise_file, Python";
         nlohmann::ordered_json answer;
-        const studies::RunFolder folder{
-            arguments.directory, arguments.resume, [&](const OptimiseOutcome& outcome, core::files::FilesTogether& files) {
-                answer = answers::outcome_json(problem, outcome, {arguments.directory, arguments.options.seed, false});
-                return answers::add_outcome(files, arguments.directory, outcome.final, answer, command);
-            }};
+        studies::RunFolder folder{arguments.directory, arguments.resume};
+        folder.add_files = [&](const OptimiseOutcome& outcome, core::files::FilesTogether& files) {
+            answer = answers::outcome_json(problem, outcome, {arguments.directory, arguments.options.seed, false});
+            return answers::add_outcome(files, arguments.directory, outcome.final, answer, command);
+        };
+        folder.measure_finer = reading::DesignReadOptions{{}, arguments.programs};
         studies::FileOutcome done = value_or_raise(studies::optimise_file(file, problem, folder, all));
         raise_if_any(done.unwritten);
         if (!arguments.report) return std::move(done.outcome);

@@ -77,6 +77,9 @@ Json requirement_rows(const description::Design& design, const Json& result) {
     const Json others = member(member(result, "by_models"), "constraints"), in_doubt = member(member(result, "by_models"), "in_doubt");
     const Json told = member(result, "constraints"), optimality = member(result, "optimality"), costs = member(optimality, "multipliers");
     const Json worth = member(optimality, "worth");
+    const auto counts = [&](double per_unit) {
+        return worth.is_number() && per_unit != 0 && std::abs(per_unit) * 0.01 >= worth.get<double>() * 0.1;
+    };
     const bool matched = pairs_match(design, result);
     int pair = 0;
     for (std::size_t i = 0; i < design.constraints.size(); ++i) {
@@ -90,17 +93,21 @@ Json requirement_rows(const description::Design& design, const Json& result) {
         if (const Json cost = member(costs, constraint.name); cost.is_number()) {
             const double per_unit = cost.get<double>() * unit / constraint.bounds.unit;
             row["cost"] = per_unit;
-            row["counts"] = worth.is_number() && per_unit != 0 && std::abs(per_unit) * 0.01 >= worth.get<double>() * 0.1;
+            row["counts"] = counts(per_unit);
         }
         if (matched && dynamic_cast<const quantities::Clearance*>(constraint.quantity.get()) != nullptr) row["pair"] = pair++;
         rows.push_back(std::move(row));
     }
-    const Json relations = member(result, "relations");
+    const Json relations = member(result, "relations"), of_relations = member(optimality, "relation_multipliers");
     for (std::size_t i = 0; i < design.relations.size(); ++i) {
         const description::Relation& relation = design.relations[i];
         Json row = row_json(relation.name, i < relations.size() ? relations[i] : Json(), relation.bounds, relation.bounds.unit);
         const Json value = in_unit(member(i < relations.size() ? relations[i] : Json(), "value"), relation.bounds.unit);
         row["lower"] = row["upper"] = value;  // known, not bounded
+        if (const Json cost = member(of_relations, relation.name); cost.is_number()) {
+            row["cost"] = cost;
+            row["counts"] = counts(cost.get<double>());
+        }
         rows.push_back(std::move(row));
     }
     return rows;

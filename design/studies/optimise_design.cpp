@@ -237,10 +237,12 @@ private:
         outcome_.final = problem_.evaluate(point, last);
         judge_end();
         if (!outcome_.final.usable) return;
-        if (!smoother_.empty()) {
+        const problem::PlayTakenUp compared = problem::play_taken_up(problem_, outcome_.final);
+        outcome_.play_not_compared = compared.why_not;
+        if (compared.model) {
             last.should_stop = options_.should_stop;
-            outcome_.play_taken_up_by = smoother_.front().name;
-            outcome_.play_taken_up = smoother_.front().problem.evaluate(point, last);
+            outcome_.play_taken_up_by = compared.model->name;
+            outcome_.play_taken_up = compared.model->problem.evaluate(point, last);
             outcome_.in_doubt = requirements_in_doubt(design_, outcome_.final, outcome_.play_taken_up);
         }
         for (const description::Measurement& measured : outcome_.final.constraints) {
@@ -304,6 +306,7 @@ std::vector<size_t> requirements_in_doubt(const Design& design, const DesignEval
     if (!own.usable || !other.usable) return doubtful;
     for (size_t i = 0; i < design.constraints.size(); ++i) {
         const description::Bounds& bounds = design.constraints[i].bounds;
+        if (design.constraints[i].quantity->is_at_rest()) continue;
         const bool met = description::violation(bounds, own.constraints[i]) <= 0;
         const description::Measurement value = description::computed(other.constraints[i].value);  // it is no proof of anything
         if (met && description::violation(bounds, value) > 0) doubtful.push_back(i);

@@ -15,6 +15,7 @@
 #include "fettle/design/optimisers/optimisation.hpp"
 #include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/studies/history.hpp"
+#include "fettle/design/studies/resolution.hpp"
 
 namespace fettle::design::studies {
 
@@ -47,11 +48,14 @@ struct OptimiseOutcome {
     /// What the derivatives of the first design say that could be evaluated: narrated before the search goes on from it.
     gradient_audit::GradientWarnings at_start;
     problem::DesignEvaluation final;  ///< of report.point, without gradients; not usable if the start was not
-    /// The same design by its smoothest model, the one with the play of its fits taken up: where the two differ, the motion within the play
-    /// matters. Not usable where there is no smoother model, or it cannot be simulated.
+    /// The same design with the play of its fits taken up (problem::play_taken_up): where the two differ, the motion within the play
+    /// matters. Not usable where there is no such model, or it cannot be simulated.
     problem::DesignEvaluation play_taken_up;
-    std::string play_taken_up_by;                           ///< that model's name
-    std::vector<size_t> in_doubt;                           ///< requirements that are met as written, and not with the play taken up
+    std::string play_taken_up_by;   ///< that model's name
+    std::string play_not_compared;  ///< why there is none though there are fits; empty: there is one, or there are none
+    std::vector<size_t> in_doubt;   ///< requirements that are met as written, and not with the play taken up
+    /// By finer facets and time steps; of a design that is simulated once more alone (optimise_file.hpp), else without runs.
+    FinerReport finer;
     std::vector<core::clearance::PairClearance> clearance;  ///< the certificates of all clearance constraints, in their order
     std::vector<std::string> limits;                        ///< what holds an infeasible design back (limits.hpp)
     std::vector<std::string> unbuildable;  ///< what within the bounds makes no design, found before the first simulation (buildable.hpp)
@@ -67,7 +71,7 @@ struct OptimiseOutcome {
 Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, const OptimiseOptions& options = {});
 
 /// Which requirements a design meets, and not by the values of another model of the same motion: what a proof is worth there depends on
-/// which of the two a real mechanism is like. None where the other is not usable.
+/// which of the two a real mechanism is like. None where the other is not usable; of what no motion changes none.
 std::vector<size_t> requirements_in_doubt(const description::Design& design, const problem::DesignEvaluation& own,
                                           const problem::DesignEvaluation& other);
 

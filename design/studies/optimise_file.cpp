@@ -55,6 +55,13 @@ Result<FileOutcome> optimise_file(const reading::DesignFile& file, const problem
     };
     Result<OptimiseOutcome> outcome = optimise_design(problem, options);
     if (!outcome) return outcome.errors();
+    const bool stopped = outcome->report.status == optimisers::OptimiserStatus::interrupted;
+    if (folder.measure_finer && outcome->final.usable && !stopped) {
+        ResolutionOptions finer;
+        finer.should_stop = options.should_stop;
+        if (options.narrate) finer.on_variant = [&](const std::string& what) { options.narrate("simulating the result " + what); };
+        outcome->finer = measure_finer(file, problem, outcome->report.point, *folder.measure_finer, finer);
+    }
     Errors unwritten = history->unwritten();
     const Errors files = write_files(file, folder, *outcome);
     unwritten.insert(unwritten.end(), files.begin(), files.end());

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "fettle/core/files/atomic_file.hpp"
@@ -17,6 +18,9 @@ struct RunFolder {
     /// there.
     std::string directory;
     bool resume = false;  ///< replay an existing history
+    /// As the file was read. Given: the design that is found is simulated twice more, finer (OptimiseOutcome::finer), unless the run was
+    /// interrupted.
+    std::optional<reading::DesignReadOptions> measure_finer = {};
     /// Optional: what else takes its place with design.final.json and trajectory.json. @return why it cannot be written
     std::function<Errors(const OptimiseOutcome&, core::files::FilesTogether&)> add_files = {};
 };

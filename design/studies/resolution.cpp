@@ -147,7 +147,112 @@ private:
     ResolutionReport report_;
 };
 
+bool has_same_meshes(const DesignProblem& a, const DesignProblem& b, const VectorX& point) {
+    for (int s = 0; s < a.scenario_count(); ++s) {
+        const Result<core::model::Model> of_a = a.model_at(point, s), of_b = b.model_at(point, s);
+        if (!of_a || !of_b) return false;
+        for (size_t i = 0; i < of_a->bodies.size(); ++i)
+            if (of_a->bodies[i].mesh.vertices.cols() != of_b->bodies[i].mesh.vertices.cols()) return false;
+    }
+    return true;
+}
+
+// With the numbers of `at`.
+void take_values(const DesignEvaluation& at, FinerRun& run) {
+    if (!at.usable) {
+        run.failure = at.reason;
+        return;
+    }
+    run.objective = at.objective;
+    run.terms = at.terms;
+    run.constraints = at.constraints;
+}
+
+// By a run in which it is met otherwise, if there is one; else, or of several, by the one that changes it most.
+FinerValue finer_value(const std::string& name, bool of_objective, size_t index, const DesignEvaluation& found, const FinerReport& report,
+                       const description::Bounds* bounds) {
+    const auto is_met = [&](const description::Measurement& m) { return bounds == nullptr || description::violation(*bounds, m) <= 0; };
+    const description::Measurement& own = (of_objective ? found.terms : found.constraints)[index];
+    FinerValue out{name, of_objective, static_cast<int>(index), own.value, own.value};
+    out.is_met = is_met(own);
+    bool is_flipped = false;
+    for (const FinerRun& run : report.runs) {
+        if (!run.failure.empty()) continue;
+        const description::Measurement& measured = (of_objective ? run.terms : run.constraints)[index];
+        const double share = share_of_change(own.value, measured.value);
+        const bool met = is_met(measured), flips = met != out.is_met;
+        if (out.run == nullptr || (flips && !is_flipped) || (flips == is_flipped && share > out.share)) {
+            is_flipped = flips;
+            out.finer = measured.value;
+            out.share = share;
+            out.run = &run;
+        }
+        out.is_met_finer = out.is_met_finer && met;
+    }
+    return out;
+}
+
 }  // namespace
+
+FinerReport measure_finer(const reading::DesignFile& file, const DesignProblem& problem, const VectorX& point,
+                          reading::DesignReadOptions read, const ResolutionOptions& options) {
+    FinerReport report;
+    read.made.reset();  // whose parts have other facets
+    const auto add = [&](const char* name, const char* key, const reading::Resolution& resolution) {
+        if (report.interrupted) return;
+        read.resolution = resolution;
+        Result<reading::DesignFile> finer = reading::parse_design(file.text, file.path, read);
+        if (finer) take_contact(problem, finer->design);
+        const Result<DesignProblem> made = finer ? DesignProblem::create(std::move(finer->design)) : finer.errors();
+        if (made && resolution.steps == 1 && has_same_meshes(problem, *made, point)) return;
+        FinerRun& run = report.runs.emplace_back();
+        run.name = name;
+        run.key = key;
+        if (!made) {
+            run.failure = made.errors().front().where + ": " + made.errors().front().message;
+            return;
+        }
+        if (options.on_variant) options.on_variant(name);
+        problem::EvaluateOptions evaluate;
+        evaluate.gradients = false;
+        evaluate.should_stop = options.should_stop;
+        const DesignEvaluation at = made->evaluate(point, evaluate);
+        report.interrupted = at.interrupted;
+        take_values(at, run);
+    };
+    add("with twice the facets", "finer_facets", {times, 1});
+    int steps = 0;
+    for (int s = 0; s < problem.scenario_count(); ++s) steps += problem.steps(s);
+    if (steps > 0) add("with half the time step", "finer_steps", {1, times});
+    return report;
+}
+
+bool is_flip(const FinerValue& value) {
+    constexpr double beyond_rounding = 1e-3;  // share that what is at its limit changes by
+    return value.is_met != value.is_met_finer && value.share > beyond_rounding;
+}
+
+std::vector<FinerValue> finer_values(const Design& design, const DesignEvaluation& found, const FinerReport& report) {
+    std::vector<FinerValue> values;
+    const auto has_numbers = [](const FinerRun& run) { return run.failure.empty(); };
+    if (!found.usable || std::none_of(report.runs.begin(), report.runs.end(), has_numbers)) return values;
+    for (size_t k = 0; k < design.objective.size(); ++k)
+        values.push_back(finer_value(design.objective[k].name, true, k, found, report, nullptr));
+    for (size_t i = 0; i < design.constraints.size(); ++i)
+        values.push_back(finer_value(design.constraints[i].name, false, i, found, report, &design.constraints[i].bounds));
+    return values;
+}
+
+double change_of_best(const DesignEvaluation& found, const VectorX& multipliers, const FinerRun& run) {
+    if (!run.failure.empty()) return std::nan("");
+    double change = run.objective - found.objective;
+    for (size_t i = 0; i < run.constraints.size() && multipliers.size() > 0; ++i) {
+        const double cost = multipliers[static_cast<Eigen::Index>(i)];
+        const auto judged = [&](const description::Measurement& m) { return cost > 0 ? m.lower : m.upper; };
+        if (cost != 0) change -= cost * (judged(run.constraints[i]) - judged(found.constraints[i]));
+    }
+    return change;
+}
 
 double ResolvedQuantity::change() const { return share_of_change(as_written, finer_both); }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fettle/core/base/result.hpp"
+#include "fettle/design/problem/design_problem.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 
 namespace fettle::design::studies {
@@ -58,5 +59,46 @@ struct ResolutionOptions {
 /// @param path, read  Of the design; `read.resolution` and `read.made` are not looked at.
 /// Errors: those of reading the design as written, and of its DesignProblem::create.
 Result<ResolutionReport> check_resolution(const std::string& path, reading::DesignReadOptions read, const ResolutionOptions& options = {});
+
+/// A design that was found, simulated once more with finer facets or time steps.
+struct FinerRun {
+    std::string name, key;  ///< "with twice the facets", "finer_facets"
+    std::string failure = {};
+    double objective = std::nan("");                           ///< NaN: of a run that failed
+    std::vector<description::Measurement> terms, constraints;  ///< SI; empty: of a run that failed
+};
+
+/// What a design that was found owes to its facets and its time step, each by itself.
+struct FinerReport {
+    std::vector<FinerRun> runs;  ///< those that were made
+    bool interrupted = false;    ///< the last one failed by that, and those after it were not begun
+};
+
+/// At most two simulations: with twice the facets, unless no part has other facets then, and with half the time step, unless nothing is
+/// simulated. Contact is that of the design as written.
+/// @param file, problem  The same design.  @param read  As `file` was read.  @param point  Where it was found, SI.
+FinerReport measure_finer(const reading::DesignFile& file, const problem::DesignProblem& problem, const VectorX& point,
+                          reading::DesignReadOptions read, const ResolutionOptions& options = {});
+
+/// How one number of a design that was found differs in the run that changes it most, among those that have numbers.
+struct FinerValue {
+    std::string name;
+    bool of_objective = false;  ///< a term of the objective; else a constraint
+    int index = 0;
+    double found = 0, finer = 0;              ///< SI
+    double share = 0;                         ///< of the larger of the two; 0 where both are 0
+    bool is_met = true, is_met_finer = true;  ///< of constraints; the latter in all runs
+    const FinerRun* run = nullptr;            ///< the one of `finer`: where it is not met any more, if there is one
+};
+/// Is it met in one and not in the other? What is at its limit as found is beyond it by next to nothing in every other simulation: that is
+/// none.
+bool is_flip(const FinerValue& value);
+/// Terms of the objective, then constraints; none where no run has numbers. It points into the report.
+std::vector<FinerValue> finer_values(const description::Design& design, const problem::DesignEvaluation& found, const FinerReport& report);
+
+/// By what the best objective near by would change with a run's numbers, to first order: by what it changes where the design is, and by
+/// what requirements cost that hold there and are met by more, or less, then.
+/// @param multipliers  of the constraints, optimisers::Optimality's; without entries: none holds. NaN: of a run that failed
+double change_of_best(const problem::DesignEvaluation& found, const VectorX& multipliers, const FinerRun& run);
 
 }  // namespace fettle::design::studies

@@ -272,6 +272,81 @@ TEST_CASE("what is met as written and not with the play taken up is in doubt, an
     CHECK(studies::requirements_in_doubt(design, outcome.final, outcome.play_taken_up).empty());
 }
 
+TEST_CASE("what rests on facets and time steps is told in few lines, what flips first, and is data") {
+    const problem::DesignProblem problem = problem_of(DesignFolder());
+    const description::Design& design = problem.design();
+    studies::OptimiseOutcome outcome;
+    outcome.report.status = optimisers::OptimiserStatus::optimal;
+    outcome.start = outcome.report.point = description::values_of(design.parameters);
+    outcome.report.best.usable = outcome.final.usable = outcome.report.feasible = true;
+    for (const description::Constraint& constraint : design.constraints) {
+        const double met = std::isfinite(constraint.bounds.upper) ? 0.5 * (constraint.bounds.lower + constraint.bounds.upper)
+                                                                  : constraint.bounds.lower + constraint.bounds.unit;
+        outcome.final.constraints.push_back(description::computed(met));
+    }
+    for (std::size_t k = 0; k < design.objective.size(); ++k) outcome.final.terms.push_back(description::computed(1));
+    outcome.final.objective = outcome.report.best.objective = 10;
+    const auto told = [&] { return outcome_text(design, outcome, Console({}), {"out"}); };
+    const auto json = [&] { return answers::outcome_json(problem, outcome, {"out"}).at("resolution"); };
+    CHECK(told().find("resolution") == std::string::npos);
+    CHECK(json().is_null());
+
+    studies::FinerRun finer{"with twice the facets", "finer_facets", "", 10, outcome.final.terms, outcome.final.constraints};
+    outcome.finer.runs = {finer};
+    CHECK(told().find("resolution: with twice the facets no requirement's number changes by more than 0.1%, and what is met stays met\n") !=
+          std::string::npos);
+    CHECK(json().at("flips").empty());
+
+    const std::size_t stroke = 3;
+    finer.constraints[stroke] = description::computed(design.constraints[stroke].bounds.upper + 1e-3);
+    finer.constraints[0] = description::computed(1.05 * outcome.final.constraints[0].value);
+    finer.terms[0] = description::computed(1 + 1e-6);  // as nothing in the objective
+    finer.objective = 10.5;
+    outcome.finer.runs = {finer};
+    CAPTURE(told());
+    CHECK(told().find("31 mm with twice the facets, as found 15 mm (52%), required 0 to 30 mm: NOT MET") <
+          told().find("mm with twice the facets, as found 16 mm (4.8%)\n"));
+    CHECK(told().find("the best design would have an objective of about 10.5 with twice the facets, as found 10 (4.8%)") !=
+          std::string::npos);
+    CHECK(told().find("mass cube", told().find("resolution: ")) == std::string::npos);
+    CHECK(json().at("flips") == nlohmann::ordered_json({design.constraints[stroke].name}));
+    CHECK(json().at("constraints")[stroke].at("met") == true);
+    CHECK(json().at("constraints")[stroke].at("met_finer") == false);
+    CHECK(json().at("constraints")[stroke].at("finer_facets").get<double>() == Approx(0.031));
+    CHECK(json().at("runs")[0].at("change_of_best").get<double>() == Approx(0.5));
+}
+
+TEST_CASE("relations that hold a design are told with what they cost, and are what limits it") {
+    const DesignFolder folder(replaced(small_design, R"({ "type": "mass", "bodies": ["cube"], "lower": 1.5, "upper": 4 })",
+                                       R"({ "type": "mass", "bodies": ["cube"], "lower": 1.5, "upper": 4 },
+        { "type": "relation", "name": "slender", "expression": "width / height", "lower": 1.5 },
+        { "type": "relation", "name": "flat", "expression": "height", "upper": "14 mm" })"));
+    const problem::DesignProblem problem = problem_of(folder);
+    const description::Design& design = problem.design();
+    REQUIRE(design.relations.size() == 2);
+    studies::OptimiseOutcome outcome;
+    outcome.report.status = optimisers::OptimiserStatus::optimal;
+    outcome.start = outcome.report.point = description::values_of(design.parameters);
+    outcome.report.best.usable = outcome.report.feasible = true;
+    outcome.report.best.objective = 2;
+    const auto m = static_cast<Eigen::Index>(design.constraints.size());
+    optimisers::Optimality& o = outcome.report.optimality;
+    o.judged = true;
+    o.worth = 1e-3;
+    o.step = o.residual = VectorX::Zero(outcome.start.size());
+    o.held.assign(design.parameters.size(), optimisers::Held::constraints);
+    o.multipliers = VectorX::Zero(m + 2);
+    o.multipliers[m - 1] = 0.1 / design.constraints[m - 1].bounds.unit;
+    o.multipliers[m] = 0.5;
+    const nlohmann::ordered_json json = answers::outcome_json(problem, outcome, {"out"});
+    CHECK(json.at("limited_by") == nlohmann::ordered_json({"slender", design.constraints[m - 1].name}));
+    CHECK(json.at("optimality").at("relation_multipliers") == nlohmann::ordered_json({{"slender", 0.5}, {"flat", 0}}));
+    const std::string told = outcome_text(design, outcome, Console({}), {"out"});
+    CAPTURE(told);
+    CHECK(told.find("slender: with a lower limit that is 0.01 lower, the objective could be lower by 0.005 (0.25% of it)") <
+          told.find(design.constraints[m - 1].name + ": with a lower limit"));
+}
+
 TEST_CASE("why a feasible design is not shown to be optimal is told once, alike to people and to programs") {
     const problem::DesignProblem problem = problem_of(DesignFolder());
     const description::Design& design = problem.design();

@@ -6,11 +6,15 @@
 #include <numbers>
 
 #include "fettle/design/problem/design_problem.hpp"
+#include "fettle/design/studies/optimise_file.hpp"
 #include "fettle/tests/support/temporary_folder.hpp"
+#include "fettle/tests/support/text.hpp"
 
 namespace fettle::design::studies::resolution_test {
 
 namespace {
+
+using fettle::tests::support::replaced;
 
 // A round post that falls freely, beside a block of a mesh that the scene writes itself.
 const char* const scene = R"({"fettle_scene": 1, "units": "mm", "gravity": [0, 0, -9.81], "timestep": 0.01, "end_time": 0.2,
@@ -143,6 +147,72 @@ TEST_CASE("resolution: friction that lags is settled too") {
     CHECK_FALSE(settled->friction_lags);
     CHECK(settled->runs.size() == 4);
     CHECK_FALSE(without->friction_lags);
+}
+
+TEST_CASE("resolution: a design that was found is measured once more, finer, where it was found") {
+    const Folder folder;
+    const auto file = reading::read_design(folder.path());
+    REQUIRE(file);
+    const auto problem = problem::DesignProblem::create(file->design);
+    REQUIRE(problem);
+    const VectorX point = VectorX::Constant(1, 8e-3);  // not the file's length
+    const problem::DesignEvaluation found = problem->evaluate(point, {.gradients = false});
+    REQUIRE(found.usable);
+    const FinerReport report = measure_finer(*file, *problem, point, {});
+    REQUIRE(report.runs.size() == 2);
+    CHECK_FALSE(report.interrupted);
+    const auto about = [](int n) { return n * std::tan(std::numbers::pi / n); };
+    const FinerRun &facets = report.runs[0], &steps = report.runs[1];
+    CHECK(facets.key == "finer_facets");
+    CHECK(facets.terms[0].value == Approx(about(48) * 25e-6 * 8e-3 * 1000));
+    CHECK(facets.objective / found.objective == Approx(about(48) / about(24)));
+    CHECK(steps.key == "finer_steps");
+    CHECK(steps.constraints[0].value == Approx(9.81 * 0.2 * 0.205 / 2).epsilon(1e-6));
+
+    // The fall is allowed 0.204 m: 0.206 as written, so what the other step changes decides.
+    description::Design design = problem->design();
+    design.constraints[0].bounds.upper = 0.203;
+    const auto values = finer_values(design, found, report);
+    REQUIRE(values.size() == 2);
+    CHECK(values[0].of_objective);
+    CHECK(values[0].run == &facets);
+    CHECK(values[0].share == Approx(1 - about(48) / about(24)));
+    CHECK(values[1].run == &steps);
+    CHECK_FALSE(values[1].is_met);
+    design.constraints[0].bounds.lower = 0.205;
+    design.constraints[0].bounds.upper = 1;
+    const auto flipped = finer_values(design, found, report);
+    CHECK(flipped[1].is_met);
+    CHECK_FALSE(flipped[1].is_met_finer);
+    CHECK(flipped[1].run == &steps);
+
+    // A lower bound that holds and costs 2 per metre is met by less: the best would be that much dearer.
+    const double fallen = steps.constraints[0].lower - found.constraints[0].lower;
+    CHECK(fallen < 0);
+    CHECK(change_of_best(found, VectorX::Constant(1, 2), steps) == Approx(-2 * fallen));
+    CHECK(change_of_best(found, {}, facets) == Approx(facets.objective - found.objective));
+}
+
+TEST_CASE("resolution: parts without anything round are not simulated with more facets; a stop is told") {
+    const Folder folder;
+    folder.write("post.scene.json",
+                 replaced(replaced(replaced(scene, "\"cylinder\"", "\"box\""), "\"radius\": 5, \"length\": 10", "\"size_x\": 10"),
+                          ", \"counts\": {\"segments\": 24}", ""));
+    folder.write("post.design.json", replaced(replaced(design, "SCENARIOS", ""), "dimensions/length", "dimensions/size_z"));
+    const auto file = reading::read_design(folder.path());
+    REQUIRE(file);
+    const auto problem = problem::DesignProblem::create(file->design);
+    REQUIRE(problem);
+    const VectorX point = description::values_of(file->design.parameters);
+    const FinerReport report = measure_finer(*file, *problem, point, {});
+    REQUIRE(report.runs.size() == 1);
+    CHECK(report.runs[0].key == "finer_steps");
+    ResolutionOptions stopped;
+    stopped.should_stop = [] { return true; };
+    const FinerReport none = measure_finer(*file, *problem, point, {}, stopped);
+    CHECK(none.interrupted);
+    CHECK(finer_values(file->design, problem->evaluate(point), none).empty());
+    CHECK(std::isnan(change_of_best(problem->evaluate(point), {}, none.runs[0])));
 }
 
 }  // namespace fettle::design::studies::resolution_test

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+/// What of an optimised design rests on its facets and its time step, in a few lines for people.
+#pragma once
+
+#include <string>
+
+#include "fettle/design/answers/optimise_json.hpp"
+#include "fettle/design/cli/console.hpp"
+
+namespace fettle::design::cli {
+
+/// Empty where it was not measured.
+std::string resolution_text(const description::Design& design, const studies::OptimiseOutcome& outcome, const Console& console,
+                            const answers::RunFacts& run);
+
+}  // namespace fettle::design::cli
