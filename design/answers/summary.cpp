@@ -9,6 +9,7 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/design/description/requirement_text.hpp"
 #include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/quantities/in_scenario.hpp"
 
 namespace fettle::design::answers {
 
@@ -67,7 +68,11 @@ private:
         SummaryRow row;
         row.name = name;
         row.unit = description::unit_name(design_.constraints[i]);
-        if (i < outcome_.measured_at_start.constraints.size()) row.before = short_text(outcome_.measured_at_start.constraints[i], bounds);
+        if (i < outcome_.measured_at_start.constraints.size()) {
+            const double before = outcome_.measured_at_start.constraints[i];
+            row.before = short_text(before, bounds);
+            row.was_missed = description::violation(bounds, description::computed(before)) > 0;
+        }
         row.now = measured.fault.empty() ? short_text(judged_by(measured, bounds), bounds) : "-";
         row.asked = description::required_text(bounds, row.unit);
         row.known = !measured.is_proven                                                             ? SummaryRow::Known::computed
@@ -128,12 +133,13 @@ std::string capital(std::string text) {
     return text;
 }
 
-std::string sentence_of(const OptimiseOutcome& outcome, const std::vector<SummaryRow>& rows, const RunFacts& run) {
+std::string sentence_of(const OptimiseOutcome& outcome, const std::vector<SummaryRow>& rows, const RunFacts& run, bool is_doubtful) {
     const optimisers::OptimiserReport& report = outcome.report;
     const std::string tried = " (" + counted(static_cast<std::size_t>(report.evaluations), "design") + " tried)";
     const std::string requirements = requirements_text(rows) + tried + ".";
     switch (report.status) {
         case OptimiserStatus::optimal:
+            if (is_doubtful) return "As simulated " + requirements;
             return "Done: " + requirements + (run.repair ? " No smaller change near by does it." : " No better design near by.");
         case OptimiserStatus::interrupted:
             return "Stopped on request: " + requirements;
@@ -154,8 +160,8 @@ std::string resolution_doubt(const Design& design, const OptimiseOutcome& outcom
     std::string run;
     for (const studies::FinerValue& value : studies::finer_values(design, outcome.final, outcome.finer)) {
         if (!studies::is_flip(value) || !value.is_met) continue;
+        if (names.empty()) run = value.run->name;
         names.push_back(value.name);
-        run = value.run->name;
     }
     if (names.empty()) return {};
     return "rests on facets or time steps: " + run + " " + names.front() + " is not met" +
@@ -179,11 +185,12 @@ Summary summary_of(const Design& design, const OptimiseOutcome& outcome, const R
         return summary;
     }
     summary.rows = SummaryMaker(design, outcome).rows();
-    summary.sentence = sentence_of(outcome, summary.rows, run);
     std::string not_optimal = why_not_optimal(design, outcome, run);
     if (!not_optimal.empty()) not_optimal = "not shown to be the best: " + not_optimal;
     const bool has_failed = report.status == OptimiserStatus::infeasible;
-    summary.why = joined({has_failed ? report.message : "", not_optimal, doubt_text(outcome), resolution_doubt(design, outcome)});
+    const std::string doubts = joined({doubt_text(outcome), resolution_doubt(design, outcome)});
+    summary.sentence = sentence_of(outcome, summary.rows, run, !doubts.empty());
+    summary.why = joined({has_failed ? report.message : "", not_optimal, doubts});
     summary.is_good = report.status == OptimiserStatus::optimal && summary.why.empty();
     return summary;
 }
@@ -191,7 +198,7 @@ Summary summary_of(const Design& design, const OptimiseOutcome& outcome, const R
 std::optional<core::clearance::TrueBounds> less_when_round(const description::Constraint& constraint, const Measurement& measured,
                                                            const problem::DesignEvaluation& final) {
     const Bounds& bounds = constraint.bounds;
-    const bool is_clearance = dynamic_cast<const quantities::Clearance*>(constraint.quantity.get()) != nullptr;
+    const bool is_clearance = dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*constraint.quantity)) != nullptr;
     if (!is_clearance || !measured.clearance || bounds.over_tolerances || final.runs.empty() || !final.runs.front().model ||
         description::violation(bounds, measured) > 0)
         return std::nullopt;
@@ -210,7 +217,7 @@ std::vector<SummaryRow> chosen_rows(const std::vector<SummaryRow>& rows, std::si
         if (row.verdict == Verdict::violated) return 0;
         if (row.verdict == Verdict::in_doubt) return 1;
         if (row.verdict == Verdict::wanted) return 3;
-        return row.holds ? 2 : 4;
+        return row.holds || row.was_missed ? 2 : 4;
     };
     std::vector<std::size_t> order(rows.size());
     std::iota(order.begin(), order.end(), 0U);

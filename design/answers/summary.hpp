@@ -24,6 +24,7 @@ struct SummaryRow {
     enum class Known { computed, proven, of_facets } known = Known::computed;
     enum class Verdict { met, violated, in_doubt, wanted } verdict = Verdict::met;  ///< wanted: of the objective
     bool holds = false;                                                             ///< a requirement that the design has run into
+    bool was_missed = false;                                                        ///< at the start
 };
 
 struct Summary {
@@ -43,7 +44,8 @@ std::optional<core::clearance::TrueBounds> less_when_round(const description::Co
 /// What it is known by, in words: "proven", "computed", "proven for the facets".
 const char* words(SummaryRow::Known known);
 
-/// Which rows are shown where not all are: what is violated or in doubt, what holds the design, what is wanted, the rest; in their order.
+/// Which rows are shown where not all are: what is violated or in doubt, what holds the design or was missed before, what is wanted, the
+/// rest; in their order.
 std::vector<SummaryRow> chosen_rows(const std::vector<SummaryRow>& rows, std::size_t most);
 
 nlohmann::ordered_json summary_json(const Summary& summary);

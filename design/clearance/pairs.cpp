@@ -375,19 +375,15 @@ struct BoundedClearance {
     double minimum = 0;
 };
 
-const description::Quantity* without_scenario(const description::Quantity* quantity) {
-    const auto* in = dynamic_cast<const quantities::InScenario*>(quantity);
-    return in == nullptr ? quantity : in->quantity().get();
-}
-
 // A clearance, or one less a limit that follows from parameters: a formula f(q) of slope 1 in the clearance q requires q >= bound - f(0).
 std::optional<BoundedClearance> bounded_clearance(const description::Design& design, const description::Constraint& constraint) {
-    const description::Quantity* quantity = without_scenario(constraint.quantity.get());
+    const description::Quantity* quantity = &quantities::without_scenario(*constraint.quantity);
     if (const auto* clearance = dynamic_cast<const quantities::Clearance*>(quantity))
         return BoundedClearance{clearance, constraint.bounds.lower};
     const auto* expression = dynamic_cast<const quantities::Expression*>(quantity);
     if (expression == nullptr || expression->parts().size() != 1) return std::nullopt;
-    const auto* clearance = dynamic_cast<const quantities::Clearance*>(without_scenario(expression->parts().front().quantity.get()));
+    const auto* clearance =
+        dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*expression->parts().front().quantity));
     if (clearance == nullptr) return std::nullopt;
     const core::expression::Formula& formula = expression->formula();
     const auto value_at = [&](double q) {

@@ -37,6 +37,16 @@ std::shared_ptr<const Quantity> in_scenario(const std::shared_ptr<const Quantity
     return Expression::create(expression->formula(), parts).value();
 }
 
+const Quantity& without_scenario(const Quantity& quantity) {
+    const auto* one = dynamic_cast<const InScenario*>(&quantity);
+    return one == nullptr ? quantity : *one->quantity();
+}
+
+int scenario_of(const Quantity& quantity) {
+    const auto* one = dynamic_cast<const InScenario*>(&quantity);
+    return one == nullptr ? 0 : one->scenario();
+}
+
 bool has_scenario(const Quantity& quantity) {
     if (dynamic_cast<const InScenario*>(&quantity) != nullptr) return true;
     const auto* expression = dynamic_cast<const Expression*>(&quantity);

@@ -10,6 +10,7 @@
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
 #include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/quantities/in_scenario.hpp"
 #include "fettle/design/report/answer_values.hpp"
 
 namespace fettle::design::report {
@@ -39,11 +40,14 @@ Json row_json(const std::string& name, const Json& told, const description::Boun
             {"in_doubt", false}};
 }
 
+bool is_clearance(const description::Constraint& constraint) {
+    return dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*constraint.quantity)) != nullptr;
+}
+
 // How many of the constraints are clearances: each has a pair in the result, in their order.
 bool pairs_match(const description::Design& design, const Json& result) {
     std::size_t clearances = 0;
-    for (const auto& constraint : design.constraints)
-        clearances += dynamic_cast<const quantities::Clearance*>(constraint.quantity.get()) != nullptr ? 1 : 0;
+    for (const auto& constraint : design.constraints) clearances += is_clearance(constraint) ? 1 : 0;
     const Json pairs = member(member(result, "clearance"), "pairs");
     return pairs.is_array() && pairs.size() == clearances;
 }
@@ -95,7 +99,7 @@ Json requirement_rows(const description::Design& design, const Json& result) {
             row["cost"] = per_unit;
             row["counts"] = counts(per_unit);
         }
-        if (matched && dynamic_cast<const quantities::Clearance*>(constraint.quantity.get()) != nullptr) row["pair"] = pair++;
+        if (matched && is_clearance(constraint)) row["pair"] = pair++;
         rows.push_back(std::move(row));
     }
     const Json relations = member(result, "relations"), of_relations = member(optimality, "relation_multipliers");

@@ -5,6 +5,7 @@
 #include "fettle/core/base/version.hpp"
 #include "fettle/core/files/json_dump.hpp"
 #include "fettle/design/quantities/clearance.hpp"
+#include "fettle/design/quantities/in_scenario.hpp"
 #include "fettle/design/report/answer_values.hpp"
 #include "fettle/design/report/design_rows.hpp"
 #include "fettle/design/report/moving_parts.hpp"
@@ -67,16 +68,18 @@ void add_optimisation(Json& data, const ReportSource& source) {
 
 bool is_of_faces(const quantities::ClearanceRange& range) { return !range.faces_a.empty() || !range.faces_b.empty(); }
 
+constexpr int shown_scenario = 0;  // whose motion the picture begins with
+
 // Of what steps of the motion an answer's pairs are; none of those whose margin over the motion is not that of the two bodies.
 std::vector<StepRange> steps_of(const ReportSource& source, std::size_t pairs) {
     const auto all = count_of(source.motion->trajectory.steps);
     if (source.kind == ReportKind::clearance) return std::vector<StepRange>(pairs, {0, member(source.result, "motion") == true ? all : 0});
     std::vector<StepRange> steps;
     for (const auto& constraint : source.design ? source.design->constraints : std::vector<description::Constraint>()) {
-        const auto* clearance = dynamic_cast<const quantities::Clearance*>(constraint.quantity.get());
+        const auto* clearance = dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*constraint.quantity));
         if (clearance == nullptr) continue;
         const quantities::ClearanceRange& range = clearance->range();
-        if (!range.motion || is_of_faces(range)) {
+        if (!range.motion || is_of_faces(range) || quantities::scenario_of(*constraint.quantity) != shown_scenario) {
             steps.emplace_back();
             continue;
         }
@@ -86,15 +89,22 @@ std::vector<StepRange> steps_of(const ReportSource& source, std::size_t pairs) {
     return steps;
 }
 
+void add_note(Json& row, const std::string& note) {
+    row["note"] = row["note"].is_string() ? row["note"].get<std::string>() + "; " + note : note;
+}
+
 // What a design's rows are about that are not about two whole bodies on the path that is shown.
 void note_ranges(const description::Design& design, Json& rows) {
     std::size_t k = 0;
     for (const description::Constraint& constraint : design.constraints) {
-        const auto* clearance = dynamic_cast<const quantities::Clearance*>(constraint.quantity.get());
+        const auto* clearance = dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*constraint.quantity));
         if (clearance == nullptr || k >= rows.size()) continue;
         Json& row = rows[k++];
         const quantities::ClearanceRange& range = clearance->range();
-        if (range.ranges) row["point_a"] = row["point_b"] = Json();  // elsewhere than on the path
+        const int scenario = range.motion ? quantities::scenario_of(*constraint.quantity) : shown_scenario;
+        const bool is_elsewhere = range.ranges || scenario != shown_scenario;  // than on the path
+        if (is_elsewhere) row["point_a"] = row["point_b"] = Json();
+        if (scenario != shown_scenario) add_note(row, "in the scenario " + design.scenarios[static_cast<std::size_t>(scenario)].name);
         if (!range.ranges && !is_of_faces(range)) continue;
         const auto faces = [](const std::string& body, const std::vector<std::string>& names) {
             return names.empty() ? body : body + " " + core::base::joined(names);
@@ -102,7 +112,7 @@ void note_ranges(const description::Design& design, Json& rows) {
         const std::string pair = faces(row["a"], range.faces_a) + " and " + faces(row["b"], range.faces_b);
         const std::string note = (is_of_faces(range) ? "between " + pair + " alone" : std::string()) +
                                  (range.ranges ? std::string(is_of_faces(range) ? ", " : "") + "over all positions of the joints" : "");
-        row["note"] = row["note"].is_string() ? row["note"].get<std::string>() + "; " + note : note;
+        add_note(row, note);
     }
 }
 

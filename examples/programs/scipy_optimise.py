@@ -9,9 +9,17 @@ import fettle
 
 examples = pathlib.Path(__file__).resolve().parent.parent
 design = fettle.read_design(str(examples / "slider_crank" / "slider_crank.design.json")).design
-design.steps = 1
-design.constraints = [c for c in design.constraints if isinstance(c.quantity, fettle.Clearance) and not c.quantity.motion]
-design.objective = [t for t in design.objective if isinstance(t.quantity, fettle.Mass)]
+for scenario in design.scenarios:
+    scenario.steps = 1
+
+
+def measured(row):
+    """What a row of the design measures, in whichever of its scenarios."""
+    return getattr(row.quantity, "quantity", row.quantity)
+
+
+design.constraints = [c for c in design.constraints if isinstance(measured(c), fettle.Clearance) and not measured(c).motion]
+design.objective = [t for t in design.objective if isinstance(measured(t), fettle.Mass)]
 problem = fettle.DesignProblem(design)
 lower, width = problem.lower, problem.upper - problem.lower  # the optimiser's variables run from 0 to 1
 unit = 1e-3  # and its constraints are in mm

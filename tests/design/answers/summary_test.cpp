@@ -60,6 +60,7 @@ TEST_CASE("summary: only what is optimal, without a doubt, is done") {
     CHECK(summary_of({}, outcome, {}).sentence == "Done: nothing is required (1 design tried). No better design near by.");
     outcome.in_doubt = {0};
     CHECK_FALSE(summary_of({}, outcome, {}).is_good);
+    CHECK(summary_of({}, outcome, {}).sentence == "As simulated nothing is required (1 design tried).");
     CHECK(summary_of({}, outcome, {}).why.find("in doubt: ") == 0);
     outcome.in_doubt.clear();
     outcome.report.status = optimisers::OptimiserStatus::feasible;

@@ -304,7 +304,7 @@ def test_a_file_is_optimised_into_a_folder(tmp_path):
     text = (EXAMPLES / "slider_crank" / "slider_crank.design.json").read_text()
     path = tmp_path / "short.design.json"
     scene = EXAMPLES / "slider_crank" / "slider_crank.scene.json"
-    path.write_text(text.replace('"scene": "slider_crank.scene.json"', f'"scene": "{scene}", "simulation": {{"steps": 3}}'))
+    path.write_text(text.replace('"from": 0.1, ', "").replace('"scene": "slider_crank.scene.json"', f'"scene": "{scene}", "simulation": {{"steps": 3}}'))
     file = fettle.read_design(str(path))
     outcome = fettle.optimise_file(str(path), str(tmp_path / "out"), max_evaluations=6)
     assert 0 < outcome.report.evaluations < 12

@@ -55,5 +55,5 @@ def test_scipy():
 
 def test_an_openmdao_component():
     said = run("openmdao_component.py", EXAMPLES / "slider_crank" / "slider_crank.design.json")
-    assert "7 constraints" in said
+    assert "10 constraints" in said
     assert run("openmdao_component.py") == said

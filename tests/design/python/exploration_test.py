@@ -110,7 +110,7 @@ def short_file(tmp_path):
     text = (EXAMPLES / "slider_crank" / "slider_crank.design.json").read_text()
     scene = EXAMPLES / "slider_crank" / "slider_crank.scene.json"
     design = tmp_path / "short.design.json"
-    design.write_text(text.replace('"scene": "slider_crank.scene.json"', f'"scene": "{scene}", "simulation": {{"steps": 1}}'))
+    design.write_text(text.replace('"from": 0.1, ', "").replace('"scene": "slider_crank.scene.json"', f'"scene": "{scene}", "simulation": {{"steps": 1}}'))
     return design
 
 

@@ -221,7 +221,7 @@ def test_paths_of_any_kind(tmp_path, kind):
     assert len(fettle.read_mesh(kind(stl), unit="mm").triangles) == 24
     short = tmp_path / "short.design.json"
     scene_path = DESIGN.with_name("slider_crank.scene.json")
-    short.write_text(DESIGN.read_text().replace('"scene": "slider_crank.scene.json"', f'"scene": "{scene_path}", "simulation": {{"steps": 1}}'))
+    short.write_text(DESIGN.read_text().replace('"from": 0.1, ', "").replace('"scene": "slider_crank.scene.json"', f'"scene": "{scene_path}", "simulation": {{"steps": 1}}'))
     fettle.optimise_file(kind(short), at("out"), max_evaluations=1, report=False)
     assert fettle.write_report(at("out"), at("report.html")) == str(tmp_path / "report.html")
     explored = fettle.explore(kind(short), at("explored.jsonl"), samples=1, workers=1)
