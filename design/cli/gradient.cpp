@@ -196,11 +196,12 @@ std::string check_text(const Design& design, const CheckReport& report) {
 }
 
 std::string values_text(const Design& design, const DesignEvaluation& e, const Console& console) {
-    std::string text = formatted("objective %.10g\n", e.objective);
+    const std::string unit = description::objective_unit(design);
+    std::string text = "objective " + description::amount_text(e.objective, 1, unit, 10) + "\n";
     for (size_t k = 0; k < design.parameters.size(); ++k) {
         const Parameter& p = design.parameters[k];
-        text +=
-            formatted("  d/d %-24s %14.7g per %s\n", p.name.c_str(), e.gradient[k] * to_si(1, p.unit), std::string(p.unit.name).c_str());
+        text += formatted("  d/d %-24s %14.7g %sper %s\n", p.name.c_str(), e.gradient[k] * to_si(1, p.unit),
+                          unit.empty() ? "" : (unit + " ").c_str(), std::string(p.unit.name).c_str());
     }
     for (size_t k = 0; k < design.objective.size(); ++k) {
         const problem::Tie* tie = answers::tie_of(e, true, k);

@@ -190,9 +190,10 @@ std::string outcome_text(const Design& design, const OptimiseOutcome& outcome, c
                 core::base::counted(outcome.in_doubt.size(), "requirement") + (outcome.in_doubt.size() == 1 ? " is" : " are") +
                 " not met (below)\n";
     const double objective = answers::objective_json(outcome, run).get<double>();
-    text += formatted("objective %.8g, ", objective);
-    text +=
-        outcome.objective_start ? formatted("from %.8g at the start; ", *outcome.objective_start) : "the start could not be evaluated; ";
+    const std::string unit = run.repair ? std::string() : description::objective_unit(design);
+    text += "objective " + description::amount_text(objective, 1, unit, 8) + ", " +
+            (outcome.objective_start ? "from " + description::amount_text(*outcome.objective_start, 1, unit, 8) + " at the start; "
+                                     : "the start could not be evaluated; ");
     text += core::base::counted(static_cast<size_t>(report.evaluations), "evaluation") + formatted(" (%d failed), ", report.failures) +
             core::base::counted(static_cast<size_t>(report.iterations), "iteration") + "\n" + terms_text(design, outcome);
     if (run.repair && report.feasible) text += changes_text(design, report);

@@ -28,6 +28,12 @@ std::string unit_name(const Constraint& constraint) {
     return core::base::unit_name(constraint.quantity->dimension(), constraint.bounds.unit);
 }
 
+std::string objective_unit(const Design& design) {
+    if (design.objective.size() != 1 || std::abs(design.objective.front().weight) != 1) return {};
+    const ObjectiveTerm& term = design.objective.front();
+    return core::base::unit_name(term.quantity->dimension(), term.unit);
+}
+
 std::string amount_text(double si, double unit, const std::string& unit_name, int digits) {
     return with_unit(number_text(si / unit, digits), unit_name);
 }

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "fettle/core/base/bound_text.hpp"
-#include "fettle/design/description/constraint.hpp"
+#include "fettle/design/description/design.hpp"
 
 namespace fettle::design::description {
 
@@ -13,6 +13,9 @@ using core::base::Towards;
 
 /// The unit in which numbers of the requirement are shown: "mm"; empty: plain numbers.
 std::string unit_name(const Constraint& constraint);
+
+/// The unit of the whole objective: that of its one quantity where the weight is 1 or -1; empty where it is a sum, or weighed.
+std::string objective_unit(const Design& design);
 
 /// The unit that a number is counted in: its SI value, and its name as above.
 struct CountedUnit {

@@ -104,7 +104,7 @@ private:
                          "ranges", "over_tolerances"});
         std::optional<quantities::ClearanceRange> range = read_clearance_range(node, context_);
         Bounds bounds;
-        bounds.unit = context_.length_unit;
+        bounds.unit = context_.unit_of({node["minimum"]}, Dimension::length);
         const auto minimum = moving(node["minimum"], Dimension::length);
         if (minimum && !(context_.formulas.value_of(minimum->formula) > 0))
             node["minimum"].fail(ErrorCode::out_of_range, "at the parameters' values this is not greater than 0");
@@ -171,11 +171,11 @@ private:
     Bounds read_bounds(const JsonNode& node, Dimension dimension, const std::optional<MovingBound>& lower,
                        const std::optional<MovingBound>& upper) const {
         Bounds bounds;
-        bounds.unit = context_.unit(dimension);
+        bounds.unit = context_.unit_of({node["upper"], node["lower"]}, dimension);
         const auto amount = [&](const std::string& key) -> std::optional<double> {
             if (key == "lower" && lower) return context_.formulas.value_of(lower->formula);
             if (key == "upper" && upper) return context_.formulas.value_of(upper->formula);
-            return node[key].quantity(dimension, bounds.unit);
+            return node[key].quantity(dimension, context_.unit(dimension));
         };
         bounds.lower = amount("lower").value_or(bounds.lower);
         bounds.upper = amount("upper").value_or(bounds.upper);

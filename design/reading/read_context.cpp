@@ -32,6 +32,20 @@ std::optional<Vector3> ReadContext::axis(const JsonNode& node) const {
 
 double ReadContext::unit(Dimension dimension) const { return core::expression::plain_units(length_unit, grams)(dimension); }
 
+double ReadContext::unit_of(std::initializer_list<JsonNode> bounds, Dimension dimension) const {
+    const core::base::Unit* written = nullptr;
+    for (const JsonNode& bound : bounds) {
+        if (written != nullptr || !bound.is_string()) continue;
+        const std::string text = *bound.string();
+        if (text.find('=') != std::string::npos) continue;  // a formula
+        for (const core::base::Unit& unit : core::base::units()) {
+            const bool longer = written == nullptr || unit.name.size() > written->name.size();
+            if (unit.dimension == dimension && longer && text.ends_with(unit.name)) written = &unit;
+        }
+    }
+    return written != nullptr ? core::base::to_si(1, *written) : unit(dimension);
+}
+
 std::string unique_name(const std::string& wanted, std::set<std::string>& taken) {
     std::string name = wanted;
     for (int k = 2; !taken.insert(name).second; ++k) name = wanted + " " + std::to_string(k);

@@ -2,6 +2,7 @@
 /// What reading a part of a design file needs to know of the rest: the scene, the file's unit, the time simulated.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <set>
 #include <string>
@@ -32,6 +33,8 @@ struct ReadContext {
     /// SI value of the unit that plain numbers of this dimension are in: lengths, areas and speeds by the file's unit, masses
     /// in grams, angles in degrees, else SI.
     double unit(Dimension dimension) const;
+    /// SI value of the unit in which bounds are shown: that of the first that is a text ("60 N mm" -> 0.001), else unit(dimension).
+    double unit_of(std::initializer_list<core::files::JsonNode> bounds, Dimension dimension) const;
 };
 
 /// `wanted`, or "wanted 2", "wanted 3", ... if it is taken; takes it.

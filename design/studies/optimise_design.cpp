@@ -43,12 +43,14 @@ std::string shortfall(const Design& design, const VectorX& p, const optimisers::
     return std::abs(most - e.violation) <= nearly * e.violation ? text : "a requirement is not proven to be met";
 }
 
-std::string evaluation_line(const Design& design, int number, const VectorX& p, const optimisers::Evaluation& e, bool best) {
+// `unit`: of the objective.
+std::string evaluation_line(const Design& design, const std::string& unit, int number, const VectorX& p, const optimisers::Evaluation& e,
+                            bool best) {
     char line[80];
     std::snprintf(line, sizeof line, "%4d  ", number);
     if (!e.usable) return line + ("cannot be evaluated: " + e.reason);
     const std::string text = line + shortfall(design, p, e);
-    std::snprintf(line, sizeof line, "objective %-13.8g", e.objective);
+    std::snprintf(line, sizeof line, "objective %-13s", description::amount_text(e.objective, 1, unit, 8).c_str());
     return text.substr(0, 6) + line + " " + text.substr(6) + (best ? ", the best so far" : "");
 }
 
@@ -212,7 +214,7 @@ private:
         settings.should_stop = options_.should_stop;
         settings.on_evaluation = [this](int number, const VectorX& p, const optimisers::Evaluation& e, bool best) {
             if (!e.usable) failures_.push_back({p, e.reason});
-            narrate(evaluation_line(design_, number, p, e, best));
+            narrate(evaluation_line(design_, options_.repair ? std::string() : description::objective_unit(design_), number, p, e, best));
         };
         settings.narrate = [this](const std::string& line) { narrate(line); };
         return settings;

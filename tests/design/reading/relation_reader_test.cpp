@@ -60,7 +60,7 @@ TEST_CASE("a ratio, a sum and a formula are read as relations between the parame
     CHECK(sum.name == "height + width");
     CHECK(sum.bounds.lower == 0.03);
     CHECK(sum.bounds.upper == 0.03);
-    CHECK(sum.bounds.unit == 1e-3);
+    CHECK(sum.bounds.unit == 1e-2);
     CHECK(sum.bounds.margin == 0);
     CHECK(sum.tolerance == Approx(1e-5 * 23e-3));
     CHECK(violation(sum, sum.at(p).value) == 0);
