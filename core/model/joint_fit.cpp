@@ -90,22 +90,29 @@ bool is_on_sphere(const Corners& c, const Vector3& centre) {
     return r > 0;
 }
 
+// A ball that is sunk in the other's material from outside is no ball in its socket: what both have must lie about the centre, or be a
+// shell between two spheres.
 bool explains_about_point(const Vector3& centre, const CommonPart& piece, const geometry::Mesh& a, const geometry::Mesh& b) {
     double on_sphere = 0, all = 0;
     Vector3 rest = Vector3::Zero();  // the area of a mouth or neck, which is along its axis
     std::vector<Corners> others;
+    bool is_shell = false, is_about_centre = true;
     for (const CutTriangle& t : piece.triangles) {
         const Corners corners = parent_of(t, a, b);
         const Vector3 area = piece.area_of(t);
+        const Vector3 from_centre = piece.corner(t, 0) - centre;
+        const bool faces_centre = area.dot(from_centre) < -flat_sine * area.norm() * from_centre.norm();
         all += area.norm();
         if (is_on_sphere(corners, centre)) {
             on_sphere += area.norm();
+            is_shell = is_shell || faces_centre;
             continue;
         }
+        is_about_centre = is_about_centre && !faces_centre;
         rest += area;
         others.push_back(corners);
     }
-    if (!(on_sphere > 0.5 * all)) return false;
+    if (!(on_sphere > 0.5 * all) || !(is_shell || is_about_centre)) return false;
     const Axis axis{centre, rest.norm() > 0 ? Vector3(rest.normalized()) : Vector3(Vector3::UnitZ())};
     return std::all_of(others.begin(), others.end(), [&](const Corners& c) { return axis.is_round(c); });
 }

@@ -87,7 +87,7 @@ public:
         const ScenarioNames scenarios = read_scenarios(root["scenarios"], root["set"], formulas);
         if (!scene_errors_.empty()) return all_errors();  // of one of them
         for (const description::Scenario& scenario : design_.scenarios) formulas.take_scenario(scenario.name, scenario.scene.variables);
-        take_tolerances(entries, units, formulas, as_made);
+        take_tolerances(entries, scene->root(), units, formulas, as_made);
         std::vector<quantities::NamedQuantity> named;
         const ReadContext context{design_.scene,
                                   to_si(1, file_.length_unit),
@@ -168,17 +168,17 @@ private:
     }
 
     // Of a design as drawn they are checked, and left. @param parameters  As made, but for those of places.
-    void take_tolerances(std::vector<ToleranceEntry>& entries, const ToleranceUnits& units, const DesignFormulas& formulas,
-                         const std::vector<description::Parameter>& parameters) {
+    void take_tolerances(std::vector<ToleranceEntry>& entries, const JsonNode& scene, const ToleranceUnits& units,
+                         const DesignFormulas& formulas, const std::vector<description::Parameter>& parameters) {
         if (entries.empty()) return;
         if (!options_.as_made) {
             description::Design checked = design_;
             checked.parameters = parameters;
-            read_tolerances(entries, formulas, units, checked, file_.untoleranced);
+            read_tolerances(entries, scene, formulas, units, checked, file_.untoleranced);
             return;
         }
         design_.parameters = parameters;
-        read_tolerances(entries, formulas, units, design_, file_.untoleranced);
+        read_tolerances(entries, scene, formulas, units, design_, file_.untoleranced);
         for (ToleranceEntry& entry : entries) file_.tolerances.push_back(std::move(entry.tolerance));
     }
 

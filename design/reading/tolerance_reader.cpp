@@ -8,6 +8,7 @@
 #include "fettle/core/base/contract.hpp"
 #include "fettle/core/files/nearest_word.hpp"
 #include "fettle/core/scene/place.hpp"
+#include "fettle/design/reading/followed_number.hpp"
 #include "fettle/design/reading/parameter_reader.hpp"
 
 namespace fettle::design::reading {
@@ -68,11 +69,15 @@ std::optional<Nominal> nominal_of(const std::string& name, const DesignFormulas&
 }
 
 // A place of the scene gets its parameter. Nothing: it has a fault, which is told.
-std::optional<Nominal> add_place(ToleranceEntry& entry, const Unit& length_unit, description::Design& design) {
+std::optional<Nominal> add_place(ToleranceEntry& entry, const JsonNode& file, const Unit& length_unit, description::Design& design) {
     const core::scene::Scene scene = description::described_scene(design);
     const auto place = core::scene::find_place(scene, entry.tolerance.of);
     for (const Error& error : place.errors()) entry.node.fail(error.code, error.message);
     if (!place) return std::nullopt;
+    if (const std::string follows = what_follows(file, scene, *place); !follows.empty()) {
+        entry.node.fail(ErrorCode::unsupported, follows);
+        return std::nullopt;
+    }
     const Nominal nominal{core::scene::value_at(scene, *place), usual_unit(core::scene::dimension_at(scene, *place), length_unit)};
     const Result<int> parameter = description::add_deviation(design, entry.tolerance.of, nominal.unit);
     for (const Error& error : parameter.errors()) entry.node.fail(error.code, error.message);
@@ -170,8 +175,8 @@ std::map<std::string, std::string> deviations_of(const std::vector<ToleranceEntr
     return out;
 }
 
-void read_tolerances(std::vector<ToleranceEntry>& entries, const DesignFormulas& formulas, const ToleranceUnits& units,
-                     description::Design& design, std::vector<Untoleranced>& left_out) {
+void read_tolerances(std::vector<ToleranceEntry>& entries, const JsonNode& file, const DesignFormulas& formulas,
+                     const ToleranceUnits& units, description::Design& design, std::vector<Untoleranced>& left_out) {
     using Kind = ToleranceEntry::Kind;
     std::vector<ToleranceEntry> kept;
     for (ToleranceEntry& entry : entries) {
@@ -183,7 +188,7 @@ void read_tolerances(std::vector<ToleranceEntry>& entries, const DesignFormulas&
             nominal = nominal_of(tolerance.of, formulas, units.length, design);
             if (nominal) design.parameters[tolerance.parameter].unit = nominal->unit;
         } else {
-            nominal = add_place(entry, units.length, design);
+            nominal = add_place(entry, file, units.length, design);
         }
         if (!nominal) continue;
         if (entry.is_default) {

@@ -58,8 +58,8 @@ std::map<std::string, std::string> deviations_of(const std::vector<ToleranceEntr
 
 /// How wide they are. Gives the design, whose scene and scenarios are read, a parameter for each place, and those of variables their units.
 /// Default entries of what the design makes a number that they do not cover go.
-/// @param formulas  What variables of the design and of the scene mean. @param left_out  Gets those that went.
-void read_tolerances(std::vector<ToleranceEntry>& entries, const DesignFormulas& formulas, const ToleranceUnits& units,
-                     description::Design& design, std::vector<Untoleranced>& left_out);
+/// @param file  The scene's. @param formulas  What variables of the design and of the scene mean. @param left_out  Gets those that went.
+void read_tolerances(std::vector<ToleranceEntry>& entries, const core::files::JsonNode& file, const DesignFormulas& formulas,
+                     const ToleranceUnits& units, description::Design& design, std::vector<Untoleranced>& left_out);
 
 }  // namespace fettle::design::reading
