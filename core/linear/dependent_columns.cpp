@@ -145,16 +145,16 @@ RankFactor factorise_well(const Sparse& matrix, double share) {
 
 std::vector<DependentColumn> dependent_columns(Sparse matrix, double share) {
     constexpr double counts = 1e-6;  // of the largest part
-    VectorX lengths(matrix.cols());
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
-        lengths[j] = matrix.col(j).norm();
-        if (lengths[j] > 0) matrix.col(j) /= lengths[j];
-    }
     matrix.makeCompressed();
     std::vector<DependentColumn> out;
     if (matrix.nonZeros() == 0) {  // each is a sum of nothing
         for (int j = 0; j < matrix.cols(); ++j) out.push_back({j, {}});
         return out;
+    }
+    VectorX lengths(matrix.cols());
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+        lengths[j] = matrix.col(j).norm();
+        if (lengths[j] > 0) matrix.col(j) /= lengths[j];
     }
     const RankFactor factor = factorise_well(matrix, share);
     const Sparse independent = factor.r.topLeftCorner(factor.rank, factor.rank);

@@ -172,7 +172,7 @@ private:
 // Finds the pairs of bodies that a motor's motion leaves two places for (dyads), one after another outwards from what does not move.
 class OpenSides {
 public:
-    OpenSides(const scene::Scene& scene, const Model& model) : scene_(scene), model_(model), poses_(start_poses(model)) {
+    explicit OpenSides(const Model& model) : model_(model), poses_(start_poses(model)) {
         const int bodies = count_of(model.bodies);
         is_placed_.assign(bodies, false);
         for (int i = 0; i < bodies; ++i) {
@@ -180,17 +180,20 @@ public:
             for (int k = 0; k < 6; ++k)
                 if (is_free(model.bodies[i], k)) is_placed_[i] = false;
         }
-        for (const scene::Motor& motor : scene.mechanism.motors)
-            if (motor.kind == scene::MotorKind::motion) driven_.insert(motor.joint);
-        for (const scene::Joint& joint : scene.mechanism.joints)
-            if (joint.assemble) said_.insert(joint.name);
+        for (const Joint& motor : joints())
+            for (const Joint& joint : joints())
+                if (motor.is_motor && !joint.is_motor && has_ends(joint) && joint.frame_a == motor.frame_a &&
+                    joint.frame_b == motor.frame_b)
+                    driven_.insert(joint.name);
+        for (const Branch& branch : model.mechanism.branches) said_.insert(joints()[branch.joint].name);
     }
 
-    std::vector<JointSide> find() {
+    void find() {
         while (place_driven() || place_pair()) {
         }
-        return std::move(found_);
     }
+    const std::vector<JointSide>& sides() const { return found_; }
+    const std::vector<Branch>& branches() const { return branches_; }
 
 private:
     const std::vector<Joint>& joints() const { return model_.mechanism.joints; }
@@ -259,10 +262,10 @@ private:
         const std::vector<int> three{from, middle, to};
         const std::string& name = joints()[middle].name;
         if (said_.count(name) != 0 || driven_.count(name) != 0 || !is_in_a_plane(three)) return;
-        const auto described = std::find_if(scene_.mechanism.joints.begin(), scene_.mechanism.joints.end(),
-                                            [&](const scene::Joint& joint) { return joint.name == name; });
         const bool along = std::any_of(three.begin(), three.end(), [&](int joint) { return slides(joints()[joint]); });
-        scene::Joint joint = *described;
+        scene::Joint joint;
+        joint.name = name;
+        joint.kind = joints()[middle].kind;
         joint.assemble = scene::Assemble{along ? AssembleSide::ahead : AssembleSide::left, joints()[from].name, joints()[to].name};
         std::vector<Branch> branch;
         if (!BranchBuilder(joint, middle, model_).build(branch).empty()) return;
@@ -270,20 +273,32 @@ private:
         constexpr double dead_centre = 1e-6;
         if (!(std::abs(side) > dead_centre)) return;
         if (side < 0) joint.assemble->side = along ? AssembleSide::behind : AssembleSide::right;
+        branch.front().sign = side < 0 ? -1 : 1;
+        branches_.push_back(branch.front());
         found_.push_back({name, *joint.assemble});
     }
 
-    const scene::Scene& scene_;
     const Model& model_;
     std::vector<kinematics::Pose> poses_;
     std::vector<bool> is_placed_;
     std::set<std::string> driven_, said_;
     std::vector<JointSide> found_;
+    std::vector<Branch> branches_;
 };
 
 }  // namespace
 
-std::vector<JointSide> sides_left_open(const scene::Scene& scene, const Model& model) { return OpenSides(scene, model).find(); }
+std::vector<JointSide> sides_left_open(const Model& model) {
+    OpenSides open(model);
+    open.find();
+    return open.sides();
+}
+
+std::vector<Branch> branches_left_open(const Model& model) {
+    OpenSides open(model);
+    open.find();
+    return open.branches();
+}
 
 Errors add_branches(const scene::Scene& scene, Model& model) {
     Errors errors;

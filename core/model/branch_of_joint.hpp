@@ -39,7 +39,9 @@ scene::AssembleSide other_side(scene::AssembleSide side);
 /// joint more to what motors place (the world, bodies that cannot move, what a joint with a motor of kind `motion` or a fixed joint joins
 /// to these, and pairs found before), all three joints revolute, or one of them prismatic, in one plane. As the model stands at its start;
 /// a pair at a dead centre there is left out.
-std::vector<JointSide> sides_left_open(const scene::Scene& scene, const Model& model);
+std::vector<JointSide> sides_left_open(const Model& model);
+/// The same as branches, each on its side.
+std::vector<constraint::Branch> branches_left_open(const Model& model);
 
 /// Is the branch on its side? Where a leg has no length it is on none.
 bool is_on_side(const Mechanism& mechanism, const constraint::Branch& branch, const std::vector<kinematics::Pose>& poses);

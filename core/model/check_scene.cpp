@@ -147,8 +147,10 @@ Errors check_numbers(const scene::Scene& scene) {
     constexpr double a_day = 86400;  // [s]
     want(positive(scene.timestep) && scene.timestep <= a_day, "/timestep",
          "the time step must be greater than 0 and at most a day (it is in seconds)");
-    if (errors.empty() && scene.end_time)
-        for (const Error& error : scene::step_count(*scene.end_time, scene.timestep).errors()) want(false, "/end_time", error.message);
+    if (errors.empty() && scene.end_time) {
+        const Result<int> steps = scene::step_count(*scene.end_time, scene.timestep);
+        if (!steps) want(false, "/end_time", steps.errors().front().message);
+    }
     want(positive(scene.dhat), "/contact/dhat", "the activation distance must be greater than 0 and finite");
     want(scene.dmin >= 0 && std::isfinite(scene.dmin), "/contact/dmin", "the minimum separation must be at least 0 and finite");
     want(positive(scene.kappa), "/contact/kappa", "the barrier stiffness must be greater than 0 and finite");

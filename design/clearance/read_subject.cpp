@@ -13,6 +13,7 @@
 #include "fettle/core/records/poses_file.hpp"
 #include "fettle/core/records/trajectory_io.hpp"
 #include "fettle/core/scene/step_count.hpp"
+#include "fettle/core/stepper/branch_warnings.hpp"
 #include "fettle/core/stepper/jointed_motion.hpp"
 #include "fettle/core/stepper/scripted_motion.hpp"
 #include "fettle/core/stepper/simulate.hpp"
@@ -123,6 +124,13 @@ Errors take_joints(const SubjectOptions& options, int steps, Subject& subject) {
     subject.notes.push_back(joints_note(subject, *followed));
     mark_as_scripted(subject);
     return {};
+}
+
+// A motion that passes a dead centre is one of two.
+void warn_of_branches(const SubjectWatch& watch, Subject& subject) {
+    const std::vector<std::string> found = core::stepper::branch_warnings(subject.model, subject.trajectory);
+    if (watch.on_warnings && !found.empty()) watch.on_warnings(found);
+    subject.warnings.insert(subject.warnings.end(), found.begin(), found.end());
 }
 
 void simulate(int steps, const SubjectWatch& watch, Subject& subject) {
@@ -371,6 +379,7 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
     } else if (options.kinematic && !subject.model.mechanism.rows.empty()) {
         Errors errors = take_joints(options, *steps, subject);
         if (!errors.empty()) return errors;
+        warn_of_branches(watch, subject);
     } else if (options.kinematic || (options.motion && all_scripted)) {
         subject.trajectory = core::stepper::follow_scripts(subject.model, *steps);
         subject.source = SubjectSource::scripted;
@@ -384,6 +393,7 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
         for (Error& error : errors) error.where = options.path + ": " + error.where;
         if (!errors.empty()) return errors;
         simulate(*steps, watch, subject);
+        warn_of_branches(watch, subject);
     } else {
         subject.trajectory = core::clearance::as_assembled(subject.model);
     }

@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A scene and its model: of a design at the values of its parameters, in its first scenario.
+/// A scene and its model: of a design at the values of its parameters, in the scenario that is asked for.
 struct SceneAndModel {
     core::scene::Scene scene;
     core::model::Model model;
@@ -42,8 +42,10 @@ Result<SceneAndModel> scene_and_model(const std::string& path, const CommonOptio
         if (!file) return file.errors();
         const auto problem = problem::DesignProblem::create(file->design);
         if (!problem) return problem.errors();
-        const description::Design first = description::design_of_scenario(problem->design(), 0);
-        auto moved = problem::move_scene(first, description::values_of(first.parameters), problem::SceneDerivative::not_wanted);
+        const Result<int> scenario = reading::scenario_of(file->design, common.scenario, path);
+        if (!scenario) return scenario.errors();
+        const description::Design one = description::design_of_scenario(problem->design(), *scenario);
+        auto moved = problem::move_scene(one, description::values_of(one.parameters), problem::SceneDerivative::not_wanted);
         if (!moved) return moved.errors();
         out.scene = std::move(moved->scene);
     } else {
@@ -98,8 +100,10 @@ int export_scene(const std::string& path, const std::string& to, const CommonOpt
         return console.input_errors({{ErrorCode::unsupported, path, "is not a design; a design is written as a scene"}});
     const auto file = reading::read_design(path, {common.mesh_dirs, programs_of(common)});
     if (!file) return console.input_errors(file.errors());
+    const Result<int> scenario = reading::scenario_of(file->design, common.scenario, path);
+    if (!scenario) return console.input_errors(scenario.errors());
     if (const Errors errors = answers::try_output_file(to); !errors.empty()) return console.input_errors(errors);
-    const auto text = reading::scene_text(*file, to, reading::scene_read_options(common.mesh_dirs, programs_of(common)));
+    const auto text = reading::scene_text(*file, to, reading::scene_read_options(common.mesh_dirs, programs_of(common)), *scenario);
     if (!text) return console.input_errors(text.errors());
     return leave_files({{to, *text}}, "scene", file->warnings, common, console);
 }

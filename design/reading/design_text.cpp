@@ -59,7 +59,7 @@ void move_processes(nlohmann::ordered_json& json, const std::string& folder, con
 
 Result<std::string> scene_from(const DesignFile& file, const std::string& directory) {
     std::error_code failure;
-    const fs::path scene = fs::relative(fs::absolute(file.scene_path), fs::absolute(directory), failure);
+    const fs::path scene = fs::relative(fs::absolute(file.scene_path), fs::current_path() / directory, failure);
     std::string name = failure || scene.empty() ? fs::absolute(file.scene_path).string() : scene.generic_string();
     if (core::base::is_utf8(name)) return name;
     return Error{
@@ -120,7 +120,7 @@ std::string design_hash(const DesignFile& file) {
     hash.add(std::string(core::base::version()) + "\n" + core::files::dumped(json) + "\n" + file.read_as + "\n");
     // By their names as the scene has them, so that the folder can be moved.
     std::error_code unresolved;
-    const fs::path folder = fs::weakly_canonical(fs::path(file.scene_path).parent_path(), unresolved);
+    const fs::path folder = fs::weakly_canonical(fs::absolute(file.scene_path).parent_path(), unresolved);
     std::set<std::pair<std::string, std::uint64_t>> files;
     for (const auto& [path, contents] : file.files)
         files.emplace(fs::weakly_canonical(path, unresolved).lexically_proximate(folder).string(), contents);

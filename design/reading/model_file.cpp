@@ -68,18 +68,6 @@ Errors strict_faults(const std::string& scene_path, const InputOptions& options,
     return check.errors.empty() ? as_errors(check.warnings, scene_path) : check.errors;
 }
 
-/// The scenario's number.
-Result<int> scenario_of(const description::Design& design, const std::string& name, const std::string& path) {
-    if (name.empty()) return 0;
-    std::vector<std::string_view> names;
-    for (const description::Scenario& scenario : design.scenarios) names.emplace_back(scenario.name);
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found != names.end()) return static_cast<int>(found - names.begin());
-    return Error{ErrorCode::unknown_key, path,
-                 names.empty() ? "the design has no `scenarios`, so none is called \"" + name + "\""
-                               : "no scenario is called \"" + name + "\"; " + core::files::did_you_mean(name, names)};
-}
-
 Result<LoadedModel> load_design(const std::string& path, InputOptions options) {
     const std::string wanted = std::exchange(options.scenario, {});
     Result<DesignFile> file = open_design(path, options);
@@ -165,6 +153,17 @@ Result<LoadedModel> load_model(const std::string& path, FileKind kind, const Inp
     loaded->warnings.insert(loaded->warnings.end(), more.begin(), more.end());
     if (options.strict && !loaded->warnings.empty()) return as_errors(loaded->warnings, path);
     return loaded;
+}
+
+Result<int> scenario_of(const description::Design& design, const std::string& name, const std::string& path) {
+    if (name.empty()) return 0;
+    std::vector<std::string_view> names;
+    for (const description::Scenario& scenario : design.scenarios) names.emplace_back(scenario.name);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<int>(found - names.begin());
+    return Error{ErrorCode::unknown_key, path,
+                 names.empty() ? "the design has no `scenarios`, so none is called \"" + name + "\""
+                               : "no scenario is called \"" + name + "\"; " + core::files::did_you_mean(name, names)};
 }
 
 Result<LoadedModel> loaded_design(DesignFile file, const VectorX& values, const std::string& wanted) {

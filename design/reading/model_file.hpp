@@ -54,6 +54,9 @@ Result<LoadedModel> load_model(const std::string& path, const InputOptions& opti
 /// The same of a design in hand, at these values of its parameters. Errors: no such scenario, what cannot be made there.
 Result<LoadedModel> loaded_design(DesignFile file, const VectorX& values, const std::string& scenario = {});
 
+/// Which of the design's scenarios is called so; "": the first. Errors (unknown_key): none is. @param path  of the file, for messages
+Result<int> scenario_of(const description::Design& design, const std::string& name, const std::string& path);
+
 /// A design, for what takes nothing else, and all of its scenarios. Errors: one is asked for; a file that is something else by its name and
 /// first character is named with what is read instead; with `strict` also faults of its meshes, and what is doubted of its scene.
 Result<DesignFile> open_design(const std::string& path, const InputOptions& options);

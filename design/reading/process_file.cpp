@@ -214,7 +214,7 @@ std::string process_name_from(const std::string& name, const std::string& folder
     if (tolerances::find_known_process(name) != nullptr) return name;
     const fs::path path = file_of(name, folder);
     std::error_code failure;
-    const fs::path relative = fs::relative(fs::absolute(path), fs::absolute(other), failure);
+    const fs::path relative = fs::relative(fs::absolute(path), fs::current_path() / other, failure);
     return failure || relative.empty() ? fs::absolute(path).string() : relative.generic_string();
 }
 

@@ -67,7 +67,7 @@ void move_name(Json& holder, const char* key, std::string_view ending, const fs:
     std::error_code failed;
     if (!fs::is_regular_file(from / name, failed) && (ending.empty() || !fs::is_regular_file(from / (name + std::string(ending)), failed)))
         return;
-    const fs::path moved = fs::relative(fs::absolute(from / name), fs::absolute(to), failed);
+    const fs::path moved = fs::relative(fs::absolute(from / name), fs::current_path() / to, failed);
     if (!failed && !moved.empty()) holder[key] = moved.generic_string();
 }
 
@@ -104,18 +104,28 @@ Errors differences(const Scene& read, const Scene& meant, const std::string& pat
     return errors;
 }
 
+// The entry of `scenarios` that makes the scenario of this number: a "play" makes two.
+const Json& entry_of(const Json& scenarios, int scenario) {
+    std::size_t entry = 0;
+    for (int k = 0;; ++entry) {
+        k += scenarios[entry].contains("play") ? 2 : 1;
+        if (scenario < k) return scenarios[entry];
+    }
+}
+
 }  // namespace
 
-Result<std::string> scene_text(const DesignFile& file, const std::string& path, const core::scene::ReadOptions& options) {
+Result<std::string> scene_text(const DesignFile& file, const std::string& path, const core::scene::ReadOptions& options, int scenario) {
     const Result<std::string> text = core::files::read_file(file.scene_path);
     if (!text) return text.errors();
     Json scene = Json::parse(*text);
     const Json design = Json::parse(file.text);
     apply(design, scene);
     if (!file.design.scenarios.empty()) {
-        apply(design["scenarios"][0], scene);
-        const Vector3& gravity = file.design.scenarios.front().scene.gravity;
-        if (design["scenarios"][0].contains("play")) scene["gravity"] = {gravity[0], gravity[1], gravity[2]};  // with what presses
+        const Json& entry = entry_of(design["scenarios"], scenario);
+        apply(entry, scene);
+        const Vector3& gravity = file.design.scenarios[static_cast<std::size_t>(scenario)].scene.gravity;
+        if (entry.contains("play")) scene["gravity"] = {gravity[0], gravity[1], gravity[2]};  // with what presses
     }
     for (const description::Parameter& parameter : file.design.parameters)
         scene["variables"][parameter.name] = number_text(parameter.value, parameter.unit);
@@ -127,8 +137,8 @@ Result<std::string> scene_text(const DesignFile& file, const std::string& path, 
 
     const auto problem = problem::DesignProblem::create(file.design);
     if (!problem) return problem.errors();
-    const description::Design first = description::design_of_scenario(problem->design(), 0);
-    const auto meant = problem::move_scene(first, description::values_of(first.parameters), problem::SceneDerivative::not_wanted);
+    const description::Design one = description::design_of_scenario(problem->design(), scenario);
+    const auto meant = problem::move_scene(one, description::values_of(one.parameters), problem::SceneDerivative::not_wanted);
     if (!meant) return meant.errors();
     const Result<Scene> read = core::scene_files::parse_scene(out, path, options);
     if (!read) return read.errors();

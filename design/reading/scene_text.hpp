@@ -11,12 +11,12 @@
 
 namespace fettle::design::reading {
 
-/// Of a design with scenarios the scene is that of the first. Names of meshes and parts are written as they are from the new file's folder.
-/// What is written is read again: every number that a design can move, and every mesh, has to be as the design has it.
+/// @param scenario  Whose scene it is, of a design with scenarios. Names of meshes and parts are written as they are from the new file's
+/// folder. What is written is read again: every number that a design can move, and every mesh, has to be as the design has it.
 /// @param path     of the file that is to be.
 /// @param options  What scenes are read with (scene_read_options).
 /// Errors: of the files; unsupported, by place: what a scene file cannot say of this design (a formula of the design's variables with a
 /// number that counts in the design's unit, where the scene's is another).
-Result<std::string> scene_text(const DesignFile& file, const std::string& path, const core::scene::ReadOptions& options);
+Result<std::string> scene_text(const DesignFile& file, const std::string& path, const core::scene::ReadOptions& options, int scenario = 0);
 
 }  // namespace fettle::design::reading

@@ -278,6 +278,11 @@ private:
 
 void read_entry(const JsonNode& node, const Nominal& nominal, const ToleranceUnits& units, Tolerance& tolerance) {
     EntryReader(node, nominal, units).read(tolerance);
+    constexpr double smallest = 1e-30;  // powers of it are still numbers
+    const double width = tolerance.deviation.upper - tolerance.deviation.lower;
+    if (width > 0 && width < smallest)
+        node.fail(ErrorCode::out_of_range,
+                  "limits that are less than 1e-30 apart (in SI) cannot be told from none; say 0, or leave the tolerance out");
 }
 
 std::string why_no_tolerance(const JsonNode& node, const Nominal& nominal, const ToleranceUnits& units) {

@@ -64,7 +64,7 @@ Sides sides_of(const problem::DesignProblem& problem) {
     for (const core::scene::Joint& joint : first.scene.mechanism.joints)
         if (joint.assemble) sides.push_back({joint.name, *joint.assemble});
     if (const Result<core::model::Model> model = problem.model_at(description::values_of(design.parameters))) {
-        const Sides open = core::model::sides_left_open(first.scene, *model);
+        const Sides open = core::model::sides_left_open(*model);
         sides.insert(sides.end(), open.begin(), open.end());
     }
     sides.erase(std::remove_if(sides.begin(), sides.end(), [&](const auto& side) { return !is_one(design, side.joint); }), sides.end());

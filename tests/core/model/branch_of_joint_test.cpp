@@ -258,4 +258,27 @@ TEST_CASE("a motion that goes over to the other side is told with its time", "[m
     CHECK(stepper::branch_warnings(model, trajectory).empty());
 }
 
+TEST_CASE("a linkage whose side no joint says is told to pass a dead centre", "[mechanism][branch]") {
+    scene::Scene scene = four_bar(0.7);
+    std::vector<std::vector<kinematics::Pose>> sides;
+    for (const AssembleSide side : {left, right}) {
+        scene.mechanism.joints[2].assemble = scene::Assemble{side, "", ""};
+        sides.emplace_back();
+        for (const Body& body : built(scene).bodies) sides.back().push_back(body.pose_start);
+    }
+    scene.mechanism.joints[2].assemble.reset();
+    const Model model = built(scene);
+    const std::vector<constraint::Branch> open = branches_left_open(model);
+    REQUIRE(open.size() == sides_left_open(model).size());
+    stepper::Trajectory trajectory;
+    trajectory.timestep = 0.01;
+    trajectory.poses = {start_poses(model), start_poses(model)};
+    CHECK(stepper::branch_warnings(model, trajectory).empty());
+    for (const auto& side : sides) trajectory.poses.push_back(side);
+    REQUIRE(open.size() == 1);
+    const std::vector<std::string> warnings = stepper::branch_warnings(model, trajectory);
+    REQUIRE(warnings.size() == 1);
+    CHECK(contains(warnings[0], "passes a dead centre by t = 0.0"));
+}
+
 }  // namespace fettle::core::model::branch_of_joint_test

@@ -103,7 +103,8 @@ TEST_CASE("A ball in its socket is explained by a ball joint at its middle", "[m
     CHECK(!overlap(larger, ball, JointKind::fixed).explained);
     CHECK(!overlap({cube(6, 6, 6)}, ball, JointKind::ball).explained);
     // Sunk into a wall from outside; and in a block that has its middle, and its mouth beyond it.
-    for (const double depth : {0.5, 2.0, 4.0, 4.9}) CHECK(!overlap({cube(20, 60, 60), {depth - 15, 0, 0}}, ball, JointKind::ball).explained);
+    for (const double depth : {0.5, 2.0, 4.0, 4.9})
+        CHECK(!overlap({cube(20, 60, 60), {depth - 15, 0, 0}}, ball, JointKind::ball).explained);
     for (const double beyond : {0.5, 2.0}) CHECK(overlap({cube(20, 60, 60), {beyond - 10, 0, 0}}, ball, JointKind::ball).explained);
 }
 

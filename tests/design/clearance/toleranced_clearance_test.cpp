@@ -252,7 +252,11 @@ TEST_CASE("What cannot be proven within tolerances is refused by name", "[tolera
     }
     SECTION("rotations of bodies that joints hold") {
         const std::string more = replaced(design, R"("width": "+-0.1 mm")", R"("/bodies/fore/rotation/2": "+-1 deg")");
-        CHECK_THAT(fault_of(scene, more, true), Catch::Contains("the rotation of body `fore`"));
+        const std::string in_frames =
+            replaced(scene, R"("point": ["= upper_length", 0, 0], "axis": [0, 0, 1])",
+                     R"("point_a": ["= upper_length", 0, 0], "point_b": [0, 0, 0], "axis_a": [0, 0, 1], "axis_b": [0, 0, 1])");
+        CHECK_THAT(fault_of(in_frames, more, true), Catch::Contains("the rotation of body `fore`"));
+        CHECK_THAT(fault_of(scene, more, true), Catch::Contains("joint `elbow` is given in the world"));
     }
     SECTION("parts that are not made everywhere") {
         const std::string more = replaced(design, R"("width": "+-0.1 mm")", R"("width": "+-12 mm")");

@@ -25,6 +25,22 @@ std::string all(const Errors& errors) {
 
 }  // namespace
 
+TEST_CASE("a design has the same hash from wherever it is read") {
+    const DesignFolder folder;
+    const std::filesystem::path here = std::filesystem::current_path(), design = folder.design();
+    const auto hash_from = [&](const std::filesystem::path& current, const std::filesystem::path& name) {
+        std::filesystem::current_path(current);
+        const Result<DesignFile> read = read_design(name.string());
+        const std::string hash = read ? design_hash(*read) : all(read.errors());
+        std::filesystem::current_path(here);
+        return hash;
+    };
+    const std::string hash = hash_from(here, design);
+    CHECK(hash.size() == 16);
+    CHECK(hash_from(design.parent_path(), design.filename()) == hash);
+    CHECK(hash_from(design.parent_path().parent_path(), design.parent_path().filename() / design.filename()) == hash);
+}
+
 TEST_CASE("a rewritten design reads back bit for bit, from another folder, and has the same hash but for its values") {
     const DesignFolder folder;
     const Result<DesignFile> design = read_design(folder.design());

@@ -3,6 +3,8 @@
 #include "fettle/design/reading/scene_text.hpp"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/scene_files/scene_reader.hpp"
@@ -61,6 +63,28 @@ TEST_CASE("of a design with scenarios the first leaves as a scene, with what tak
     REQUIRE(answer.code == 0);
     CHECK(json::parse(contents(out))["gravity"] == json({3.0, 0.0, -9.81}));
     CHECK(json::parse(contents(out))["bodies"][1]["angular_velocity"] == json({5, 0, 0}));
+}
+
+TEST_CASE("the scenario that is asked for leaves, as a scene and as a robot; none of another name") {
+    const DesignFolder folder(replaced(small_design, "\"objective\": [",
+                                       R"("scenarios": [{"name": "one", "set": {"/timestep": 0.002}},
+                                           {"name": "taken up", "play": "both", "along": [2, 0, 0], "press": 3},
+                                           {"name": "last", "set": {"/timestep": 0.0025}}], "objective": [)"));
+    const std::string there = "cd '" + folder.path.string() + "' && ";
+    const std::map<std::string, double> steps{{"", 0.002}, {"--scenario one ", 0.002}, {"--scenario last ", 0.0025}};
+    for (const auto& [asked, step] : steps) {
+        const Answer answer = run(asked + "export " + folder.design() + " --to out.scene.json", true, there);
+        INFO(asked << answer.out);
+        REQUIRE(answer.code == 0);
+        CHECK(json::parse(contents(folder.file("out.scene.json")))["timestep"] == json(step));
+        std::filesystem::remove(folder.file("out.scene.json"));
+    }
+    const Answer backwards = run("--scenario 'taken up backwards' export " + folder.design() + " --to out.scene.json", true, there);
+    INFO(backwards.out);
+    REQUIRE(backwards.code == 0);
+    CHECK(json::parse(contents(folder.file("out.scene.json")))["gravity"][0] == json(-3.0));
+    for (const char* to : {"x.scene.json", "x.urdf"})
+        CHECK(run("--scenario nosuch export " + folder.design() + " --to " + folder.file(to), true).code == 3);
 }
 
 TEST_CASE("what a scene cannot say of a design is refused by its place") {

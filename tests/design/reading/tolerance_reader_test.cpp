@@ -215,4 +215,52 @@ TEST_CASE("tolerances of everything else: faults, once") {
     CHECK(folder.faults(R"("process": "fdm", "tolerances": {"*": {"feature": "hole", "of": "radius"}})").find("/tolerances/*/of") == 0);
 }
 
+TEST_CASE("a number that others follow from as the file is read has no tolerance of its own", "[design][tolerance]") {
+    // How a joint's or spring's ends are given; which numbers the others follow from.
+    struct Way {
+        const char* keys;
+        bool of_position, of_point_a, of_point_b;
+    };
+    const std::vector<Way> ways{{R"("point": [0, 0, 0])", true, false, false},
+                                {R"("point_a": [0, 0, 0])", true, true, false},
+                                {R"("point_b": [0, 0, 0])", true, false, true},
+                                {R"("point_a": [0, 0, 0], "point_b": [0, 0, 0])", false, false, false}};
+    for (const char* kind : {"joints", "springs", "dampers"})
+        for (const Way& way : ways) {
+            const bool is_joint = std::string(kind) == "joints", is_spring = std::string(kind) == "springs";
+            const std::string more = is_joint    ? R"("type": "ball", )"
+                                     : is_spring ? R"("stiffness": 100, "rest": "1 mm", )"
+                                                 : R"("damping": 0.1, )";
+            const Folder folder;
+            folder.write("block.scene.json", R"({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "end_time": 0.03, "bodies": [
+                {"name": "block", "density": 1000, "position": [5, 0, 0], "rotation": [0, 0, 0],
+                 "shape": {"part": "box", "dimensions": {"size_x": 10, "size_y": 10, "size_z": 10}}},
+                {"name": "other", "density": 1000, "position": [30, 0, 0],
+                 "shape": {"part": "box", "dimensions": {"size_x": 10, "size_y": 10, "size_z": 10}}}],
+                ")" + std::string(kind) + R"(": [{"name": "held", )" +
+                                                 more + R"("a": "block", "b": "other", )" + way.keys + "}]}");
+            const std::string pointer = std::string("/") + kind + "/held/";
+            const auto is_refused = [&](const std::string& place) {
+                const std::string told = folder.faults(R"("tolerances": {")" + place + R"(": "+-0.1 mm"})");
+                CAPTURE(kind, way.keys, place, told);
+                const bool refused = told.find("follows from this number as the file is read") != std::string::npos;
+                CHECK(refused != told.empty());  // and for no other reason
+                return refused;
+            };
+            CHECK(is_refused("/bodies/block/position/1") == way.of_position);
+            CHECK(is_refused("/bodies/other/position/0") == way.of_position);
+            CHECK(is_refused(pointer + "point_a/0") == way.of_point_a);
+            CHECK(is_refused(pointer + "point_b/0") == way.of_point_b);
+        }
+}
+
+TEST_CASE("limits that are too near each other to be computed with are refused", "[design][tolerance]") {
+    const Folder folder;
+    for (const char* width : {"1e-300", "1e-160", "1e-60"})
+        CHECK(folder.faults(R"("tolerances": {"radius": "+-)" + std::string(width) + R"( mm"})").find("cannot be told from none") !=
+              std::string::npos);
+    for (const char* width : {"0", "1e-9"})
+        CHECK(folder.faults(R"("tolerances": {"radius": "+-)" + std::string(width) + R"( mm"})").empty());
+}
+
 }  // namespace fettle::design::reading::tolerance_reader_test
