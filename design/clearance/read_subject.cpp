@@ -157,20 +157,6 @@ Result<Subject> from_ranges(const SubjectOptions& options, reading::LoadedModel&
     return subject_over(std::move(loaded.model), *std::move(ranges));
 }
 
-// Of a design that was loaded in it: no name means the first.
-int number_of_scenario(const description::Design& design, const std::string& name) {
-    const auto& all = design.scenarios;
-    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& scenario) { return scenario.name == name; });
-    return found == all.end() ? 0 : static_cast<int>(found - all.begin());
-}
-
-Result<int> scenario_named(const description::Design& design, const std::string& name) {
-    const int number = number_of_scenario(design, name);
-    const bool found = name.empty() || (number < count_of(design.scenarios) && design.scenarios[number].name == name);
-    if (found) return number;
-    return Error{ErrorCode::unknown_key, "--scenario", "the design has no scenario called \"" + name + "\""};
-}
-
 std::vector<std::string> notes_of_tolerances(const core::certificate::Toleranced& toleranced) {
     std::vector<std::string> notes{"within tolerances: bounds hold for every combination of " +
                                    core::base::counted(toleranced.deviations.size(), "deviation") +
@@ -245,7 +231,7 @@ Result<Subject> from_tolerances(const SubjectOptions& options, const reading::In
             ErrorCode::missing_key, options.path,
             "it has no `tolerances`: say, for instance, \"tolerances\": {\"pin_radius\": \"+-0.05 mm\"}, by names of parameters or "
             "of the scene's variables, or by places (\"/bodies/pin/shape/dimensions/radius\")"};
-    const Result<int> scenario = scenario_named(file->design, input.scenario);
+    const Result<int> scenario = reading::scenario_of(file->design, input.scenario, options.path);
     if (!scenario) return scenario.errors();
     const Result<problem::DesignProblem> problem = problem::DesignProblem::create(file->design);
     if (!problem) return problem.errors();
@@ -362,7 +348,7 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
         const description::Design& design = loaded->problem->design();
         subject.wanted = design_pairs(design);
         const bool moves = options.motion || options.kinematic || !options.poses.empty();
-        subject.required = design_minima(design, number_of_scenario(design, input.scenario),
+        subject.required = design_minima(design, reading::scenario_of(design, input.scenario, options.path).value(),
                                          options.ranges ? MinimumOver::ranges
                                          : moves        ? MinimumOver::motion
                                                         : MinimumOver::assembly);
