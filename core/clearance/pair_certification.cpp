@@ -199,7 +199,8 @@ private:
         if (!options_.measure_overlap || found_.lower > 0) return;
         const double depth = request_.touch_depth > 0 ? request_.touch_depth : default_touch_depth(pair_);
         if (!(found_.upper <= depth)) return;
-        const auto room = proven_touch(pair_, pair_start(), depth, search_);
+        auto room = proven_touch(pair_, pair_start(), depth, search_);
+        if (!room && !options_.motion) room = measured_touch(depth);
         if (!room) return;
         Touch touch{0, time_of(pair_, found_.nearest.segment, found_.nearest.s), depth, *room};
         for (const Instant& at : instants()) {
@@ -213,6 +214,14 @@ private:
         crosses_ = result_.intersecting;
         result_.intersecting = false;
         result_.solids = Solids::unproven;
+    }
+
+    // Of bodies that stand still the depth itself is known, where their solids can be cut. @return as proven_touch
+    std::optional<double> measured_touch(double depth) const {
+        if (!winds_once(*pair_.a.mesh) || !winds_once(*pair_.b.mesh)) return std::nullopt;
+        const auto overlap = overlap_at({found_.nearest.segment, found_.nearest.s}, cell_budget(), measured_overlap);
+        if (!overlap || !(overlap->depth_upper <= depth)) return std::nullopt;
+        return depth - overlap->depth_upper;
     }
 
     // Of flush or thin parts no edge need pass through a face, nor a ball be found by few cells: what they share is cut.

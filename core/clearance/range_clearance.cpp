@@ -89,6 +89,11 @@ private:
             out.solids = Solids::overlap;
             out.upper = 0;
         }
+        if (found.intersecting && options().measure_overlap &&
+            find_shared_ball(pair.ranges.low, pair.ranges.high, pair.count, 0, place_of, at)) {
+            const RangeEncounter deepest = nearest_at(pair, at, {});  // elsewhere than where the search ended
+            if (deepest.element_a >= 0 && deepest.pair.intersecting) found.nearest = deepest;
+        }
         if (found.nearest.element_a >= 0) take_nearest(pair, found, out);
         if (out.is_clash() && options().measure_overlap) out.overlap = overlap_in_world(pair, a, b, found.nearest.at);
         if (is_recorded()) write_record(pair, found, search, out, record(index));

@@ -3,7 +3,9 @@
 
 #include <dlfcn.h>
 
+#include <cstdlib>
 #include <mutex>
+#include <new>
 
 namespace fettle::core::linear {
 namespace {
@@ -31,11 +33,27 @@ LibraryThreads threads_of(const base::SharedLibrary* library) {
     find("omp_set_max_active_levels", out.set_levels);
     find("omp_get_max_active_levels", out.levels);
     if (out.blas == nullptr) out.set_blas = nullptr;
+    if (out.set_blas != nullptr) find("dsyrk_", out.rank_update);
     if (out.levels == nullptr) out.set_levels = nullptr;
     return out;
 }
 
+void take_blas_buffer(const LibraryThreads& threads) {
+    constexpr std::size_t bytes = std::size_t{130} << 20;
+    static thread_local bool has_it = false;
+    if (has_it || threads.rank_update == nullptr) return;
+    void* volatile block = std::malloc(bytes);  // none of it is touched
+    if (block == nullptr) throw std::bad_alloc();
+    std::free(block);
+    const int one = 1;
+    const double number = 1, zero = 0;
+    double result = 0;
+    threads.rank_update("L", "N", &one, &one, &number, &number, &one, &zero, &result, &one);
+    has_it = true;
+}
+
 OneLibraryThread::OneLibraryThread(const LibraryThreads& threads) : threads_(threads) {
+    take_blas_buffer(threads_);
     if (threads_.set_levels != nullptr) {
         levels_ = threads_.levels();
         threads_.set_levels(0);

@@ -96,7 +96,7 @@ bool is_of_nowhere(const Balance& balance) {
 
 namespace {
 
-// Do joints, motors and prescribed coordinates leave nothing free? Then no loss of energy changes the motion.
+// Do joints, motors and prescribed coordinates leave nothing free? Then no loss of energy changes the motion, but what drives it does more.
 bool is_driven_throughout(const model::Model& model) {
     std::size_t free = 0;
     for (const model::Body& body : model.bodies)
@@ -122,6 +122,10 @@ std::string loss_text(const model::Model& model, const Balance& balance) {
                         balance.energy_available) +
         "a shorter `timestep`" +
         (model.integrator == scene::Integrator::implicit_euler ? ", or `\"integrator\": \"bdf2\"`, keeps more" : " keeps more");
+    if (is_driven_throughout(model))
+        return text +
+               "; joints and drives leave no motion free that this could change, but the forces and efforts that they need have it "
+               "in them";
     const double share = balance.largest_loss / balance.energy_lost;
     if (share < 0.5) return text;
     return text + "; " + base::percent(std::min(1.0, share)) +
@@ -135,8 +139,7 @@ std::string balance_warning(const model::Model& model, const Balance& balance) {
     constexpr double gain = 0.01, loss = 0.05, angular = 0.05;
     if (!std::isfinite(balance.energy_error)) return "energies are not finite numbers";
     if (balance.energy_error > gain * balance.energy_available + balance.energy_rounding) return gain_text(model, balance);
-    if (balance.energy_lost > loss * balance.energy_available + balance.energy_rounding && !is_driven_throughout(model))
-        return loss_text(model, balance);
+    if (balance.energy_lost > loss * balance.energy_available + balance.energy_rounding) return loss_text(model, balance);
     if (balance.angular_momentum_error > angular * balance.angular_momentum_scale + balance.angular_momentum_uncertainty)
         return "the time integration has changed the angular momentum by " +
                base::percent(balance.angular_momentum_error / balance.angular_momentum_scale) +

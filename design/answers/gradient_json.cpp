@@ -6,9 +6,9 @@
 
 #include "fettle/design/answers/answer_json.hpp"
 #include "fettle/design/answers/check_faults.hpp"
-#include "fettle/design/answers/motion_warnings.hpp"
 #include "fettle/design/description/constraint.hpp"
 #include "fettle/design/gradient_audit/design_line.hpp"
+#include "fettle/design/problem/motion_warnings.hpp"
 
 namespace fettle::design::answers {
 
@@ -37,7 +37,7 @@ double parameter_unit(const Design& design, const std::string& parameter) {
 gradient_audit::GradientWarnings gradient_warnings(const Design& design, const DesignEvaluation& evaluation) {
     gradient_audit::GradientWarnings found = gradient_audit::gradient_warnings(design, gradient_audit::quantities_of(evaluation),
                                                                                gradient_audit::quantity_gradients(evaluation));
-    const std::vector<std::string> motion = motion_warnings(design, evaluation);
+    const std::vector<std::string> motion = problem::motion_warnings(design, evaluation);
     found.warnings.insert(found.warnings.begin(), motion.begin(), motion.end());
     return found;
 }

@@ -7,8 +7,8 @@
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/answers/motion_warnings.hpp"
 #include "fettle/design/answers/summary.hpp"
+#include "fettle/design/problem/motion_warnings.hpp"
 
 namespace fettle::design::answers {
 
@@ -211,7 +211,7 @@ Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, 
     json["clearance"] = clearance_json(outcome.clearance, names);
     json["unbuildable"] = outcome.unbuildable;
     std::vector<std::string> warnings = outcome.at_start.warnings;
-    for (const std::string& warning : motion_warnings(design, outcome.final)) warnings.push_back(warning);
+    for (const std::string& warning : problem::motion_warnings(design, outcome.final)) warnings.push_back(warning);
     if (!warnings.empty()) json["warnings"] = warnings;
     if (!outcome.at_start.notes.empty()) json["notes"] = outcome.at_start.notes;
     if (!outcome.limits.empty()) json["limits"] = outcome.limits;

@@ -89,8 +89,9 @@ private:
         const double value = outcome_.final.relations.values[i];
         SummaryRow row;
         row.name = relation.name;
+        row.unit = description::unit_name(relation);
         row.now = short_text(value, relation.bounds);
-        row.asked = description::required_text(relation.bounds, "");
+        row.asked = description::required_text(relation.bounds, row.unit);
         row.verdict = description::violation(relation, value) <= 0 ? Verdict::met : Verdict::violated;
         row.holds = holds(relation.name);
         return row;

@@ -348,14 +348,15 @@ private:
 
 }  // namespace
 
-// Relations name no unit: of them it is that of their bounds.
 CountedUnit unit_of(const Design& design, const Response& response) {
     if (response.kind == Response::Kind::constraint) return description::counted_unit(design.constraints[response.index]);
+    if (response.kind == Response::Kind::relation) return {response.bounds.unit, description::unit_name(design.relations[response.index])};
     return {response.bounds.unit};
 }
 
 Json tolerance_json(const Design& design, const std::vector<Tolerance>& tolerances, const ToleranceReport& report) {
     Json json = {{"status", status_of(report)}, {"message", message_of(report)}};
+    if (!report.warnings.empty()) json["warnings"] = report.warnings;
     json["tolerances"] = Json::array();
     for (const Tolerance& tolerance : tolerances) json["tolerances"].push_back(tolerance_json(design, tolerance));
     json["responses"] = Json::array();

@@ -137,6 +137,16 @@ SourceCheck check_source(const Certificate& certificate, const std::string& path
     return {name, "stale: the joints of " + name + ", their limits or the start poses have changed since"};
 }
 
+// A certificate does not say of which of a design's scenarios it is; the first is read unless another one is asked for.
+std::string other_scenarios(const std::string& source, const reading::InputOptions& input) {
+    if (!input.scenario.empty() || !reading::is_design_file(source)) return {};
+    const Result<reading::DesignFile> file = reading::read_design(source, {.mesh_dirs = input.mesh_dirs, .programs = input.programs});
+    if (!file || file->design.scenarios.size() < 2) return {};
+    std::vector<std::string> names;
+    for (const description::Scenario& scenario : file->design.scenarios) names.push_back("--scenario " + scenario.name);
+    return "; or it is of another scenario than the first, which was read: " + core::base::joined(names);
+}
+
 std::vector<CheckedExport> check_exports(const Certificate& certificate, const std::string& path) {
     std::vector<CheckedExport> list;
     for (const core::certificate::ExportedFile& exported : certificate.exports) {
@@ -215,7 +225,10 @@ CheckedCertificate check_certificate_file(const std::string& path, const core::r
     };
     const SourceCheck source = check_source(certificate, path, asked_source, input);
     checked.source = source.source;
-    if (!source.fault.empty()) add_stale("/source", source.fault);
+    if (!source.fault.empty()) {
+        const std::string file = asked_source.empty() ? file_of_certificate(path, certificate.source).string() : asked_source;
+        add_stale("/source", source.fault + other_scenarios(file, input));
+    }
     if (!source.note.empty()) checked.notes.push_back(source.note);
     if (source.source.empty() && states_its_domain(certificate)) doubt_domain(checked);
     checked.exports = check_exports(certificate, path);

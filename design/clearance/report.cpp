@@ -213,10 +213,17 @@ void leave_out_touching(const std::vector<PairClearance>& results, core::certifi
     });
 }
 
-void add_minima(const std::vector<PairMinimum>& required, core::certificate::Certificate& certificate) {
-    for (core::certificate::PairCertificate& pair : certificate.pairs)
-        for (const PairMinimum& each : required)
-            if (std::minmax(pair.a, pair.b) == std::minmax(each.a, each.b)) pair.minimum = each.minimum;
+// The minima that it is judged by where nobody asks for others: those of the question, which stand before the design's own.
+void add_minima(const std::vector<PairMinimum>& required, const PairSelection& selection, core::certificate::Certificate& certificate) {
+    const auto add = [&](int a, int b, double minimum) {
+        for (core::certificate::PairCertificate& pair : certificate.pairs)
+            if (std::minmax(pair.a, pair.b) == std::minmax(a, b)) pair.minimum = minimum;
+    };
+    for (const PairMinimum& each : required) add(each.a, each.b, each.minimum);
+    for (const PairSpec& pair : selection.pairs) {
+        if (pair.required_by.empty()) continue;
+        for (const auto& [a, b] : pair.body_pairs) add(a, b, pair.minimum);
+    }
 }
 
 // A row for what is a finding.
@@ -311,7 +318,7 @@ Result<ClearanceReport> judge_clearances(const Subject& subject, const Question&
     if (question.proof) {
         proven = certify_with_proof(subject, requests, options);
         leave_out_touching(proven.pairs, proven.certificate);
-        add_minima(subject.required, proven.certificate);
+        add_minima(subject.required, *selection, proven.certificate);
     } else {
         proven.pairs = certify(subject, requests, options);
     }

@@ -12,9 +12,11 @@ std::string relations_text(const description::Design& design, const optimisers::
     for (Eigen::Index i = 0; i < relations.values.size(); ++i) {
         const description::Relation& relation = design.relations[i];
         const description::Bounds& bounds = relation.bounds;
+        const std::string unit = description::unit_name(relation);
         const bool met = description::violation(relation, relations.values[i]) <= 0;
-        text += formatted("  %-40s is %.9g, required %s: ", relation.name.c_str(), relations.values[i] / bounds.unit,
-                          description::required_text(bounds, "").c_str()) +
+        text += formatted("  %-40s is %s, required %s: ", relation.name.c_str(),
+                          description::amount_text(relations.values[i], bounds.unit, unit, 9).c_str(),
+                          description::required_text(bounds, unit).c_str()) +
                 console.coloured(met ? "met" : "VIOLATED", met) + "\n";
     }
     return text;

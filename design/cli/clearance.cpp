@@ -120,8 +120,8 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
                "collide over a motion)");
     app.option("--ignore", options.pairs.ignore, "Pairs A:B,... that are not judged");
     Option touch = app.option("--allow-touch", options.pairs.touches,
-                              "Pair A:B that may touch, face on face, but not intersect; A:B=0.02mm: no deeper than that (can be given "
-                              "several times)")
+                              "Pair A:B that may touch, face on face, but not intersect; A:B=0.02mm: no deeper than that, over a motion "
+                              "proven of about a quarter of it (can be given several times)")
                        .one_value_each();
     app.option("--group", options.pairs.groups, "name=a,b,c: bodies that are one rigid set (can be given several times)").one_value_each();
     app.option("--tolerance", options.tolerance,

@@ -226,6 +226,12 @@ std::string round_surfaces(const ReportedPair& pair, const Subject& subject, con
     return text + " " + lengths.unit() + "\n";
 }
 
+// Where the two share most is not searched for: known is the worst of the places that were looked at.
+std::string worst_at(const Subject& subject, const ReportedPair& pair, const Lengths& lengths) {
+    const bool is_clash = pair.finding == Finding::clash;
+    return (is_clash ? "; of the places looked at, worst at " : "; worst at ") + position_text(subject, pair.least, lengths);
+}
+
 std::string explained(const ReportedPair& pair, const Subject& subject, const Lengths& lengths) {
     const PairClearance& least = pair.least;
     const Witness& w = least.witness;
@@ -238,7 +244,7 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
                                       lengths.unit() + (subject.ranges ? " over every combination" : "") + " (the bounds are " +
                                       lengths.rough(least.upper - least.lower) + " apart)"
                                 : std::string("   no bound is proven; below is the path between whose nodes the joints part")) +
-            (subject.ranges ? "; worst at " + position_text(subject, least, lengths) : "") +
+            (subject.ranges ? worst_at(subject, pair, lengths) : "") +
             (pair.spec.required_by.empty() ? "\n"
                                            : "; required " + lengths.plain(least.minimum) + " per side (" + pair.spec.required_by + ")\n");
     text += round_surfaces(pair, subject, lengths);
@@ -453,7 +459,7 @@ std::vector<Check> report_checks(const ClearanceReport& report, const Subject& s
         if (pair.finding == Finding::contact) check.message += "; they push each other, so the distance is not judged";
         if (pair.finding == Finding::undecided && least.is_bounded && !least.reason.empty())
             check.message += "; undecided: " + least.reason;
-        if (subject.ranges) check.message += "; worst at " + position_text(subject, least, lengths);
+        if (subject.ranges) check.message += worst_at(subject, pair, lengths);
         if (subject.motion() && !least.is_far && least.is_bounded)
             check.message +=
                 least.is_clash() ? formatted(", from %.6g s on", least.clash_time) : formatted(", at %.6g s", least.witness.time);

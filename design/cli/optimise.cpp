@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "fettle/core/files/atomic_file.hpp"
-#include "fettle/design/answers/motion_warnings.hpp"
 #include "fettle/design/answers/optimise_json.hpp"
 #include "fettle/design/answers/output_folder.hpp"
 #include "fettle/design/answers/run_folder.hpp"
@@ -12,6 +11,7 @@
 #include "fettle/design/cli/optimise_answer.hpp"
 #include "fettle/design/cli/optimise_starts.hpp"
 #include "fettle/design/cli/report_made.hpp"
+#include "fettle/design/problem/motion_warnings.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/design/studies/optimise_file.hpp"
 #include "fettle/design/studies/random_start.hpp"
@@ -123,7 +123,7 @@ int run_sided(const Run& run, const std::vector<StartResult>& rows, Starts start
     if (json.is_null()) json = answer(outcome);
     for (const std::string& warning : outcome.at_start.warnings)  // which the search has narrated
         console.found({run.options.path, CheckOutcome::remarked, "warning", warning, run.options.path});
-    tell_warnings(console, answers::motion_warnings(run.problem.design(), outcome.final), run.options.path);
+    tell_warnings(console, problem::motion_warnings(run.problem.design(), outcome.final), run.options.path);
     const bool is_kept = outcome.report.best.usable && done->unwritten.empty();
     std::string told = answer_text(answers::summary_of(run.problem.design(), outcome, run.facts), console);
     if (run.options.details) told += "\n" + outcome_text(run.problem.design(), outcome, console, run.facts);

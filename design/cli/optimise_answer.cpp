@@ -265,9 +265,10 @@ std::vector<Check> outcome_checks(const Design& design, const OptimiseOutcome& o
     for (Eigen::Index i = 0; i < outcome.final.relations.values.size(); ++i) {
         const description::Relation& relation = design.relations[i];
         const bool met = description::violation(relation, outcome.final.relations.values[i]) <= 0;
+        const std::string unit = description::unit_name(relation);
         checks.push_back({relation.name, met ? CheckOutcome::passed : CheckOutcome::failed, met ? "met" : "violated",
-                          "is " + description::amount_text(outcome.final.relations.values[i], relation.bounds.unit, "") + ", required " +
-                              description::required_text(relation.bounds, ""),
+                          "is " + description::amount_text(outcome.final.relations.values[i], relation.bounds.unit, unit) + ", required " +
+                              description::required_text(relation.bounds, unit),
                           file});
     }
     const OptimiserStatus status = outcome.report.status;

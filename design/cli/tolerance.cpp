@@ -57,6 +57,7 @@ int run_allocation(const Options& options, const CommonOptions& common, const re
     const Result<studies::AllocationReport> report = studies::allocate(file, allocation);
     console.end_progress();
     if (!report) return console.input_errors(report.errors());
+    tell_warnings(console, report->study.warnings, options.path);
     nlohmann::ordered_json json = answers::allocation_json(file.design, file.tolerances, allocation, *report);
     std::string told = answers::allocation_text(file.design, file.tolerances, allocation, *report);
     reading::DesignFile allocated = file;
@@ -90,6 +91,7 @@ int run_tolerance(const Options& options, const CommonOptions& common, Console& 
     const Result<studies::ToleranceReport> report = studies::study_tolerances(*file, options.samples_file, study);
     console.end_progress();
     if (!report) return console.input_errors(report.errors());
+    tell_warnings(console, report->warnings, options.path);
     nlohmann::ordered_json json = answers::tolerance_json(*file, *report);
     std::string told = answers::tolerance_text(*file, *report, options.process);
     leave_report(options, common, {*file, *report}, console, json, told);

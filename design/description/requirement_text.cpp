@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "fettle/core/base/text.hpp"
+#include "fettle/core/expression/dimension_powers.hpp"
 
 namespace fettle::design::description {
 
@@ -26,6 +27,12 @@ std::string with_unit(const std::string& number, const std::string& unit_name) {
 
 std::string unit_name(const Constraint& constraint) {
     return core::base::unit_name(constraint.quantity->dimension(), constraint.bounds.unit);
+}
+
+std::string unit_name(const Relation& relation) {
+    if (!relation.formula) return {};
+    const auto dimension = core::expression::named_dimension(relation.formula->dimension);
+    return dimension ? core::base::unit_name(*dimension, relation.bounds.unit) : std::string();
 }
 
 std::string objective_unit(const Design& design) {

@@ -13,6 +13,8 @@ using core::base::Towards;
 
 /// The unit in which numbers of the requirement are shown: "mm"; empty: plain numbers.
 std::string unit_name(const Constraint& constraint);
+/// Likewise; empty too where its expression is of a dimension without a name, whose numbers are SI, and where a program made it.
+std::string unit_name(const Relation& relation);
 
 /// The unit of the whole objective: that of its one quantity where the weight is 1 or -1; empty where it is a sum, or weighed.
 std::string objective_unit(const Design& design);

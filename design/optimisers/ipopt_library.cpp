@@ -12,7 +12,9 @@ IpoptLibrary load_ipopt() {
 #ifdef FETTLE_IPOPT_NAME
     const core::base::SharedLibrary library(FETTLE_IPOPT_NAME, FETTLE_IPOPT_PATH);
 #define FETTLE_IPOPT(member, function) library.find(#function, out.member)
+    out.threads = core::linear::threads_of(&library);
 #else
+    out.threads = core::linear::threads_of(nullptr);
 #define FETTLE_IPOPT(member, function) out.member = &function
 #endif
     FETTLE_IPOPT(create_problem, CreateIpoptProblem);

@@ -4,6 +4,8 @@
 
 #include <IpStdCInterface.h>
 
+#include "fettle/core/linear/library_threads.hpp"
+
 namespace fettle::design::optimisers {
 
 /// As IpStdCInterface.h declares them.
@@ -15,6 +17,7 @@ struct IpoptLibrary {
     decltype(&AddIpoptIntOption) add_integer_option;
     decltype(&SetIntermediateCallback) set_intermediate_callback;
     decltype(&IpoptSolve) solve;
+    core::linear::LibraryThreads threads;  ///< of what it calls
 };
 
 /// Throws core::base::MissingLibrary.

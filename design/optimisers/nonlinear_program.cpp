@@ -101,6 +101,7 @@ VectorX within_ipopts_infinity(const VectorX& bounds) {
 
 IpoptResult run_ipopt(NonlinearProgram& program, const VectorX& start, const IpoptOptions& options) {
     const IpoptLibrary& ipopt = ipopt_library();
+    core::linear::take_blas_buffer(ipopt.threads);
     const NonlinearProgram::Bounds bounds = program.bounds();
     VectorX lower = within_ipopts_infinity(bounds.lower), upper = within_ipopts_infinity(bounds.upper);
     VectorX row_lower = within_ipopts_infinity(bounds.row_lower), row_upper = within_ipopts_infinity(bounds.row_upper);

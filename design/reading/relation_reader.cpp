@@ -133,7 +133,7 @@ private:
 
     void read_bounds(const JsonNode& node, const DimensionPowers& dimension, double change, Relation& relation) const {
         Bounds& bounds = relation.bounds;
-        if (may_be_plain(dimension)) bounds.unit = context_.unit_of({node["upper"], node["lower"]}, *named_dimension(dimension));
+        if (const auto named = named_dimension(dimension)) bounds.unit = context_.unit_of({node["upper"], node["lower"]}, *named);
         bounds.lower = amount(node["lower"], dimension).value_or(bounds.lower);
         bounds.upper = amount(node["upper"], dimension).value_or(bounds.upper);
         if (bounds.lower > bounds.upper) {

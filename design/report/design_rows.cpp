@@ -9,6 +9,7 @@
 
 #include "fettle/core/base/text.hpp"
 #include "fettle/core/base/units.hpp"
+#include "fettle/design/description/requirement_text.hpp"
 #include "fettle/design/quantities/clearance.hpp"
 #include "fettle/design/quantities/in_scenario.hpp"
 #include "fettle/design/report/answer_values.hpp"
@@ -107,6 +108,7 @@ Json requirement_rows(const description::Design& design, const Json& result) {
         const description::Relation& relation = design.relations[i];
         Json row = row_json(relation.name, i < relations.size() ? relations[i] : Json(), relation.bounds, relation.bounds.unit);
         const Json value = in_unit(member(i < relations.size() ? relations[i] : Json(), "value"), relation.bounds.unit);
+        row["unit"] = description::unit_name(relation);
         row["lower"] = row["upper"] = value;  // known, not bounded
         if (const Json cost = member(of_relations, relation.name); cost.is_number()) {
             row["cost"] = cost;

@@ -133,8 +133,9 @@ private:
             const description::Relation& relation = design_.relations[i];
             const double value = final_.relations.values[i];
             if (description::violation(relation, value) <= 0) continue;
-            lines_.push_back(relation.name + " is " + description::amount_text(value, relation.bounds.unit, "", 6) + ", required is " +
-                             description::required_text(relation.bounds, ""));
+            const std::string unit = description::unit_name(relation);
+            lines_.push_back(relation.name + " is " + description::amount_text(value, relation.bounds.unit, unit, 6) + ", required is " +
+                             description::required_text(relation.bounds, unit));
         }
     }
 

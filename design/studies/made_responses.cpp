@@ -59,10 +59,11 @@ MadeResponses::MadeResponses(const problem::DesignProblem& problem, const std::v
       should_stop_(std::move(should_stop)),
       on_simulation_(std::move(on_simulation)) {}
 
-DesignEvaluation MadeResponses::simulate(const VectorX& deviations, bool gradients) const {
+DesignEvaluation MadeResponses::simulate(const VectorX& deviations, bool gradients, bool balance) const {
     static std::mutex mutex;
     problem::EvaluateOptions options;
     options.gradients = gradients;
+    options.balance = balance;
     options.should_stop = should_stop_;
     DesignEvaluation out = problem_.evaluate(with_deviations(design(), tolerances_, deviations), options);
     const std::lock_guard lock(mutex);
@@ -71,7 +72,10 @@ DesignEvaluation MadeResponses::simulate(const VectorX& deviations, bool gradien
 }
 
 MadeEvaluation MadeResponses::evaluate(const VectorX& deviations, bool gradients) const {
-    const DesignEvaluation evaluation = simulate(deviations, gradients);
+    return measured(simulate(deviations, gradients), gradients);
+}
+
+MadeEvaluation MadeResponses::measured(const DesignEvaluation& evaluation, bool gradients) const {
     MadeEvaluation out;
     out.usable = evaluation.usable;
     out.interrupted = evaluation.interrupted;

@@ -47,8 +47,10 @@ public:
 
     /// May be called from several threads at once.
     MadeEvaluation evaluate(const VectorX& deviations, bool gradients) const;
-    /// With the simulations themselves.
-    problem::DesignEvaluation simulate(const VectorX& deviations, bool gradients) const;
+    /// The simulations themselves. @param balance  as in EvaluateOptions
+    problem::DesignEvaluation simulate(const VectorX& deviations, bool gradients, bool balance = false) const;
+    /// What `evaluate` takes from them.
+    MadeEvaluation measured(const problem::DesignEvaluation& evaluation, bool gradients) const;
 
 private:
     const problem::DesignProblem& problem_;

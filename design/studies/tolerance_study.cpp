@@ -11,6 +11,7 @@
 
 #include "fettle/core/base/parallel.hpp"
 #include "fettle/design/gradient_audit/contact_states.hpp"
+#include "fettle/design/problem/motion_warnings.hpp"
 
 namespace fettle::design::studies {
 
@@ -43,7 +44,7 @@ public:
             static_cast<AskedNumber&>(response) = number;
             report_.responses.push_back(std::move(response));
         }
-        const MadeEvaluation nominal = made_.evaluate(VectorX::Zero(n_), true);
+        const MadeEvaluation nominal = as_drawn();
         if (!nominal.usable) {
             report_.interrupted = nominal.interrupted;
             report_.reason = "the design as drawn cannot be simulated: " + nominal.reason;
@@ -62,6 +63,12 @@ public:
     }
 
 private:
+    MadeEvaluation as_drawn() {
+        const problem::DesignEvaluation evaluation = made_.simulate(VectorX::Zero(n_), true, true);
+        report_.warnings = problem::motion_warnings(made_.design(), evaluation);
+        return made_.measured(evaluation, true);
+    }
+
     void count() {
         ++done_;
         if (options_.on_simulation) options_.on_simulation(done_, std::max(done_, to_do_));

@@ -113,6 +113,7 @@ struct ToleranceReport {
     int met_all = 0;                  ///< that meet every requirement
     std::optional<tolerances::CountedYield> controlled_yield;  ///< of all requirements together, as that of one
     std::vector<SwitchedContacts> switched;
+    std::vector<std::string> warnings;  ///< of the motions of the design as drawn (problem/motion_warnings.hpp)
     bool interrupted = false;
     std::string reason;  ///< why there is nothing of it: the design as drawn cannot be simulated; empty: there is
 };

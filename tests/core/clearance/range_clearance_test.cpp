@@ -155,6 +155,26 @@ TEST_CASE("ranges: a reach that is too long is a clash, a minimum is judged, lay
     CHECK(above.bounds < 2000);
 }
 
+TEST_CASE("ranges: a clash is told where it is deep, not where it begins", "[ranges]") {
+    // A bar on a hinge goes into a wide block beside it, the deeper the farther it turns.
+    scene::Body arm = bar("arm", 0.05, Vector3::Zero()), block = bar("block", 0.05, Vector3::Zero());
+    arm.mesh = tests::support::box_mesh({0, -0.002, -0.005}, {0.05, 0.002, 0.005});
+    block.mesh = tests::support::box_mesh({-0.02, 0.01, -0.006}, {0.08, 0.06, 0.006});
+    block.type = scene::BodyType::static_body;
+    scene::Scene scene = scene_of({arm, block}, 0.01);
+    scene.mechanism.joints = {
+        tests::mechanisms::joint("hinge", JointKind::revolute, {"", Vector3::Zero(), z_axis}, {"arm", Vector3::Zero(), z_axis})};
+    scene.mechanism.joints[0].forces.limits = {-0.5, 0.5};
+    const PairClearance found = certified(scene, 0, 1, 1e-6);
+    REQUIRE(found.is_clash());
+    REQUIRE(found.at.size() == 1);
+    CHECK(found.at[0] == Approx(0.5).margin(1e-9));
+    REQUIRE(found.overlap);
+    // The part of the arm that is higher than the block's face: its ends along the arm are at that height over sin(0.5).
+    const double above = 4e-3 * 10e-3 * (0.05 - 0.01 / std::sin(0.5));
+    CHECK(found.overlap->volume_lower == Approx(above).epsilon(1e-6));
+}
+
 TEST_CASE("ranges: one body within the other's material is a clash", "[ranges]") {
     scene::Scene scene = arm_and_post(0.11);
     scene.bodies[2].mesh = tests::support::box_mesh(Vector3(-1, -1, -1), Vector3(1, 1, 1));

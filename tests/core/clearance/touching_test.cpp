@@ -87,6 +87,8 @@ TEST_CASE("What is deeper than a touch is a clash, whoever allows a touch; a dee
         CHECK(allowed.status == PairStatus::contact);
         CHECK(allowed.touch->depth == 6 * depth);
         CHECK(judged(model, 0, true, 0.5 * depth).status == PairStatus::violated);
+        CHECK(judged(model, 0, true, 0.99 * depth).status == PairStatus::violated);
+        CHECK(judged(model, 0, true, 1.01 * depth).status == PairStatus::contact);  // by the exact cut of what they share
     }
     const auto coincident = model_of({box({1, 1, 1}), box({1, 1, 1})}, {zero, zero});
     CHECK(judged(coincident, 0, true).status == PairStatus::violated);

@@ -203,4 +203,17 @@ TEST_CASE("memory that cannot be had is an error of its own, at whatever point i
     REQUIRE(rounds > 0);
 }
 
+TEST_CASE("memory that the BLAS cannot have is an error of its own, not a wait without end") {
+    const DesignFolder folder;
+    for (const int kilobytes : {160000, 200000}) {
+        CAPTURE(kilobytes);
+        const Answer answer = run("optimise " + folder.design() + " --threads 1 --json --out " + folder.file("out"), false,
+                                  "ulimit -t 60; ulimit -v " + std::to_string(kilobytes) + "; ");
+        CAPTURE(answer.out);
+        if (answer.code == 127) continue;  // a library does not fit: the system does not start it
+        REQUIRE(answer.code == 3);
+        CHECK(answer.json().at("errors").at(0).at("code") == "out_of_memory");
+    }
+}
+
 }  // namespace fettle::design::cli::unwritable_output_test

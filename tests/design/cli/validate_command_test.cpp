@@ -285,4 +285,25 @@ TEST_CASE("validate: a certificate says over what it is, and of which scene") {
     CHECK(run("validate " + scene + " --source " + scene, true).says("--source: is for a certificate"));
 }
 
+TEST_CASE("validate: a certificate of another scenario than the first is not called stale without the way to check it") {
+    Folder folder;
+    folder.write("two.scene.json", R"json({"fettle_scene": 1, "units": "mm", "timestep": 0.1, "variables": {"far": "40 mm"}, "bodies": [
+        {"name": "a", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 20, "size_y": 4, "size_z": 4}}},
+        {"name": "b", "density": 1000, "position": ["= far", 0, 0], "shape": {"part": "box", "dimensions": {"size_x": 4, "size_y": 4, "size_z": 4}}}],
+        "joints": [{"name": "slide", "type": "prismatic", "b": "b", "point": [0, 0, 0], "axis": [1, 0, 0], "limits": ["-5 mm", "5 mm"]}]})json");
+    const std::string design = folder.write("two.design.json", R"json({"fettle_design": 1, "scene": "two.scene.json", "units": "mm",
+        "parameters": [{"name": "far", "lower": 30, "upper": 50}], "objective": [{"type": "mass", "bodies": ["b"]}],
+        "simulation": {"steps": 2}, "scenarios": [{"name": "one"}, {"name": "two", "set": {"/joints/slide/limits/1": "6 mm"}}]})json");
+    const std::string file = folder.file("two.certificate.json");
+    const Answer made = run("clearance " + design + " --scenario two --ranges --pairs a:b --minimum 1mm --certificate " + file);
+    CAPTURE(made.out);
+    REQUIRE(made.code == 0);
+    const Answer stale = run("validate " + file);
+    CAPTURE(stale.out);
+    CHECK(stale.code == 1);
+    CHECK(stale.says("another scenario than the first, which was read: --scenario one, --scenario two"));
+    CHECK(run("validate " + file + " --scenario two").code == 0);
+    CHECK_FALSE(run("validate " + file + " --scenario one").says("another scenario"));
+}
+
 }  // namespace fettle::design::cli::validate_command_test

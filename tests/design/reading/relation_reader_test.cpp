@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "fettle/design/description/requirement_text.hpp"
 #include "fettle/design/reading/design_reader.hpp"
 #include "fettle/tests/design/small_design.hpp"
 
@@ -70,6 +71,20 @@ TEST_CASE("a ratio, a sum and a formula are read as relations between the parame
     CHECK(spin.bounds.lower == Approx(std::acos(-1.0) / 4));
     CHECK(spin.bounds.margin == Approx(std::acos(-1.0) / 180));
     CHECK(spin.tolerance == Approx(std::acos(-1.0) / 1800));
+    CHECK(description::unit_name(spin) == "rad");
+    CHECK(description::required_text(spin.bounds, description::unit_name(spin)) == "0.7853982 to 1.5 rad");
+}
+
+TEST_CASE("a relation is told in the unit of its bound, whatever its dimension") {
+    const auto told = [](const std::string& expression, const std::string& upper) {
+        const Relation found = relation(R"({ "type": "relation", "expression": ")" + expression + R"(", "upper": )" + upper + " }");
+        return description::required_text(found.bounds, description::unit_name(found));
+    };
+    CHECK(told("speed * 2 s", R"("250 deg")") == "at most 250 deg");
+    CHECK(told("height / width", "3") == "at most 3");
+    CHECK(told("height + width", "30") == "at most 30 mm");
+    CHECK(told("1 N * height", R"("60 N mm")") == "at most 60 N mm");
+    CHECK(told("1 kg * height", R"("1 kg * 20 mm")") == "at most 0.02");  // no unit has that dimension: SI
 }
 
 TEST_CASE("a relation names variables: of the scene, of the design, those that follow from a parameter and those that have a tolerance") {

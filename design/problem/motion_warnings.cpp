@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/motion_warnings.hpp"
+#include "fettle/design/problem/motion_warnings.hpp"
 
 #include "fettle/core/stepper/balance.hpp"
 #include "fettle/core/stepper/branch_warnings.hpp"
 #include "fettle/design/problem/doubtful_extremes.hpp"
 
-namespace fettle::design::answers {
+namespace fettle::design::problem {
 
-std::vector<std::string> motion_warnings(const description::Design& design, const problem::DesignEvaluation& evaluation) {
+std::vector<std::string> motion_warnings(const description::Design& design, const DesignEvaluation& evaluation) {
     std::vector<std::string> out;
     for (int scenario = 0; scenario < count_of(evaluation.runs); ++scenario) {
-        const problem::Run& run = evaluation.runs[scenario];
+        const Run& run = evaluation.runs[scenario];
         if (!run.model) continue;
         for (const std::string& warning : core::stepper::branch_warnings(*run.model, run.simulation.trajectory))
             out.push_back(description::scenario_prefix(design, scenario) + warning);
@@ -18,9 +18,9 @@ std::vector<std::string> motion_warnings(const description::Design& design, cons
         if (const std::string warning = balance_warning(*run.model, *run.simulation.balance); !warning.empty())
             out.push_back(description::scenario_prefix(design, scenario) + warning);
     }
-    const std::vector<std::string> peaks = problem::doubtful_extremes(design, evaluation);
+    const std::vector<std::string> peaks = doubtful_extremes(design, evaluation);
     out.insert(out.end(), peaks.begin(), peaks.end());
     return out;
 }
 
-}  // namespace fettle::design::answers
+}  // namespace fettle::design::problem
