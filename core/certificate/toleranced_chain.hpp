@@ -32,7 +32,7 @@ struct ChainScrew {
     std::optional<ChainDrive> driven{};
 };
 
-/// From a body's frame to that of what it hangs on.
+/// Leads from a body's frame to the frame of whatever it hangs on.
 struct ChainLink {
     std::vector<ChainScrew> screws;
     ModelMatrix rotation;

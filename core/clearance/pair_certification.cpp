@@ -139,7 +139,7 @@ private:
         search_to(1e-2 * found_.upper, search_.max_evaluations / 20);
     }
 
-    // Of two proofs the better one counts, and beside it whatever was found nearest by any search.
+    // The better one of two proofs counts, and beside it whatever was found nearest by any search.
     void search_to(double tolerance, long max_evaluations) {
         ClearanceOptions finer = options_;
         SearchOptions search = search_;
@@ -215,7 +215,7 @@ private:
         result_.solids = Solids::unproven;
     }
 
-    // Of flush or thin parts no edge need pass through a face, nor a ball be found by few cells: what they share is cut.
+    // Flush or thin parts need have no edge that passes through a face, nor a ball that few cells find: what they share is cut.
     void look_at_what_they_share() {
         if (!options_.measure_overlap || found_.lower > 0 || result_.is_clash() || result_.touch) return;
         const Instant at{found_.nearest.segment, found_.nearest.s};

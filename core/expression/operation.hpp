@@ -60,7 +60,7 @@ struct Node {
 };
 using Nodes = std::vector<Node>;
 
-// Of two equal values the first is taken. Intervals and recorded numbers have overloads of their own.
+// The first of two equal values is taken. Intervals and recorded numbers have overloads of their own.
 inline double minimum(double a, double b) { return b < a ? b : a; }
 inline double maximum(double a, double b) { return b > a ? b : a; }
 inline double choose(double a, double b, double c) { return a < 0 ? b : c; }

@@ -15,7 +15,7 @@ struct LibraryThreads {
     int (*levels)() = nullptr;
 };
 
-/// Of `library` and those that it was linked with. @param library  null: of the whole program
+/// The threads of `library` and of those that it was linked with. @param library  null: of the whole program
 LibraryThreads threads_of(const base::SharedLibrary* library);
 
 /// While it lives OpenBLAS works on one thread, for everybody (the last one to go puts back what was), and OpenMP's regions on the calling

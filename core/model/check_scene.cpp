@@ -74,7 +74,7 @@ Errors check_strictly(const scene::Body& body, const std::string& where) {
     return errors;
 }
 
-/// @param closed  Of a volume: is the mesh as closed as its policy wants?
+/// @param closed  Is the mesh as closed as its policy wants? Asked of a volume.
 Errors check_mass(const scene::Body& body, const BodyMeasure& measure, bool closed, const std::string& where) {
     if (body.inertial) {
         const std::string fault = scene::fault_of(*body.inertial);
@@ -126,7 +126,7 @@ Errors check_friction(const scene::Scene& scene) {
     return errors;
 }
 
-/// Of a script: as many poses as times, times that increase from 0, everything finite.
+/// Does a script have as many poses as times, times that increase from 0, and everything finite?
 bool is_usable(const scene::PoseScript& script) {
     if (script.times.size() != script.poses.size()) return false;
     double before = 0;
