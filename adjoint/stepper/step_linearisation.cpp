@@ -143,7 +143,7 @@ Errors StepSolver::check_rows(const core::stepper::Trajectory& trajectory, int t
     return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t), message.str()}};
 }
 
-// Of an area-weighted barrier.
+// Checks the areas of an area-weighted barrier.
 Errors StepSolver::check_areas(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
     const core::model::Model& model = *step.problem.model;
     core::contact::ContactAreas areas = contact::areas_of_contacts(model, step.poses);
