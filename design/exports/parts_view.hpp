@@ -30,7 +30,7 @@ struct Projection {
     }
 };
 
-/// Of one part, its edges' visible stretches.
+/// The visible stretches of the edges of one part.
 struct PartEdges {
     Colour colour{};
     std::vector<PictureLine> lines;

@@ -14,7 +14,7 @@
 ///   masses, loads, springs,
 ///   friction, velocities            nothing
 /// Beside that, bodies that neither joints' ranges nor motors hold stand where the assembly puts them, least by mass: where deviations move
-/// the joints away from the bodies as written, what moves them is refused.
+/// the joints away from the bodies as written, the deviations that do so are refused.
 #pragma once
 
 #include <optional>

@@ -252,7 +252,7 @@ std::shared_ptr<const Quantity> read_motor_effort(const JsonNode& node, const Re
     return std::make_shared<quantities::JointLoad>(of, read_reduction(node, of.effort_dimension));
 }
 
-// Of the force, or its torque about a point.
+// Reads the force, or its torque about a point.
 std::shared_ptr<const Quantity> read_contact_load(const JsonNode& node, const ReadContext& context,
                                                   const std::optional<quantities::OwnPoint>& about) {
     const auto body = context.body(node.require("body"));

@@ -374,7 +374,7 @@ private:
                          keys);
     }
 
-    // Of the prediction, with one deviation.
+    // The predicted change by one deviation.
     static double change_by(const Response& response, int tolerance, double deviation) {
         VectorX deviations = VectorX::Zero(response.gradient.size());
         deviations[tolerance] = deviation;

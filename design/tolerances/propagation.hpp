@@ -51,7 +51,7 @@ struct ThirdDerivatives {
     double along = 0;  ///< sum over j, k, l of T_jkl v_j v_k v_l, with v_j = g_j s_j^2
 };
 
-/// The same with what third derivatives add first, which is of the order of what H adds:
+/// The same with the first terms of third derivatives, which are of the order of what H adds:
 ///   variance         + sum over l != j of g_j T_llj s_j^2 s_l^2  + 1/3 sum g_j T_jjj f_j
 ///   fourth cumulant  + 4 sum over j, k, l of T_jkl v_j v_k v_l
 /// For normal inputs whose deviations are of the size s, mean and third moment are then in error by terms in s^4 and s^6, where their own
