@@ -10,7 +10,7 @@
 ///   over ranges         the nearest position in each part of the ranges (core/clearance/range_clearance.hpp, nearest_by_part), from where
 ///                       each way downhill is followed to a minimum (range_adjoint.hpp, settled_witness)
 /// At the witness itself, and over ranges at all of them, all features within the room are looked at (tied_features.hpp). Over the motion
-/// those of other instants would crowd out the instants. Of all a few are chosen that differ most (distinct_witnesses.hpp).
+/// those of other instants would crowd out the instants. A few of all are chosen that differ most (distinct_witnesses.hpp).
 #pragma once
 
 #include <optional>

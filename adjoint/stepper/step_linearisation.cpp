@@ -73,7 +73,7 @@ void add_rows(StepSolver& solver, LinearisedStep& step) {
     add_transposed(step.rows, step.multipliers, step.derivatives.gradient);
 }
 
-// Per body: the sizes of the forces of every contact, each by itself. Of a ball between two walls their sum is next to nothing. Damping
+// Per body: the sizes of the forces of every contact, each by itself. Their sum is next to nothing for a ball between two walls. Damping
 // counts with the contacts that it acts at.
 std::vector<double> contact_magnitudes(const LinearisedStep& step) {
     const core::energy::StepProblem& problem = step.problem;

@@ -39,7 +39,7 @@ struct ChainLink {
     Model3 place;
 };
 
-/// A screw where the chain has it: in the frame of the chain's first parent. Of those that are driven, its position is not how far it goes.
+/// A screw where the chain has it: in the frame of the chain's first parent. The position of a driven one is not how far it goes.
 struct PlacedScrew {
     int position = 0;
     double turn = 0, slide = 0;

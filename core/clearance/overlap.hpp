@@ -5,8 +5,8 @@
 ///           From below: a ball of radius r inside both keeps them together for every move shorter than 2 r.
 ///           From above: the move along a direction that parts their convex hulls; the best of the axes and of many faces' normals. Where
 ///           that part is known, a move along a normal of its faces, as far as it is wide, and after which they are proven apart.
-///   volume  that of the common part, cut exactly (parts/common_part.hpp), and how much rounding of the poses can change it. Of meshes that
-///           cannot be cut: cells of the common box are halved; those within both count for the lower bound, those not known to leave one
+///   volume  that of the common part, cut exactly (parts/common_part.hpp), and how much rounding of the poses can change it. Where meshes
+///           cannot be cut, cells of the common box are halved; those within both count for the lower bound, those not known to leave one
 ///           of them for the upper one, which is no more than the lesser body.
 /// Inside or outside of a cell follows from the distance of its middle to the surface, which changes by at most what one moves.
 #pragma once

@@ -121,9 +121,9 @@ T applied(Operation operation, const T& a, const T& b, const T& c) {
     return a;
 }
 
-/// d(value)/d(operand) of each operand at a, b, c; `value` is the operation's value there. Of minimum, maximum, absolute and choose the
-/// side that is taken is differentiated, and the first one where they are equal; choose has no derivative in its condition. Where there is
-/// none (a root at 0), infinity or NaN. Of a^b the derivative in b is asked for only where b varies: it needs a logarithm.
+/// d(value)/d(operand) of each operand at a, b, c; `value` is the operation's value there. The side that minimum, maximum, absolute and
+/// choose take is differentiated, and the first one where they are equal; choose has no derivative in its condition. Where there is none (a
+/// root at 0), infinity or NaN. The derivative of a^b in b is asked for only where b varies: it needs a logarithm.
 std::array<double, 3> slopes(Operation operation, double a, double b, double c, double value, bool exponent_varies);
 
 /// How near the operands are to where the derivative jumps: |a - b| of minimum and maximum, |a| of absolute and choose; infinity of the

@@ -319,7 +319,7 @@ void doubt_gravity(const scene::Scene& scene, SceneCheck& check) {
         ", which is hardly meant; is it in mm/s^2? m/s^2 are expected, whatever the unit of lengths (9.81 on the Earth)");
 }
 
-/// Contact across a good part of a body. Of the default nothing is said: it goes with the size of what moves.
+/// Contact across a good part of a body. Nothing is said of the default: it goes with the size of what moves.
 void doubt_contact_distance(const scene::Scene& scene, SceneCheck& check) {
     constexpr double share = 0.05;
     if (!scene.dhat) return;
@@ -337,7 +337,7 @@ void doubt_contact_distance(const scene::Scene& scene, SceneCheck& check) {
                              in_metres(1e-3 * scene::moving_diagonal(scene)) + ")");
 }
 
-/// More than a turn in each time step. (Of motors half a turn is refused: build_mechanism.hpp.)
+/// More than a turn in each time step. (Half a turn of a motor is refused: build_mechanism.hpp.)
 void doubt_turns(const scene::Scene& scene, SceneCheck& check) {
     const auto doubt = [&](const std::string& of, double rate) {
         const double turns = std::abs(rate) * scene.timestep / (2 * M_PI);

@@ -261,9 +261,9 @@ private:
         return range;
     }
 
-    // Is this share of a body's forces still too much to be unbalanced when a whole Newton step with this motion has been taken? Of a stiff
-    // force the step leaves about as much as it was out of balance times its length. Friction of a joint that is about to slide has next to
-    // no stiffness left: what the step leaves is the bend of its law, however little it was out of balance.
+    // Is this share of a body's forces still too much to be unbalanced when a whole Newton step with this motion has been taken? The step
+    // leaves about as much of a stiff force as it was out of balance times its length. Friction of a joint that is about to slide has next
+    // to no stiffness left: what the step leaves is the bend of its law, however little it was out of balance.
     bool leaves_too_much(double share, double motion) const {
         const double length = std::min(1.0, motion / quadratic_range());
         return options_.accuracy > 0 && !(std::max(share, joints_rub_ ? length : 0) * length <= options_.accuracy);

@@ -27,7 +27,7 @@
 
 namespace fettle::design::problem {
 
-/// What is refused. @param model  At the base of the numbers. @param ranges  Of the model; nothing: a tree as assembled.
+/// What is refused. @param model  At the base of the numbers. @param ranges  The model's; nothing: a tree as assembled.
 Errors refused_places(const DeviatingNumbers& numbers, const core::model::Model& model,
                       const std::optional<core::clearance::LoopedRanges>& ranges);
 

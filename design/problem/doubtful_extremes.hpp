@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The numbers of a design's objective and constraints that are not as meant, or not well known, because they are extremes over the steps:
 /// - the "largest" of a force, torque or velocity with a direction, or the "least", where a step has a larger absolute value of the other
-///   sign. Of a motor that drives backwards the "largest" effort is its least one; "peak" counts both directions
+///   sign. The "largest" effort of a motor that drives backwards is its least one; "peak" counts both directions
 ///   (quantities/step_series.hpp);
 /// - one that falls on a single step, which the steps beside it show neither a bend nor a cliff of (quantities/extreme.hpp): between the
 ///   steps the quantity may be larger, and it jumps from design to design.

@@ -41,7 +41,7 @@ private:
     int scenario_;
 };
 
-/// The quantity in that scenario. Of an expression, what it names that is of no scenario yet.
+/// The quantity in that scenario. An expression has those of its parts in it that are of no scenario yet.
 std::shared_ptr<const description::Quantity> in_scenario(const std::shared_ptr<const description::Quantity>& quantity, int scenario);
 
 /// What is measured, in whichever scenario: the quantity itself where it is of none.

@@ -79,7 +79,7 @@ double number_of(const Reduction& reduction, const std::vector<double>& y, const
 std::vector<double> weights_of(const Reduction& reduction, const std::vector<double>& y, const Instants& instants);
 
 /// The derivative in time, at each instant, of the parabola through it and its two neighbours; at the first and last one, of the parabola
-/// through the first and last three. Of numbers or vectors; of order 0 y itself. Errors O(h^2), of the second derivative at the two ends
+/// through the first and last three. y has numbers or vectors; order 0 is y itself. Errors O(h^2), of the second derivative at the two ends
 /// O(h). Contract: three instants, where the order is not 0.
 template <class T>
 std::vector<T> time_derivative(const std::vector<T>& y, double timestep, int order) {

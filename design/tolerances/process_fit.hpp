@@ -11,7 +11,7 @@
 /// Intervals hold the truth in 95 of 100 prints, where m_i are alike: of the bias at the mean size by Student's t, of s by chi-square:
 /// s sqrt(f / chi2(97.5%)) to s sqrt(f / chi2(2.5%)).
 ///
-/// Nothing in one print shows how much the next one differs as a whole: what all its features share is in the bias. Of P prints:
+/// Nothing in one print shows how much the next one differs as a whole: what all its features share is in the bias. P prints have the model
 /// y_pi = b0 + b1 d_i + u_p + e_pi, u_p normal of variance s_b^2, a number of the kind and the print.
 ///   b1       least squares within the prints, each with a constant of its own; f = n - P - 1, or n - P without it; s^2 = sum e_i^2 / f
 ///   b0       mean of the prints' constants at the mean size; its interval by Student's t of P - 1, from how these differ

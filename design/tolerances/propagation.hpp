@@ -44,8 +44,8 @@ LinearWorstCase linear_worst_case(double nominal, const VectorX& gradient, const
 /// @param hessian  H, symmetric. Contract: square, as many rows as inputs.
 Moments predict_quadratically(double nominal, const VectorX& gradient, const MatrixX& hessian, const std::vector<Moments>& inputs);
 
-/// Third derivatives of y at the inputs' means, as far as moments need them. Of a y with an adjoint they follow from the gradients by which
-/// H is found: (g(d + h e_j) - 2 g(d) + g(d - h e_j)) / h^2 is row j of `twice`, and `along` from two gradients more, at d +- h v.
+/// Third derivatives of y at the inputs' means, as far as moments need them. They follow, for a y with an adjoint, from the gradients by
+/// which H is found: (g(d + h e_j) - 2 g(d) + g(d - h e_j)) / h^2 is row j of `twice`, and `along` from two gradients more, at d +- h v.
 struct ThirdDerivatives {
     MatrixX twice;     ///< T_jjl = d^3 y / dd_j^2 dd_l, row j, column l
     double along = 0;  ///< sum over j, k, l of T_jkl v_j v_k v_l, with v_j = g_j s_j^2
