@@ -29,7 +29,7 @@ using core::base::formatted;
 using core::base::joined;
 using core::scene::BodyType;
 
-// Moving bodies without dynamics are kinematic, those that do not move are static: whoever reads the stored trajectory then knows.
+// Bodies that move without dynamics are kinematic, those that do not move are static: whoever reads the stored trajectory then knows.
 void mark_as_scripted(Subject& subject) {
     for (size_t i = 0; i < subject.model.bodies.size(); ++i) {
         bool moves = false;
