@@ -125,7 +125,7 @@ void add_to_ends(const Trajectory& trajectory, const Witness& w, int body, const
     out.poses.push_back({w.step + 1, body, to_end});
 }
 
-// Of the bodies at the segment's two nodes. A node that the witness does not depend on counts as the start.
+// The shares of the bodies at the segment's two nodes. A node that the witness does not depend on counts as the start.
 std::array<std::array<NodeShare, 2>, 2> shares_at(const core::model::Model& model, const Trajectory& trajectory, int a, int b,
                                                   const Witness& w) {
     std::array<std::array<NodeShare, 2>, 2> out;

@@ -22,7 +22,7 @@ enum class Places {
     positions  ///< of joints: the trajectory stands still at each for a step
 };
 
-/// @param candidates  Of the same pair, with their points; the first is the least one, and not among the answers.
+/// @param candidates  Witnesses of the same pair, with their points; the first is the least one, and not among the answers.
 /// @param most        At most so many are chosen. O(most * candidates).
 /// @return            In the order of choice: the first few are as spread out as can be.
 std::vector<core::clearance::Witness> distinct_witnesses(const core::model::Model& model, const core::stepper::Trajectory& trajectory,

@@ -10,7 +10,7 @@
 ///   over ranges         the nearest position in each part of the ranges (core/clearance/range_clearance.hpp, nearest_by_part), from where
 ///                       each way downhill is followed to a minimum (range_adjoint.hpp, settled_witness)
 /// At the witness itself, and over ranges at all of them, all features within the room are looked at (tied_features.hpp). Over the motion
-/// those of other instants would crowd out the instants. Of all a few are chosen that differ most (distinct_witnesses.hpp).
+/// those of other instants would crowd out the instants. A few of all are chosen that differ most (distinct_witnesses.hpp).
 #pragma once
 
 #include <optional>
@@ -30,7 +30,7 @@ struct LocalWitnessLimits {
 /// The pair as it would be with each of the other witnesses (`upper` its distance, rounding added as in the pair's own), the most distinct
 /// first; only those that have a derivative. As assembled, `steps` is nothing: there is one place. Contract: the pair is no clash, and its
 /// distance is above 0.
-/// @param steps  Of the trajectory, over which the pair was certified.
+/// @param steps  The steps of the trajectory over which the pair was certified.
 std::vector<core::clearance::PairClearance> local_witnesses(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
                                                             const std::optional<core::clearance::StepRange>& steps,
                                                             const core::clearance::PairClearance& pair, const LocalWitnessLimits& limits);

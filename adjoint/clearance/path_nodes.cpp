@@ -28,7 +28,7 @@ Vector6 coordinates(const TrajectoryStep& step, std::size_t k, int body) {
     return out;
 }
 
-// Of a body that follows curves: which part of the running time of each has passed at this fraction of the step.
+// The part of the running time of each curve that a body follows which has passed at this fraction of the step.
 NodeShare running_share(const Body& body, double begin, double end, double fraction) {
     NodeShare out = NodeShare::Zero();
     for (int dof = 0; dof < 6; ++dof) {

@@ -125,7 +125,7 @@ Evaluated evaluated(const Model& model, const JointRanges& ranges, const PairCle
     return out;
 }
 
-// Of the coordinate's range: -1 its lower end, 1 its upper one, 0 between.
+// The end of its range that a coordinate is at: -1 the lower, 1 the upper one, 0 between.
 int end_of(const LinkageCoordinate& coordinate, double at) {
     if (coordinate.is_whole_turn) return 0;
     const double near = 1e-9 * (coordinate.high - coordinate.low);
@@ -182,7 +182,7 @@ private:
         out.col(3) += force;
     }
 
-    // Of a point and an axis in the world at the start.
+    // Reverses a point and an axis in the world at the start.
     void reverse_frame(const Link& link, const Vector3& point_bar, const Vector3& axis_bar) {
         const int frame = model_.mechanism.joints[ranges_.joint_of[link.body]].frame_a;
         const int body = model_.mechanism.set.frames[frame].body;
@@ -226,7 +226,7 @@ private:
         reverse_value(joint->coordinate, -d_bar);
     }
 
-    // Of a measure at the start.
+    // Reverses a measure's value at the start.
     void reverse_value(int measure, double value_bar) {
         const core::measure::Measure& m = model_.mechanism.set.measures[measure];
         const core::measure::VectorFunction f = core::measure::vector_function(m, frames_);

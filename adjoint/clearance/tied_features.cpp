@@ -72,7 +72,7 @@ ClosestPoints closest(const Placed& a, const Feature& fa, const Placed& b, const
     return core::geometry::point_triangle_closest(b.x.col(cb[0]), a.x.col(ca[0]), a.x.col(ca[1]), a.x.col(ca[2]));
 }
 
-// Of a and of b, relative to b's reference point.
+// The nearest points of a and of b, relative to b's reference point.
 std::pair<Vector3, Vector3> points(const Placed& a, const Feature& fa, const Placed& b, const Feature& fb, const ClosestPoints& pair) {
     if (fa.kind == Primitive::triangle) {  // then b's is the vertex, and the difference points to it
         const Vector3 vertex = b.x.col(fb.index);

@@ -81,7 +81,7 @@ private:
         add_row_curvature(problem_.set, rows_, multipliers_, frames_, no_turn, hessian_);
     }
 
-    // Of coordinates that may not move.
+    // The gradient in the coordinates that may not move.
     std::vector<Vector6> held_back(const std::vector<Vector6>& y_bar, const std::vector<Vector6>& lambda, const VectorX& mu) const {
         std::vector<Vector6> out(y_bar.size(), Vector6::Zero()), taken = core::linear::multiply(hessian_, lambda);
         add_transposed(jacobian_, mu, taken);

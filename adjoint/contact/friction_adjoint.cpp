@@ -17,7 +17,7 @@ using core::contact::BodyPairContacts;
 using core::contact::ContactPair;
 using core::kinematics::pose_matrix;
 
-// What friction takes of a contact, and what that follows from.
+// The values that friction takes from a contact, and what they follow from.
 struct Lagged {
     const ContactPair& pair;
     std::array<int, 4> body;

@@ -63,7 +63,7 @@ inline Vector3 vertex_tangent(const core::model::Body& body, int vertex, const M
     return vertex >= 0 ? Vector3(vertices_dot.col(vertex)) : corner_tangent(body, -1 - vertex, vertices_dot).centre;
 }
 
-/// Of a round contact's reach[k], k = 0 of the first body.
+/// Adds the gradient of a round contact's reach[k], k = 0 for the first body.
 inline void add_reach_gradient(const core::model::Body& body, const core::contact::RoundGap& round, std::size_t k, double bar,
                                Matrix3X& vertices_bar) {
     if (round.centre[k] >= 0) add_corner_gradient(body, round.centre[k], {Vector3::Zero(), round.sign[k] * bar, 0}, vertices_bar);

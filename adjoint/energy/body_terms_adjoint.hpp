@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What acts on single bodies (core/energy/body_terms.hpp), in what a step holds constant. Along a motion v = dP (3x4) of the body the
+/// The terms of single bodies (core/energy/body_terms.hpp), in what a step holds constant. Along a motion v = dP (3x4) of the body the
 /// gradients are, with <A, B> = sum_ij A_ij B_ij,
 ///   inertia   <(P - P_hat) M, v>: linear in P_hat and in M, so that the maps are a product each
 ///   damping   damping_weight <(P - P_slip) C, v>: likewise in P_slip and C, and C follows from M:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What acts between bodies that are near each other (core/energy/contact_terms.hpp): the barrier in the shapes' vertices, damping of
+/// The terms between bodies that are near each other (core/energy/contact_terms.hpp): the barrier in the shapes' vertices, damping of
 /// contacts in the step's start too (the damping time is not differentiated), friction in what a solve holds constant. adjoint/contact does
 /// the work.
 #pragma once

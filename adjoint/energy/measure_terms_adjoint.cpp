@@ -138,7 +138,7 @@ private:
         }
     }
 
-    // Of G . (P_slip - P0) in G: the second derivative along the slip.
+    // Adds the derivative of G . (P_slip - P0) in G: the second derivative along the slip.
     void add_change_of_slip(const Measure& m, double bar, std::size_t s) {
         const std::vector<core::measure::FrameGradient> still(mechanism_.set.frames.size());
         const measure::MeasureTangent t = measure::measure_tangent(mechanism_.set, m, {start_.poses, slips_, still});

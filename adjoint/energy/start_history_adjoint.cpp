@@ -39,7 +39,7 @@ private:
     core::contact::ContactSet none_;
 };
 
-// Of the terms' gradients, (force, torque) per body.
+// The change of the terms' gradients, (force, torque) per body.
 std::vector<Vector6> gradients_tangent(const Model& model, const StartDirection& direction) {
     const std::size_t n = model.bodies.size();
     std::vector<Vector6> out(n, Vector6::Zero());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// One term of the incremental potential (core/energy/term.hpp) as the sweeps need it: what it cannot differentiate, and the derivative of
-/// its gradient in what a step holds constant, backwards and forwards. Each term is one file here, and an entry in the list of
+/// its gradient in the constants of a step, backwards and forwards. Each term is one file here, and an entry in the list of
 /// incremental_potential_adjoint.cpp. Its Hessian in the poses is core's.
 #pragma once
 

@@ -21,7 +21,7 @@ constexpr int solves = 4;  // core's
 Vector3 twice_axial(const Matrix3& x) { return {x(2, 1) - x(1, 2), x(0, 2) - x(2, 0), x(1, 0) - x(0, 1)}; }
 Vector3 axial_vector(const Matrix3& x) { return 0.5 * twice_axial(x); }
 
-// Of axial_vector(x R^T) along changes.
+// The change of axial_vector(x R^T) along changes of x and R.
 Vector3 axial_change(const Matrix3& x, const Matrix3& R, const Matrix3& x_dot, const Matrix3& R_dot) {
     return axial_vector(x_dot * R.transpose() + x * R_dot.transpose());
 }
@@ -79,7 +79,7 @@ public:
     }
 
 private:
-    // Of the mass matrix; where nothing is free that of the identity.
+    // The mass matrix over the free coordinates; the identity where nothing is free.
     static Matrix6 free_part(const Body& body, const Matrix3& R) {
         Matrix6 h = core::kinematics::mass_matrix(R, body.moments);
         for (int k = 0; k < 6; ++k) {

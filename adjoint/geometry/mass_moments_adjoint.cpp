@@ -107,7 +107,7 @@ struct CappedMesh {
             for (const Edge& edge : openings[k].edges) triangles.push_back({edge[1], edge[0], static_cast<int>(own) + static_cast<int>(k)});
     }
 
-    // Of coordinates, or of their changes.
+    // The vertices with the openings' centres: coordinates, or their changes.
     Matrix3X with_centres(const Matrix3X& vertices) const {
         Matrix3X out(3, own + static_cast<Eigen::Index>(openings.size()));
         out.leftCols(own) = vertices;

@@ -120,7 +120,7 @@ private:
         if (body != core::measure::world) start_.pose_bar[body] += bar;
     }
 
-    // Of measures' values as written: in frames and poses.
+    // Reverses measures' values as written: in frames and poses.
     void reverse_values() {
         std::vector<Matrix3> rotations;
         for (const core::measure::Frame& f : mechanism_.set.frames) rotations.push_back(rotation_of(f.body));

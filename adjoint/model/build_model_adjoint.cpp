@@ -13,7 +13,7 @@ namespace {
 
 using core::model::Model;
 
-// Of the pose as written, entry by entry; without joints nothing stands between it and the start.
+// The gradient in the pose as written, entry by entry; without joints nothing stands between it and the start.
 Matrix34 written_pose_bar(const Model& model, const WrittenStartGradient& start, const BodyGradient& bar, std::size_t i) {
     const core::model::Body& body = model.bodies[i];
     Matrix34 out;

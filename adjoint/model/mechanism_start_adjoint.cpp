@@ -95,7 +95,7 @@ private:
         return out;
     }
 
-    // Of a prescribed coordinate the rows see its curve's rate; the body has it only where its velocity had to change.
+    // The constraints see the rate of a prescribed coordinate's curve; the body has it only where its velocity had to change.
     void spread(std::size_t i, const Vector6& of_body, const Vector6& of_rows, WrittenStartGradient& out) const {
         const bool is_written = !model_.mechanism.written.is_velocity_changed[i];
         for (int k = 0; k < 6; ++k) {

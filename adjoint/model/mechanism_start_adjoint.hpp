@@ -5,8 +5,8 @@
 ///   [ C   0  ] [   m   ] = [ rates - C v ]
 /// whose adjoint is, with (lambda, mu) of the same matrix and the right-hand side (u_bar, 0),
 ///   v_bar = u_bar - C^T mu,   rates_bar = mu,   and of what M and C depend on  - lambda . dM delta - m . dC lambda - mu . dC u;
-/// then the assembly of the poses (constraint/assembly_adjoint.hpp). Where nothing had to move, the derivative is that of moving: what is
-/// written a little differently is put on the rows too.
+/// then the assembly of the poses (constraint/assembly_adjoint.hpp). Where nothing had to move, the derivative is that of moving: a start
+/// written a little differently is put on the constraints too.
 #pragma once
 
 #include "fettle/adjoint/model_gradient.hpp"

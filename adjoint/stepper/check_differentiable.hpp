@@ -9,7 +9,7 @@
 
 namespace fettle::adjoint::stepper {
 
-/// What the sweeps cannot differentiate, by name: what the terms refuse (adjoint/energy), bodies whose mass is not that of their mesh and
+/// Names all that the sweeps cannot differentiate: what the terms refuse (adjoint/energy), bodies whose mass is not by their mesh and
 /// density, scripts of poses (all unsupported); with friction a trajectory that does not hold where its rounds ended, or in which they have
 /// not settled, steps that are not even or do not begin at t = 0, a prescribed coordinate that stops short of where its curve leads, or
 /// goes farther (inconsistent); a step that turns a body by a full revolution or more, where the chart is singular (out_of_range).

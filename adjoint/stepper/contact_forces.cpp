@@ -59,7 +59,7 @@ struct ContactsOf {
         return {*problem.model, *lag, end.poses, problem.slip_reference, problem.barrier, problem.friction.slip_bound};
     }
 
-    // Of barrier, damping and friction.
+    // The derivatives of barrier, damping and friction together.
     struct Derivatives {
         std::vector<core::kinematics::PoseGradient> gradient;
         core::kinematics::BlockHessian hessian;
@@ -111,7 +111,7 @@ Matrix34 pose_entries_of(const Vector6& gradient, const Matrix3& rotation) {
 
 namespace {
 
-// Of the contacts' energy: its gradient along translations, or along turns about the point.
+// The load by the contacts' energy: its gradient along translations, or along turns about the point.
 Vector3 load_of(const core::kinematics::PoseGradient& g, const ContactForceOf& of, const Matrix3& rotation) {
     if (!of.about) return g.force;
     return tangent_gradient(g).tail<3>() - (rotation * *of.about).cross(g.force);
@@ -130,7 +130,7 @@ std::vector<Vector3> contact_forces(const Model& model, const Trajectory& trajec
 
 namespace {
 
-// Of all steps, for one seed: what is linear in the forces' weights.
+// The seeds of all steps for one seed: what is linear in the forces' weights.
 class ForceSeeds {
 public:
     ForceSeeds(const Model& model, const ContactForceOf& of, Seeds& seeds)
@@ -215,7 +215,7 @@ void add_contact_force_seeds(const Model& model, const Trajectory& trajectory, c
 
 namespace {
 
-// Of load_of, from dE/dP and its change.
+// The tangent of load_of, from dE/dP and its change.
 Vector3 load_tangent(const Matrix34& value, const Matrix34& dot, const ContactForceOf& of, const Matrix3& rotation,
                      const Matrix34& pose_dot) {
     if (!of.about) return dot.col(3);

@@ -83,7 +83,7 @@ private:
             for (std::size_t i = 0; i < model_.bodies.size(); ++i) pose_bar[s][i] += seeds_[s].pose_bar[t][i];
     }
 
-    // Of the step, where there are any.
+    // Adds the seeds of the step, where there are any.
     void add_seeds_of(int t, std::vector<std::vector<Matrix34>> TrajectoryGradient::*which, std::vector<std::vector<Matrix34>>& to) const {
         for (std::size_t s = 0; s < seeds_.size(); ++s) {
             const std::vector<std::vector<Matrix34>>& bar = seeds_[s].*which;

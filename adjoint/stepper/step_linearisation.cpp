@@ -73,7 +73,7 @@ void add_rows(StepSolver& solver, LinearisedStep& step) {
     add_transposed(step.rows, step.multipliers, step.derivatives.gradient);
 }
 
-// Per body: the sizes of the forces of every contact, each by itself. Of a ball between two walls their sum is next to nothing. Damping
+// Per body: the sizes of the forces of every contact, each by itself. Their sum is next to nothing for a ball between two walls. Damping
 // counts with the contacts that it acts at.
 std::vector<double> contact_magnitudes(const LinearisedStep& step) {
     const core::energy::StepProblem& problem = step.problem;
@@ -143,7 +143,7 @@ Errors StepSolver::check_rows(const core::stepper::Trajectory& trajectory, int t
     return {{core::base::ErrorCode::inconsistent, "step " + std::to_string(t), message.str()}};
 }
 
-// Of an area-weighted barrier.
+// Checks the areas of an area-weighted barrier.
 Errors StepSolver::check_areas(const core::stepper::Trajectory& trajectory, int t, const LinearisedStep& step) {
     const core::model::Model& model = *step.problem.model;
     core::contact::ContactAreas areas = contact::areas_of_contacts(model, step.poses);

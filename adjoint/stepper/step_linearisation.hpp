@@ -57,8 +57,8 @@ public:
     /// With iterative refinement: the barrier makes H stiff. @param of_rows  as many columns as `rhs`; without rows irrelevant.
     Solution solve(const LinearisedStep& step, const MatrixX& rhs, const MatrixX& of_rows) const;
 
-    /// The multipliers at the end of a step, whose derivatives are those of the potential alone: C^T m = -gradient over what is free. NaNs
-    /// where the masses' matrix has no factor.
+    /// The multipliers at the end of a step, whose derivatives are those of the potential alone: C^T m = -gradient over the free
+    /// coordinates. NaNs where the masses' matrix has no factor.
     VectorX multipliers(const LinearisedStep& step);
 
     /// The error about the whole step, where there is no solution.

@@ -119,7 +119,7 @@ private:
 
     bool is_newmark() const { return model_.integrator == core::scene::Integrator::newmark; }
 
-    // Of the constant that acts on theta as the body's torque.
+    // The change of the constant that acts on theta as the body's torque.
     Vector3 torque_change(int t, std::size_t i, const LinearisedStep& step, const Matrix34& pose_hat_dot) const {
         const BodyTangent& dot = direction_.bodies[i];
         if (!energy::has_chart_torque(model_)) return dot.torque_dot;
@@ -152,7 +152,7 @@ private:
         return change;
     }
 
-    // What a step holds constant, and how that changes; of the end what changes with the unknowns held.
+    // The constants of a step, and how they change; of the end what changes with the unknowns held.
     struct StepChange {
         std::vector<RotationDerivatives> r;  // of the round at hand
         std::vector<Matrix34> pose_hat_dot, slip_dot;
@@ -183,7 +183,7 @@ private:
         return {};
     }
 
-    // One solve: end_dot is that of where friction was taken from, and becomes that of the round's end.
+    // One solve: end_dot belongs to where friction was taken from, and becomes that of the round's end.
     // @return whether there is a solution.
     bool solve(int t, const LinearisedStep& step, StepChange& change, std::vector<Matrix34>& end_dot) {
         const std::size_t n = model_.bodies.size();

@@ -12,7 +12,7 @@ using core::scene::Integrator;
 
 bool has_two_steps(const Model& model, std::size_t t) { return model.integrator == Integrator::bdf2 && t > 0; }
 
-// Of Newmark's velocity at the end of a step.
+// The gradient in Newmark's velocity at the end of a step.
 Matrix34& velocity_bar(const Model& model, std::size_t t, std::size_t body, TrajectoryGradient& seeds) {
     const std::size_t steps = seeds.pose_bar.size() - 1;
     FETTLE_ASSERT(t < steps, "a seed is of one of the trajectory's steps");

@@ -25,7 +25,7 @@ inline constexpr int lanes = 4;
     for (int j = 0; j < lanes; ++j) out[j] = std::abs(x[j]);
 }
 
-/// Of Four or of double. What is no number is taken, and stays.
+/// Raises `largest` to x, in Four or in double. A NaN is taken, and stays.
 template <class Value>
 [[gnu::always_inline]] inline void take_larger(const Value& x, Value& largest) {
     largest = ((x > largest) | (x != x)) ? x : largest;

@@ -36,7 +36,7 @@ constexpr std::array blanks{" "sv,
                             "\xE3\x80\x80"sv,
                             "\xEF\xBB\xBF"sv};
 
-// Of the blank that a text begins with.
+// The size of the blank that a text begins with; 0 if it begins with none.
 std::size_t blank_size(std::string_view text) {
     const auto* const blank = std::find_if(blanks.begin(), blanks.end(), [&](std::string_view each) { return text.starts_with(each); });
     return blank == blanks.end() ? 0 : blank->size();

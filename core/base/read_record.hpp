@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Which files were read while something was made, and what stood in them: what was made depends on these bytes. Whatever opens files to
-/// read them tells of it (files/input_file.hpp), so that nobody has to list them.
+/// The files that were read while something was made, with their contents: the thing made depends on these bytes. Whatever opens files to
+/// read them reports it here (files/input_file.hpp), so that nobody has to list them.
 ///
 ///     const ReadRecord record;                                     // of this thread, and of those that help with its loops
 ///     design = read_design(path);

@@ -32,7 +32,7 @@ enum class ErrorCode {
 struct Error {
     ErrorCode code = ErrorCode::parse;
     std::string where;    ///< file and JSON pointer ("a.scene.json#/bodies/3/density"), or mesh and element
-    std::string message;  ///< what was found, what is allowed, what to do
+    std::string message;  ///< the fault, what is allowed, and the remedy
 };
 
 using Errors = std::vector<Error>;

@@ -8,7 +8,7 @@
 
 namespace fettle::core::base {
 
-/// A library, or a function in it, is not there. what() names it, and says what the loader said and what to do.
+/// A library, or a function in it, is not there. what() names it, quotes the loader and says how to mend it.
 class MissingLibrary : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

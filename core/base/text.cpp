@@ -58,7 +58,7 @@ void walk(std::string_view text, const Kept& kept, const Other& other) {
     }
 }
 
-// Of a name that begins with it a spreadsheet makes a formula.
+// A spreadsheet makes a formula of a name that begins like this.
 bool begins_formula(std::string_view word) {
     const std::size_t at = word.find_first_not_of('\'');
     return at != std::string_view::npos && std::string_view("=+-@\t\r").find(word[at]) != std::string_view::npos;

@@ -59,8 +59,8 @@ inline double to_si(double number, const Unit& unit) { return number * unit.nume
 /// Errors: an unknown unit (out_of_range), one of another dimension (wrong_type); the message lists those allowed; `where` is copied.
 Result<double> si_per_unit(std::string_view unit, Dimension dimension, const std::string& where = {});
 
-/// "0.3mm", "0.3 mm", "-1e-2 in", "12 g/cm^3" -> SI; the decimal point is '.' in every locale. Of Dimension::number the unit may be left
-/// out. Errors: no number (parse), a missing or unknown unit, or a value beyond base::largest_magnitude (out_of_range), a unit of another
+/// "0.3mm", "0.3 mm", "-1e-2 in", "12 g/cm^3" -> SI; the decimal point is '.' in every locale. A Dimension::number may leave its unit out.
+/// Errors: no number (parse), a missing or unknown unit, or a value beyond base::largest_magnitude (out_of_range), a unit of another
 /// dimension (wrong_type), infinity or NaN (not_finite).
 Result<double> parse_quantity(std::string_view text, Dimension dimension, const std::string& where = {});
 

@@ -163,8 +163,8 @@ Need need_of(const Search& search, const BodyPairCandidates& pair) {
     return off_known_way(search, pair) <= known_share * pair.allowance ? Need::known_way : Need::search;
 }
 
-// The segments are on the way that was searched: among what was found there is all that comes near along them, and what of the allowance
-// they leave.
+// The segments are on the way that was searched: all that comes near along them is among the candidates found there. The allowance shrinks
+// by how far they are off that way.
 void take_known_way(const Search& search, BodyPairCandidates& pair) {
     pair.allowance -= off_known_way(search, pair) * (1 + 1e-12);
     pair.along = {search.segments[pair.a], search.segments[pair.b]};

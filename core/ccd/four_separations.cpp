@@ -42,7 +42,7 @@ struct Closest {
     Four square;
 };
 
-// Of a vertex and an edge: `to_start` from the edge's start to the vertex.
+// Closest points of a vertex and an edge; `to_start` leads from the edge's start to the vertex.
 FETTLE_INLINE void meet_edge(const Vector& to_start, const Vector& edge, const Four& edge_square, Closest& closest) {
     Four along;
     dot(to_start, edge, along);
@@ -147,7 +147,7 @@ FETTLE_INLINE void separate(const FourPairs& x, std::array<double, lanes>& out) 
     }
     Closest closest;
     meet_all<type>(middle, closest);
-    // Of length 1 within 6u, or zero.
+    // The direction gets length 1 within 6u, or is zero.
     Four square, length;
     dot(closest.direction, closest.direction, square);
     base::square_root(square, length);

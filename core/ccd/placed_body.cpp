@@ -25,7 +25,7 @@ FETTLE_INLINE void store_below(const Four& x, float* to) {
     std::memcpy(to, &below, sizeof below);
 }
 
-// Of a point: columns * x + offset.
+// The place of a point: columns * x + offset.
 FETTLE_INLINE void put(const Columns& columns, const Four& x, Four& out) {
     base::load(columns[3].data(), out);
     for (std::size_t k = 0; k < 3; ++k) {

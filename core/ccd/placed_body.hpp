@@ -33,7 +33,7 @@ public:
     const PlacedVertex& vertex(int i) const { return vertices_[i]; }
     const geometry::BodyHierarchy& hierarchy() const { return *body_->body->hierarchy; }
     const geometry::Mesh& mesh() const { return body_->body->mesh; }
-    /// Of an axis-aligned box in the body's frame whose points are within `radius`.
+    /// Places an axis-aligned box in the body's frame whose points are within `radius`.
     void place_box(const geometry::HierarchyNode& node, PlacedBox& out) const;
     void place_box(const geometry::OwnedBox& box, double radius, PlacedBox& out) const;
     /// Sum of the box's edges in the body's own frame, [m].

@@ -6,7 +6,7 @@
 namespace fettle::core::ccd {
 
 const geometry::FlatFeatures* flat_features_of(const model::Model& model, const model::Body& body) {
-    constexpr double negligible = 1e-2;  // of dhat: what is left out is nearer than what stays by no more
+    constexpr double negligible = 1e-2;  // of dhat: features left out are nearer than those kept by no more than this
     return body.flat && body.flat->any() && body.flat->height <= negligible * model.dhat ? body.flat.get() : nullptr;
 }
 

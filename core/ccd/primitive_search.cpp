@@ -143,7 +143,7 @@ private:
     std::size_t waiting_count_ = 0;
 };
 
-// The vertices of a pair of primitives: those of the first, of a, then those of b.
+// The vertices of a pair of primitives: a's first, then b's.
 struct PairCorners {
     std::array<int, 4> vertex;
     std::size_t on_a;

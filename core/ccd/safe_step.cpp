@@ -29,7 +29,7 @@ constexpr int bodies_at_once = 64;  // that a thread takes
 // cancel near the world's origin.
 constexpr double usual_rounding = 1e-14;
 
-// Of a body's points at the start: per metre from its reference point, and for its position.
+// The rounding of a body's points at the start: per metre from its reference point, and of its position.
 struct PlaceRounding {
     double rate, constant;
     double of(double radius) const { return (rate * radius + constant) * (1 + 1e-12); }

@@ -28,7 +28,8 @@ Lanes along(const Vector3& n, const Differences& r) { return n.x() * r.col(0) + 
 
 Lanes dot(const Differences& a, const Differences& b) { return a.col(0) * b.col(0) + a.col(1) * b.col(1) + a.col(2) * b.col(2); }
 
-/// Of unit length within 6u: by squares 1.5u, root, quotient, product u/2 to u each; zero if there is none.
+/// The unit vector along `direction`, its length right within 6u: by squares 1.5u, root, quotient, product u/2 to u each; zero if there is
+/// none.
 Vector3 unit(const Vector3& direction) {
     const double square = direction.squaredNorm();
     if (square >= least_square && square <= largest_square) return direction * (1 / std::sqrt(square));
@@ -73,7 +74,7 @@ PointEdges point_edges(geometry::PairType type, const Differences& r) {
     return pe;
 }
 
-/// Of a triangle: the one across from the longest edge.
+/// The corner of a triangle across from its longest edge.
 Eigen::Index corner_of_shorter_edges(const Differences& r) {
     const double e01 = (row(r, 0) - row(r, 1)).squaredNorm(), e12 = (row(r, 1) - row(r, 2)).squaredNorm(),
                  e20 = (row(r, 2) - row(r, 0)).squaredNorm();

@@ -24,7 +24,7 @@
 ///   .     a leaf whose proof is one vector;   :  a leaf whose proof is 2^k vectors, one for each corner of its part of the box, bit j of
 ///         the corner's number set where coordinate j is high; `normals` has them, in the order of the leaves
 /// So the leaves cover the box and all pairs of elements by construction.
-/// A leaf's proof is that vector, or those, in world axes: with n(u) the one, or what interpolates them linearly in each coordinate,
+/// A leaf's proof is that vector, or those, in world axes: with n(u) the one, or the multilinear interpolant of them,
 ///   n(u).(x_a(u) - x_b(u)) >= lower max |n| > 0   for all u of the cell and all points x_a, x_b of the two pieces,
 /// which is what a checker has to verify, for the corners of the elements. How far above the claim it lies is not recorded: ours leave a
 /// room of at least 4 times the search's own bound of its rounding (PairSegment::slack, ScrewedPair::slack), and 1/16 of the tolerance, for

@@ -14,8 +14,8 @@
 /// - each box (a segment of the path; the ranges) has a tree of cells whose leaves cover all of it and all pairs of elements;
 /// - each leaf's vectors prove the claimed lower bound: PathProver in interval_motion.hpp, RangeProver in range_prover.hpp, two proofs that
 ///   have nothing in common but intervals;
-/// - what is claimed of the solids is what exact predicates say at one instant, given the lower bound (disjoint_solids.hpp): of a body
-///   inside another's material no bound is accepted, whatever its certificate claims; where one is not closed the claim has to say so;
+/// - the claim about the solids is what exact predicates say at one instant, given the lower bound (disjoint_solids.hpp): for a body inside
+///   another's material no bound is accepted, whatever its certificate claims; where one is not closed the claim has to say so;
 /// - there is a pair;
 /// - no body is farther from where the joints have it, if the certificate has joints, than it claims: joint_prover.hpp (whether they are a
 ///   scene's is for whoever has the scene to compare);

@@ -29,7 +29,7 @@
 
 namespace fettle::core::certificate {
 
-/// A mesh as what may be inside, and what something may be inside of.
+/// A mesh that may be inside another one, or have another one inside it.
 struct SolidMesh {
     struct Shell {
         std::vector<geometry::Triangle> triangles;

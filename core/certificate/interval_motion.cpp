@@ -11,7 +11,7 @@ namespace fettle::core::certificate {
 namespace {
 
 using Bernstein = std::array<double, 4>;
-// Of more, the box is tried first.
+// With more points, the box is tried first.
 constexpr std::size_t few_points = 192;
 
 // Coefficients of omega and omega', of z = x^2.
@@ -19,7 +19,7 @@ struct Coefficients {
     Interval b, c, b_g, c_g;
 };
 
-// An alternating series whose terms fall: the sum lies between that of three terms and that of four.
+// An alternating series whose terms fall: the sum lies between its partial sums of three and of four terms.
 Interval series(const Interval& z, const std::array<double, 4>& divisor) {
     const double next = (square(z) * z / Interval(std::abs(divisor[3]))).high;
     return Interval(1) / Interval(divisor[0]) + z / Interval(divisor[1]) + square(z) / Interval(divisor[2]) +
@@ -32,8 +32,8 @@ Coefficients coefficients(const Interval& z, const Interval& sinc_x, const Inter
         const Interval cosine = Interval(1) - z * b, c = (Interval(1) - sinc_x) / z, sinc_g = (cosine - sinc_x) / z;
         return {b, c, (sinc_x - Interval(2) * b) / z, -((sinc_g + Interval(2) * c) / z)};
     }
-    // Of a theta so large that the rounding of theta0 + s w leaves nothing of it: c is the mean of (1 - p)^2/2 cos(p x) over 0 <= p <= 1,
-    // b_g and c_g those of -(1 - p) p^2 sinc(p x) and -(1 - p)^2 p^2/2 sinc(p x).
+    // Theta is so large that the rounding of theta0 + s w leaves nothing of it: c is the mean of (1 - p)^2/2 cos(p x) over 0 <= p <= 1, b_g
+    // and c_g are those of -(1 - p) p^2 sinc(p x) and -(1 - p)^2 p^2/2 sinc(p x).
     if (z.high > 0.02) return {b, {-1.0 / 5, 1.0 / 5}, {-1.0 / 11, 1.0 / 11}, {-1.0 / 59, 1.0 / 59}};
     return {b, series(z, {6, -120, 5040, -362880}), series(z, {-12, 180, -6720, 453600}), series(z, {-60, 1260, -60480, 4989600})};
 }

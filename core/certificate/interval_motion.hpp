@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The certificate checker's own mathematics of a path: rigid motion and the bound of a leaf in interval arithmetic; of ranges of joints:
-/// range_prover.hpp. Used by what checks and by what both ask alike (disjoint_solids.hpp); nothing here is used by the search for
-/// distances.
+/// The certificate checker's own mathematics of a path: rigid motion and the bound of a leaf in interval arithmetic. Ranges of joints have
+/// theirs in range_prover.hpp. The checker uses it, and so does the code that checker and search share (disjoint_solids.hpp); the search
+/// for distances uses nothing of it.
 ///
 /// Motion. R(s) = exp([theta]) B, theta = theta0 + s w, B the stored base as it is. R' = [omega] R with, x = |theta|,
 ///   omega = w + b k + c theta x k,   k = theta x w = theta0 x w (constant),   b = (1 - cos x)/x^2,   c = (x - sin x)/x^3,

@@ -17,7 +17,7 @@ namespace fettle::core::certificate {
 /// Relative to their magnitudes, of sums of as many numbers as there are variables.
 inline constexpr double rounding_of_sums = 0x1p-47;
 
-/// Of a pair's variables: its coordinates, then its deviations.
+/// A box of a pair's variables: its coordinates, then its deviations.
 struct VariableBox {
     using Values = std::array<double, most_variables>;
     Values low{}, high{};  ///< those beyond the pair's own are 0

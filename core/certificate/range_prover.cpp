@@ -31,8 +31,8 @@ IntervalMatrix exponential(const Interval3& t) {
             Interval3{bt[0] * t[2] - at[1], bt[1] * t[2] + at[0], cosine + bt[2] * t[2]}};
 }
 
-// Of f.X over the region, from below: over its box if it has many points and that is asked for, else over them in doubles, whose
-// rounding and the functional's width |X| bounds.
+// The least f.X over the region, from below: over its box if it has many points and that is asked for, else over its points in doubles,
+// whose rounding |X| bounds, and the functional's width with it.
 double least_along(const Interval3& f, const Region& region, bool by_box) {
     if (by_box)
         return dot(f, {Interval(region.low.x(), region.high.x()), Interval(region.low.y(), region.high.y()),

@@ -2,8 +2,8 @@
 /// The checker's mathematics of ranges of joints, in interval arithmetic; used by certificate_checker.cpp alone, nothing of it by the
 /// search.
 ///
-/// A leaf: box of half widths w about c, vectors n_i at its 2^n corners, n(u) what interpolates them linearly in each coordinate,
-/// d = x_a - x_b, g(u) = n(u).d(u). What interpolates g's own values at the corners is off by at most the sum over the coordinates k of
+/// A leaf: box of half widths w about c, vectors n_i at its 2^n corners, n(u) their linear interpolant in each coordinate,
+/// d = x_a - x_b, g(u) = n(u).d(u). The interpolant of g's own values at the corners is off by at most the sum over the coordinates k of
 ///   e_k = 1/2 w_k^2 max |d2g/du_k2|
 /// (one coordinate after the other: interpolating in one loses at most that, and never magnifies what is lost in another), wherever the
 /// mixed derivatives are. So, with L the longest n_i,

@@ -40,7 +40,7 @@ Middle middle_of(const Range& r) {
     return {at, geometry::upper(std::max(r.high - at, at - r.low))};
 }
 
-// Of what is known over a's range.
+// The Taylor model of f(a), from what is known of f over a's range.
 template <class Function>
 TaylorModel composed(const TaylorModel& a, const Function& f) {
     if (!a.is_bounded()) return TaylorModel::unknown();

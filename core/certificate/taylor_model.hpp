@@ -18,7 +18,7 @@
 
 namespace fettle::core::certificate {
 
-/// Of one pair of bodies: coordinates of joints and deviations of dimensions together.
+/// The most variables of one pair of bodies: coordinates of joints and deviations of dimensions together.
 inline constexpr int most_variables = 12;
 
 struct TaylorModel {
@@ -37,7 +37,7 @@ struct TaylorModel {
     bool is_bounded() const { return rest < HUGE_VAL; }  // false for NaN
     /// At least the largest |x - center|.
     double radius() const;
-    /// Of all its values.
+    /// The interval of all its values.
     geometry::Interval interval() const;
     /// At least |x|.
     double magnitude() const { return geometry::upper(std::abs(center) + radius()); }

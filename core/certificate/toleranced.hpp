@@ -94,7 +94,7 @@ struct Toleranced {
     std::vector<LinkageCoordinate> coordinates;
     std::vector<TolerancedBody> bodies;  ///< of the model
     std::vector<TolerancedLoop> loops{};
-    /// What the coordinates' ranges are: 0: those of the joints (or nothing, as assembled); else where motors and scripts have them in this
+    /// Says which ranges the coordinates have. 0: the joints' own (or none, as assembled); else where motors and scripts have them in this
     /// time from the start [s] (clearance/driven_ranges.hpp).
     double duration = 0;
 };

@@ -32,14 +32,14 @@ struct ChainScrew {
     std::optional<ChainDrive> driven{};
 };
 
-/// From a body's frame to that of what it hangs on.
+/// Leads from a body's frame to the frame of whatever it hangs on.
 struct ChainLink {
     std::vector<ChainScrew> screws;
     ModelMatrix rotation;
     Model3 place;
 };
 
-/// A screw where the chain has it: in the frame of the chain's first parent. Of those that are driven, its position is not how far it goes.
+/// A screw where the chain has it: in the frame of the chain's first parent. The position of a driven one is not how far it goes.
 struct PlacedScrew {
     int position = 0;
     double turn = 0, slide = 0;

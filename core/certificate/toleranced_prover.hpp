@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The mathematics of a box of tolerances (toleranced.hpp): bounds of the distance of two bodies over a box of their variables, coordinates
-/// of joints and deviations together, in Taylor models (taylor_model.hpp), whose rounding is theirs. What the checker accepts is what this
-/// proves; the search (clearance/toleranced_search.hpp) asks it which directions are good ones.
+/// of joints and deviations together, in Taylor models (taylor_model.hpp), whose rounding is theirs. The checker accepts what this proves;
+/// the search (clearance/toleranced_search.hpp) asks it which directions are good ones.
 ///
 /// Let t be the variables over a box, each scaled to [-1, 1], and let R, q put body a into body b's frame. For a vector n that is fixed in
 /// that frame, and vertices X_a(t), X_b(t),
@@ -9,9 +9,9 @@
 /// are numbers whose dependence on t is known to first order, and what they leave of it, to second. So
 ///   |n| dist >= min over t of min over a of s_a - max over b of s_b
 ///            >= min over pairs of vertices of (center - sum over k |slope_a,k - slope_b,k| - rest_a - rest_b),
-/// in which what moves both alike cancels. Of pieces of many vertices, with any m,
+/// in which what moves both alike cancels. Pieces of many vertices have, with any m,
 ///            >= min over a of (center_a - sum |slope_a,k - m_a,k| - rest_a) - max over b of (...) - sum |m_a,k - m_b,k|.
-/// Of two elements the vector may turn with t, n(t) = n_0 + sum over k of n_k t_k, as the direction between their nearest points does: then
+/// For two elements the vector may turn, n(t) = n_0 + sum over k of n_k t_k, as the direction between their nearest points does: then
 ///   max |n(t)| dist >= min over t and pairs of vertices of n(t).(x_a(t) - x_b(t)).
 /// Which of the two it is is a leaf's kind. What either loses is of second order in the box, and not in the number of its variables: the
 /// one that stays may be the best for the corner of the box where the bodies are nearest; the other keeps faces and edges apart that tilt.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// What certifying pairs of bodies over a box of variables is whatever the variables are, joint coordinates (range_clearance.hpp) or these
-/// and deviations (toleranced_clearance.hpp): the pairs in parallel, what cannot be looked at, options of the search (box_search.hpp), the
-/// claim that a certificate makes of what was found, the solids, the verdict.
+/// The part of certifying pairs of bodies over a box of variables that is the same for joint coordinates (range_clearance.hpp) and for
+/// these and deviations (toleranced_clearance.hpp): the pairs in parallel, those that cannot be looked at, options of the search
+/// (box_search.hpp), the claim that a certificate makes, the solids, the verdict.
 #pragma once
 
 #include <string>
@@ -39,7 +39,7 @@ protected:
 
     /// Why a pair that so many coordinates move cannot be looked at; empty: it can.
     std::string obstacle(const PairRequest& request, int coordinates) const;
-    /// @param size  Of the two bodies [m]: with more than two coordinates options' `coarse` share of it is enough.
+    /// @param size  Size of the two bodies [m]: with more than two coordinates options' `coarse` share of it is enough.
     /// @param second  About how many bounds take a second.
     BoxSearchOptions search_options(PairClearance& out, int coordinates, double size, long second) const;
 
@@ -52,13 +52,13 @@ protected:
         out.bounds = found.bounds;
     }
 
-    /// Lowers out.lower to what is claimed: below what was found by a room for the order in which a proof goes through its cells, and for a
-    /// checker's rounding, but above the minimum, where that was decided. @return the room
+    /// Lowers out.lower to the claim: below the bound that was found by a room for the order in which a proof goes through its cells, and
+    /// for a checker's rounding, but above the minimum, where that was decided. @return the room
     double make_claim(double slack, PairClearance& out) const;
 
     /// Surfaces that never meet leave one thing to ask, whose answer is the same everywhere in the box: are the solids apart? Then the
     /// verdict.
-    /// @param charge  What the bodies at hand may be off by from those of the box [m]
+    /// @param charge  How far the bodies at hand may be off from those of the box [m]
     void finish(std::size_t pair, double charge, PairClearance& out) const;
 
     const model::Model& model_;

@@ -4,16 +4,16 @@
 /// least bound of the queue bounds the distance from below at any moment. Before that, samples of the box and a search downhill from the
 /// best give an upper bound that is nearly the least: most cells are never looked at.
 ///
-/// What the variables are is the business of `Cells`: joint coordinates (range_search.hpp), or these and deviations of dimensions
+/// The choice of variables is the business of `Cells`: joint coordinates (range_search.hpp), or these and deviations of dimensions
 /// (toleranced_search.hpp). It has
 ///   Box, Encounter             a box of variables (low, high), and two elements at a point of it (element_a, element_b, pair)
 ///   trees                      BoxTrees: the bodies' pieces, how many variables there are, and the rounding of a distance
-///   result                     BoxSearchResult<Encounter>, kept by what it takes as an upper bound (take_upper)
+///   result                     BoxSearchResult<Encounter>; take_upper keeps its upper bound
 ///   root_box()                 all of it
 ///   descend()                  looks for a good upper bound
-///   evaluate(cell, wanted, tolerance)                  sets a cell's bound, and what to split it by; a bound of `wanted` is enough
+///   evaluate(cell, wanted, tolerance)                  sets a cell's bound, and how to split it; a bound of `wanted` is enough
 ///   evaluate_parts(whole, by, parts, tolerance)        the same of a cell's two parts, for a bound of result.upper
-///   proves(proof, distance)                            does what was found prove so much, in a checker's arithmetic?
+///   proves(proof, distance)                            does this proof hold for so much, in a checker's arithmetic?
 #pragma once
 
 #include <algorithm>

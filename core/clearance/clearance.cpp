@@ -50,7 +50,7 @@ PairMotion pair_motion(const BodyMotion& a, const BodyMotion& b, const stepper::
     return pair;
 }
 
-// Of one window: where it is nearest, and whether that is its very beginning or end.
+// The minimum of one window: where it is nearest, and whether that is its very beginning or end.
 struct WindowMinimum {
     std::optional<Witness> witness;
     bool at_start = false, at_end = false;
@@ -284,7 +284,7 @@ public:
     }
 
 private:
-    // Of a body from segment `first` of the path on: what its windows in a stretch of time need.
+    // The part of a body's path from segment `first` on that its windows in a stretch of time need.
     struct Stretch {
         int first = 0, last = 0;
         int batch = -1;                     // that wants it

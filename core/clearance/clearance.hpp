@@ -27,8 +27,8 @@ struct NearClearances {
     bool everything = false;  ///< of every pair that may collide the whole path was searched
 };
 
-/// The least distance of all pairs that may collide at once: what is not in `windows` is proven to be at least `reach` apart, by boxes
-/// round whole bodies that hold them for a while; what is, is searched as certify_clearance() does, up to `reach` (`enough`).
+/// The least distance of all pairs that may collide at once: pairs that are not in `windows` are proven to be at least `reach` apart, by
+/// boxes round whole bodies that hold them for a while; those that are get searched as certify_clearance() does, up to `reach` (`enough`).
 NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, double reach, ClearanceOptions options);
 
 /// Steps [first, last) of a trajectory.

@@ -19,11 +19,11 @@ struct ContactGap {
     double gap = 0;                ///< contact::gap_of(contact) [m]
 };
 
-/// Of two bodies, each with its pose in `poses`. Where the bodies touch it is the least gap of their contacts.
+/// The gap between two bodies, each with its pose in `poses`. Where the bodies touch it is the least gap of their contacts.
 /// Contract: different bodies that do not pass through each other.
 ContactGap contact_gap(const model::Model& model, const std::vector<kinematics::Pose>& poses, int a, int b);
 
-/// Of one body and the nearest that it may collide with, or that other one. Nothing: it may collide with none.
+/// The gap between one body and the nearest that it may collide with, or that other one. Nothing: it may collide with none.
 std::optional<ContactGap> nearest_contact_gap(const model::Model& model, const std::vector<kinematics::Pose>& poses, int body,
                                               std::optional<int> other);
 

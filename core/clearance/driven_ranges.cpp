@@ -33,7 +33,7 @@ bool moves(const Curve& curve) {
 
 double running_time(const Curve& curve, double duration) { return std::min(duration, curve.stop_time.value_or(duration)); }
 
-// Of u(t) - u(0).
+// The extent of u(t) - u(0) over the duration.
 std::array<double, 2> extent(const Curve& curve, double duration) {
     const double start = curve_value(curve, 0);
     std::array<double, 2> out{0, 0};

@@ -2,7 +2,8 @@
 /// Where joints and scripted bodies go over a prescribed motion, from the start on for some time, as ranges (looped_ranges.hpp):
 ///   one thing moves       its coordinate, over all that its curve comes to in that time: the same set of positions as over time
 ///   several at even speed one coordinate, time [s], that all of them follow in their own rates
-/// What nothing drives must follow from what is driven, by a loop; of bodies without joints it stands where it starts, and is named.
+/// A coordinate that nothing drives must follow by a loop from one that is driven. A body without joints that nothing drives stays where it
+/// starts, and is named.
 #pragma once
 
 #include "fettle/core/base/result.hpp"

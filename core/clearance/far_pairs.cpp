@@ -60,7 +60,7 @@ public:
     }
 
 private:
-    // Of bodies that boxes keep apart neither is inside the other.
+    // Neither of two bodies that boxes keep apart is inside the other.
     Solids solids_of_boxes(const PairRequest& request) const {
         const auto is_closed = [&](int body) { return shapes_[body].solid->is_closed; };
         return is_closed(request.a) && is_closed(request.b) ? Solids::disjoint : Solids::not_closed;

@@ -44,7 +44,7 @@ struct Affine {
     double scale = 1, offset = 0;
 };
 
-// Of a joint: its measure's number; -1 for the turn of a cylindrical one, which has no measure.
+// A coordinate of a joint, with the number of its measure; -1 for the turn of a cylindrical one, which has no measure.
 struct Variable {
     const Joint* joint = nullptr;
     int measure = -1;

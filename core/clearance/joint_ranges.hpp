@@ -2,7 +2,7 @@
 /// A model's joints as a linkage (certificate/linkage.hpp): which coordinates its bodies have, and within which ranges.
 ///   revolute, prismatic, screw   one coordinate; cylindrical: its slide, and its turn; fixed: none
 ///   gear, rack                   couple coordinates, which then count once: the first joint's, within the limits of all of them; where
-///                                those of what follows it narrow its own, that is told
+///                                the limits of its followers narrow its own, that is told
 ///   ranges                       the limits of the joint and of springs on it; a joint that only turns has a whole turn without (the
 ///                                joints of a gear as many as bring all of them back to where they were)
 ///   world                        static bodies; everything without a joint stays where it starts, and so does, of bodies that are
@@ -23,7 +23,7 @@ struct JointRanges {
     certificate::Linkage linkage;
     std::vector<std::string> held;  ///< bodies that could move, and stay where they start
     std::vector<int> joint_of;      ///< [body]: what its screws are of, a place in the mechanism's joints; -1: it has no screws
-    /// Ranges that the limits of what follows a joint narrow, a sentence each: "the range of `drive` is 0 to 20 deg: `keep` narrows it from
+    /// Ranges that the limits of a joint's followers narrow, a sentence each: "the range of `drive` is 0 to 20 deg: `keep` narrows it from
     /// 0 to 60 deg"; and those of which they leave less than a hundredth, so that hardly anything is looked at.
     std::vector<std::string> narrowed, lost;
 };

@@ -190,7 +190,7 @@ std::vector<PairRequest> widened(std::vector<PairRequest> pairs, const JointedPa
     return pairs;
 }
 
-// Of a pair that nothing is proven of, for want of joints.
+// Is nothing proven of this pair, for want of joints?
 bool is_unproven(const JointedPath& path, int a, int b) {
     const auto has = [&](int body) { return std::binary_search(path.bodies.begin(), path.bodies.end(), body); };
     return !path.joints && (has(a) || has(b));

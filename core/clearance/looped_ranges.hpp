@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// A model's joints as a linkage (joint_ranges.hpp) where they close loops: the tree that is left without the joints that close them, and
-/// what follows from what.
+/// which coordinate follows from which.
 ///   driver      of each loop, one coordinate: that of the joint that a motor drives; where none does, of the only one with limits
 ///   dependents  the other coordinates of its joints, as many as the closing joints have independent conditions where the loop starts
 /// Loops that share a coordinate other than a driver's are one. The limits of dependents have no effect.
@@ -23,7 +23,8 @@ struct ClosedLoop {
     std::vector<int> rows;  ///< independent conditions: 6 * place in `closing` + x, y, z of the points, x, y, z of the axes
 };
 
-/// Of a prescribed motion (driven_ranges.hpp): what moves by itself, a motor's joint or a body's coordinates, and what it moves.
+/// A source of a prescribed motion (driven_ranges.hpp): a motor's joint or a body's coordinates, which move by themselves, and what it
+/// moves.
 struct DrivenSource {
     std::string name;
     int motor = -1;                             ///< a place in the scene's motors; -1: a script's

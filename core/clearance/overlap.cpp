@@ -259,7 +259,7 @@ private:
         double length = 0;
     };
 
-    // Of faces of what they share: a leaves b across b's faces, and draws back from its own.
+    // Moves along the normals of the faces of the common part: a leaves b across b's faces, and draws back from its own.
     std::vector<Move> likely_moves(const CommonPart& common) const {
         std::vector<Vector3> directions(1, Vector3::Zero());  // the first is their mean
         for (const CutTriangle& t : common.triangles) {
@@ -336,7 +336,7 @@ private:
 
 bool is_solid(const SolidBody& body) { return body.solid.is_closed && !body.solid.shells.empty(); }
 
-// Of a mesh that winds round nothing twice.
+// The volume of a mesh; infinity if it winds round anything twice.
 double volume_of(const geometry::Mesh& mesh) {
     if (!winds_once(mesh)) return infinity;
     return std::abs(geometry::solid_moments(mesh.vertices, mesh.triangles)(3, 3)) * (1 + 1e-9);

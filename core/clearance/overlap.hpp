@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// How far two closed solids are in each other at one instant: bounds of the depth and of the volume of what they share. All bounds are
+/// How far two closed solids are in each other at one instant: bounds of the depth and the volume of their common part. All bounds are
 /// proven (for self-intersecting meshes: of the material as disjoint_solids.hpp has it); how close they are depends on a budget.
 ///   depth   the least distance by which one of them has to be moved, without turning, to part them.
 ///           From below: a ball of radius r inside both keeps them together for every move shorter than 2 r.
 ///           From above: the move along a direction that parts their convex hulls; the best of the axes and of many faces' normals. Where
-///           what they share is known, a move along a normal of its faces, as far as it is wide, and after which they are proven apart.
-///   volume  that of what they share, cut exactly (parts/common_part.hpp), and what rounding of the poses can change of it. Of meshes that
-///           cannot be cut: cells of the common box are halved; those within both count for the lower bound, those not known to leave one
+///           that part is known, a move along a normal of its faces, as far as it is wide, and after which they are proven apart.
+///   volume  that of the common part, cut exactly (parts/common_part.hpp), and how much rounding of the poses can change it. Where meshes
+///           cannot be cut, cells of the common box are halved; those within both count for the lower bound, those not known to leave one
 ///           of them for the upper one, which is no more than the lesser body.
 /// Inside or outside of a cell follows from the distance of its middle to the surface, which changes by at most what one moves.
 #pragma once

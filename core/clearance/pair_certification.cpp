@@ -139,7 +139,7 @@ private:
         search_to(1e-2 * found_.upper, search_.max_evaluations / 20);
     }
 
-    // Of two proofs the better one counts, and beside it whatever was found nearest by any search.
+    // The better one of two proofs counts, and beside it whatever was found nearest by any search.
     void search_to(double tolerance, long max_evaluations) {
         ClearanceOptions finer = options_;
         SearchOptions search = search_;
@@ -216,7 +216,7 @@ private:
         result_.solids = Solids::unproven;
     }
 
-    // Of bodies that stand still the depth itself is known, where their solids can be cut. @return as proven_touch
+    // The depth itself is known of bodies that stand still, where their solids can be cut. @return as proven_touch
     std::optional<double> measured_touch(double depth) const {
         if (!winds_once(*pair_.a.mesh) || !winds_once(*pair_.b.mesh)) return std::nullopt;
         const auto overlap = overlap_at({found_.nearest.segment, found_.nearest.s}, cell_budget(), measured_overlap);
@@ -224,7 +224,7 @@ private:
         return depth - overlap->depth_upper;
     }
 
-    // Of flush or thin parts no edge need pass through a face, nor a ball be found by few cells: what they share is cut.
+    // Flush or thin parts need have no edge that passes through a face, nor a ball that few cells find: what they share is cut.
     void look_at_what_they_share() {
         if (!options_.measure_overlap || found_.lower > 0 || result_.is_clash() || result_.touch) return;
         const Instant at{found_.nearest.segment, found_.nearest.s};

@@ -29,8 +29,8 @@ PairClearance certify_pair(const PairMotion& pair, const PairRequest& request, d
 /// do, else nothing (nor where the budget or a stop ended it, or rounding hides the distance).
 std::optional<double> proven_apart(const PairMotion& pair, double reach, const ClearanceOptions& options);
 
-/// From bounds and what is known of the solids to a verdict, over a path and over ranges of joints alike: sets `status` and, of what is
-/// undecided, `reason`.
+/// Judges a pair by its bounds and by what is known of the solids, over a path and over ranges of joints alike: sets `status` and, where
+/// that is undecided, `reason`.
 /// @param contact_distance  as above; 0: nothing pushes
 /// @param crosses           of bodies that touch: their surfaces were found passing through each other
 void judge(PairClearance& pair, const PairRequest& request, double contact_distance, bool crosses);

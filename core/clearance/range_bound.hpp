@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// Lower bounds of the distance of two pieces (boxes or elements) over a box of joint coordinates. The search: range_search.hpp.
 ///
-/// Let the box have half widths w about c, let n_i be vectors of length <= 1 at its 2^n corners, n(u) what interpolates them linearly in
-/// each coordinate, d = x_a - x_b. Then dist >= g(u) = n(u).d(u), and what interpolates g between the corners is off by at most
+/// Let the box have half widths w about c, let n_i be vectors of length <= 1 at its 2^n corners, n(u) their linear interpolant in
+/// each coordinate, d = x_a - x_b. Then dist >= g(u) = n(u).d(u), and the interpolant of g between the corners is off by at most
 ///   sum over k of e_k,   e_k = 1/2 w_k^2 max |d2g/du_k2| <= 1/2 w_k^2 (2 |dn/du_k||dd/du_k| + |n.d2d/du_k2|),
 /// so that dist >= min over the corners of n_i.d - sum e_k, and the least value over two convex pieces is a difference of support
 /// functions: second order in the box, mixed derivatives have no effect, and what moves across n costs nothing at all (layers of a flat

@@ -32,7 +32,7 @@ struct Rest {
 
 class RelativeChain {
 public:
-    static constexpr int entries = 12;  ///< of a pose: those of R by rows, then those of p
+    static constexpr int entries = 12;  ///< of a pose: R by rows, then p
     static constexpr int padding = 16;  ///< so often, at least, the last node is repeated
 
     /// Contract: there are segments. Segment i leads from node i to node i + 1.

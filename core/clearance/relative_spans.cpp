@@ -32,7 +32,7 @@ static_assert((most_spans + 1) % block_size == 0);
     sum -= factor * reinterpret_cast<Four>(reinterpret_cast<FourBits>(along) & std::numeric_limits<long long>::max());
 }
 
-// Of nodes.
+// Functions at the nodes.
 struct NodeFunctions {
     std::array<double, most_spans + 2> f{};                         // one more, so that each has a next one
     std::array<std::array<double, most_spans + 2>, 3> direction{};  // n_j, where it turns
@@ -47,7 +47,7 @@ struct NodesAt {
     Vector3 here;  // the center of a's piece, at the plane's node
 };
 
-// Of box against box.
+// A box against a box.
 struct OfBoxes {
     const Piece &a, &b;
 
@@ -93,7 +93,7 @@ struct OfElements {
     }
 };
 
-// Of the corners of several elements each.
+// Pieces of several elements each: corners against corners.
 struct OfPieces {
     std::span<const PieceElement> a, b;
 
@@ -168,7 +168,7 @@ struct Rounding {
     double shrink, slack;
 };
 
-// Of points within `radius`; `turns`: do the planes?
+// Bounds the spans for points within `radius`; `turns`: do the planes turn?
 [[gnu::always_inline]] inline void cover_spans(const SpanGroup& group, const NodeFunctions& found, bool turns, double radius,
                                                const Rounding& rounding, SpanBounds& out) {
     const double outer = radius * rounded_up;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// What the parts of a search for a clearance share (pair_search.hpp): the queue of what has not been decided, the bounds so far, and the
+/// The state that the parts of a search for a clearance share (pair_search.hpp): the queue of what is undecided, the bounds so far, and the
 /// upper bounds with their witnesses.
 ///
-/// The most promising entry comes first, and then for a while the most promising of those made last, which are mostly parts of it: what is
-/// below the cutoff has to be looked at anyway, sooner or later, and what has just been made is still at hand. Where a bound of `enough` is
-/// to be proven and nothing nearer has been seen, always one of those made last.
+/// The most promising entry comes first, and then for a while the most promising of those made last, which are mostly parts of it: an entry
+/// below the cutoff has to be looked at anyway, sooner or later, and one that has just been made is still at hand. Where a bound of
+/// `enough` is to be proven and nothing nearer has been seen, always one of those made last.
 /// A search over a box of variables (box_search.hpp) shares the heap and the pool, and no more: its cells are one kind, its upper bound is
-/// nearly the least from the start, and what ends it, what is set aside and what is a witness differ.
+/// nearly the least from the start, and it has its own rules for ending, setting aside and witnesses.
 #pragma once
 
 #include <algorithm>

@@ -111,7 +111,7 @@ inline double least_of(double x, double y) { return std::isunordered(x, y) ? std
 /// that is inside. Minus infinity if a coefficient is not finite.
 double least_value(const Coefficients& c, double& dip);
 
-/// A lower bound, and what it would be if the distance were monotone: the difference is what halving the interval can win.
+/// A lower bound, and its value if the distance were monotone: the difference is what halving the interval can win.
 struct SegmentBound {
     double lower = 0;    ///< may be negative: no information but the order of a search
     double at_ends = 0;  ///< min(c0, c3)

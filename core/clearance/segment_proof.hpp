@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The proof that two bodies stay a given distance apart over a path (certificate.hpp), made from above once the distance is known. Of two
-/// pieces whose convex hulls are that far apart all elements are one leaf, along the direction in which the hulls are nearest
+/// The proof that two bodies stay a given distance apart over a path (certificate.hpp), made from above once the distance is known. All
+/// elements of two pieces whose convex hulls are that far apart are one leaf, along the direction in which the hulls are nearest
 /// (hull_direction.hpp); else the larger one is split, or time is halved. Whether a leaf proves it is asked of the checker's own
 /// mathematics (certificate/interval_motion.hpp), which takes pieces by their corners: so a proof has few leaves, and all of them hold.
 /// The search that finds the distance looks at many segments at once, and at what is near alone; a certificate has to say of each segment

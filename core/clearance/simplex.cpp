@@ -14,7 +14,7 @@ SimplexPoint nearest_to_origin(const std::array<Vector3, 4>& x, int count) {
         nearest.weight[0] = 1;
         return nearest;
     }
-    // Of fewer than three the last one is repeated.
+    // The last one is repeated where there are fewer than three.
     const auto of_triangle = [&](int i, int j, int k) {
         const geometry::ClosestPoints closest = geometry::point_triangle_closest(Vector3::Zero(), x[i], x[j], x[k]);
         SimplexPoint found;

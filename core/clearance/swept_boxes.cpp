@@ -58,7 +58,8 @@ struct Boxes {
 
 [[gnu::always_inline]] inline void find_norm(const Four* v, Four& out) { base::square_root(v[0] * v[0] + v[1] * v[1] + v[2] * v[2], out); }
 
-// Of bodies from `first` on, the last of the range again where there are not as many. Contract: the place is of a step.
+// Gathers the segments of bodies from `first` on, the last of the range again where there are not as many. Contract: the place is of a
+// step.
 [[gnu::always_inline]] inline void gather_segments(const BodyRange& range, const PathPlace& place, int first, Segments& out) {
     const auto step = static_cast<std::size_t>(place.step), k = static_cast<std::size_t>(place.segment);
     const auto& poses = range.trajectory.poses[step];

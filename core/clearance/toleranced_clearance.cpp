@@ -22,7 +22,7 @@ using certificate::TolerancedProver;
 using certificate::VariableBox;
 
 constexpr long looped_bounds_a_second = 20'000;  // where loops are closed, some seconds
-// Of one set of deviations; the parts refer to each other.
+// The solid that one set of deviations makes; its parts refer to each other.
 struct MadeSolid {
     MadeSolid(int body, const MadeBodies& made, const geometry::Mesh& drawn)
         : mesh(with_vertices(drawn, made.vertices(body, drawn.vertices))),
@@ -155,7 +155,7 @@ private:
         record.upper = there ? std::max(there->high, record.lower) : found.upper;
     }
 
-    // Of the made mesh, whose corners are elsewhere than the tree's.
+    // A point of the made mesh, whose corners are elsewhere than the tree's.
     certificate::CertifiedPoint point(const MadeBodies& made, const PieceTree& tree, int body, const AllValues& all, int element,
                                       const ElementPairDistance& near, Primitive kind, int corner, const Vector3& x) const {
         const kinematics::Pose pose = made.pose(body, all.coordinates);

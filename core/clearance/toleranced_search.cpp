@@ -192,7 +192,7 @@ private:
         return out;
     }
 
-    // Of two elements at t, as far as they are linear in t, in b's frame.
+    // The distance of two elements at t, as far as they are linear in t, in b's frame.
     ElementPairDistance linear_distance(const PlacedPair& at, const TolerancedCell& cell, const VariableBox::Values& t) const {
         const auto vector = [&](const Model3& x) { return Vector3(linear_value(x[0], t), linear_value(x[1], t), linear_value(x[2], t)); };
         kinematics::Pose pose;

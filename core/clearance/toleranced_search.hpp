@@ -3,7 +3,7 @@
 /// them (certificate/toleranced.hpp), by branch and bound (box_search.hpp).
 ///
 /// The bound of a cell is the prover's (certificate/toleranced_prover.hpp), rigorous with its rounding; what is chosen here is the vector.
-/// Of two elements it is one that turns as the direction between their nearest points does, or the best that stays: the direction of the
+/// For two elements it is one that turns as the direction between their nearest points does, or the best that stays: the direction of the
 /// point nearest to the origin of the hull of all x_a(t) - x_b(t), as far as they are linear in t, by Gilbert, Johnson and Keerthi's
 /// method. Its supports are corners of the box, so that one vector serves a box of many deviations without halving them: distance is convex
 /// in what moves in straight lines. Halved is the larger piece while pieces are larger than what the box moves them, then the variable

@@ -197,7 +197,7 @@ Assembly assemble(const AssemblyProblem& problem, const std::vector<Pose>& start
     out.dependent = dependent_at(problem, first);
     out.is_met = !(out.gaps.size() > 0 && out.gaps.maxCoeff() > close);
     if (out.is_met && attempt.empty()) return out;
-    constexpr int most_tries = 3;  // what depends on what is known where the bodies fit
+    constexpr int most_tries = 3;  // which constraints depend on others is known where the bodies fit
     for (int k = 0; k < most_tries; ++k) {
         std::vector<DependentRow> left_out = std::move(out.dependent);
         out = Assembler(problem, start, first, left_out).run();

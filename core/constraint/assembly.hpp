@@ -35,7 +35,7 @@ struct Assembly {
 };
 
 /// @param start    P0.
-/// @param attempt  where the search begins; empty: at `start`. Of several stationary poses it decides which one is found.
+/// @param attempt  where the search begins; empty: at `start`. It decides which of several stationary poses is found.
 Assembly assemble(const AssemblyProblem& problem, const std::vector<kinematics::Pose>& start,
                   const std::vector<kinematics::Pose>& attempt = {});
 

@@ -24,7 +24,7 @@ struct Branch {
     std::vector<int> with_first, with_second;  ///< bodies that go with the first and with the second when it is turned, itself included
 };
 
-/// Of the branch's two legs, in [-1, 1]; greater than 0 on the left, or ahead.
+/// The side of the branch's two legs, in [-1, 1]; greater than 0 on the left, or ahead.
 ///   no slide:  the sine of the bend, n . (l1 x l2) / (|l1| |l2|), n the middle joint's axis, l1 = first - start and l2 = end - second
 ///   across n a slide:   v . s / |v|, s its axis; v = first - start (`to` slides), end - second (`from` slides) or end - start (the middle
 ///   one slides)

@@ -9,7 +9,7 @@
 namespace fettle::core::constraint {
 namespace {
 
-// Of what is free, as if what is not had the mass 1.
+// The mass of the free coordinates, as if the others had the mass 1.
 Matrix6 free_mass(Matrix6 mass, const std::array<int, 6>& index) {
     for (int k = 0; k < 6; ++k) {
         if (index[k] >= 0) continue;

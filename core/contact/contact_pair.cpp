@@ -113,7 +113,7 @@ bool on_first(const ContactPair& pair, int a) {
     return pair.closest.free_weight[a][0] != 0 || (pair.type == geometry::PairType::edge_edge && pair.closest.free_weight[a][1] != 0);
 }
 
-// How the interior parameters follow: what slides (w (x) r_a) and what turns (w'_a (x) n), both times L^-1.
+// How the interior parameters follow: the slide patterns (w (x) r_a) and the turn patterns (w'_a (x) n), both times L^-1.
 struct Following {
     int count = 0;
     std::array<PairVector, 2> slide, turn;
@@ -139,7 +139,7 @@ Following following_of(const ContactPair& pair, const Arms& arms, const Vector3&
     return f;
 }
 
-// Of factor * b(D), added to h: the true second derivative, without the curvature of the rotations.
+// Adds the true second derivative of factor * b(D) to h, without the curvature of the rotations.
 void add_exact_distance_hessian(const ContactPair& pair, const Arms& arms, const ScalarDerivatives& b, PairMatrix& h) {
     const double d = std::sqrt(pair.closest.distance_squared);
     const Vector3 n = contact_normal(pair);

@@ -62,7 +62,7 @@ void take_over(const ccd::Candidates& candidates, ContactPlans& plans) {
     }
 }
 
-// Of the contacts of one ordered pair of bodies.
+// The potential of the contacts of one ordered pair of bodies.
 double potential_of(const BodyPairContacts& list, const BarrierParameters& parameters) {
     double sum = 0;
     for (const ContactPair& pair : list.contacts) {

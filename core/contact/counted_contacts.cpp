@@ -283,7 +283,7 @@ private:
         }
     }
 
-    // Of those with the same features the first one's numbers are taken.
+    // Contacts with the same features take the first one's numbers.
     void emit(const NearPairs& near, std::vector<ContactPair>& forward, std::vector<ContactPair>& backward) {
         std::sort(entries_.begin(), entries_.end());
         for (std::size_t first = 0; first < entries_.size();) {
@@ -334,7 +334,7 @@ private:
     bool is_repeatable_ = true;  // whatever was counted is of near pairs
 };
 
-// Of contacts that nothing was merged into.
+// Adds the parts of contacts that nothing was merged into.
 void add_missing_parts(const std::vector<ContactPair>& contacts, bool of_second, WeightParts& parts) {
     while (parts.size() < contacts.size()) {
         const ContactPair& pair = contacts[parts.size()];

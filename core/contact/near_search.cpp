@@ -61,7 +61,7 @@ private:
         return pair;
     }
 
-    // Of the last one, whose vertices are there. Is it near? Else it is removed.
+    // Works out the last pair, whose vertices are there. Is it near? Else it is removed.
     bool work_out(std::vector<ContactPair>& out) {
         ContactPair& pair = out.back();
         new (&pair.closest) geometry::ClosestPoints(closest_points(pair.type, pair.x));

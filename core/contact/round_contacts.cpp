@@ -285,8 +285,8 @@ private:
         return {hollow_a ? from_b : Vector3(inside * from_b), hollow_b ? Vector3(-from_b) : Vector3(-inside * from_b)};
     }
 
-    // Of circles all arcs are about one line: one direction says which two meet. Each for itself would see another one by rounding, which
-    // near concentric circles is any.
+    // The arcs of a circle are all about one line: one direction says which two meet. Each for itself would see another one by rounding,
+    // which near concentric circles is any.
     void circles(const Placed& a, const std::vector<int>& corners_a, const Placed& b, const std::vector<int>& corners_b, int e) {
         const auto [out_a, out_b] = outward(a.is_hollow(0), b.is_hollow(0), lines(a, 0, b, 0, e).from_b);
         const auto first_that_faces = [](const Placed& p, const std::vector<int>& corners, const Vector3& out) {

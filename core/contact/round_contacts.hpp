@@ -38,7 +38,7 @@ struct SidesGap {
     double covers = 0;           ///< of both [m]
 };
 
-/// Of all sides of the two bodies that meet here.
+/// The gaps of all sides of the two bodies that meet here.
 std::vector<SidesGap> gaps_of_sides(const NearAt& at);
 
 }  // namespace fettle::core::contact

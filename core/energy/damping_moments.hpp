@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What resists a damped body's motion (scene::Damping): with Pdot = V its force and arm are those of V C,
+/// The resistance to a damped body's motion (scene::Damping): with Pdot = V its force and arm are those of V C,
 ///   C = angular M + (linear - angular) M e4 (M e4)^T / m,
 /// the force linear m v at the centre of mass and the torque angular I omega about it: the second part of C is the mass gathered there, the
 /// rest the second moments about it. As a term of the incremental potential: body_terms.hpp. docs/method/energy.md#integrators.

@@ -37,8 +37,8 @@ void pull_back(const Matrix3& j_rows, const Matrix3& j_columns, Matrix6& h) {
     h.bottomRows<3>() = rows;
 }
 
-// Of the terms that couple bodies. Memory that stays from call to call: who has taken a body's sums leaves them clear, while they are at
-// hand.
+// The sums of the terms that couple bodies. Their memory stays from call to call: who has taken a body's sums leaves them clear, while they
+// are at hand.
 struct CouplingSums {
     CouplingDerivatives d;
     bool are_clear = false;

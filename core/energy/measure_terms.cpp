@@ -74,7 +74,7 @@ Matrix12 positive_part_of(const Matrix12& h) {
     return eigen.vectors * eigen.values.cwiseMax(0.0).asDiagonal() * eigen.vectors.transpose();
 }
 
-// Of one term in the bodies of its measure.
+// The derivatives of one term in the bodies of its measure.
 struct TermGradient {
     int a = 0, b = 0;
     measure::PoseGradients gradient;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// What is constant while a step's incremental potential is minimised, and the coordinates that it is minimised over: each body's
-/// (q, theta) in the chart of the step, R = exp([theta]) R_t0. Of joints, springs and motors these are the turns counted so far, what
-/// dampers and joint friction measure rates from, and what rows are to come to (docs/method/joints.md#rows).
+/// The constants of a step while its incremental potential is minimised, and the coordinates that it is minimised over: each body's (q,
+/// theta) in the chart of the step, R = exp([theta]) R_t0. Joints, springs and motors add the turns counted so far, the values that dampers
+/// and joint friction measure rates from, and the targets of constraints (docs/method/joints.md#rows).
 #pragma once
 
 #include <vector>

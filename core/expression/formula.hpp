@@ -28,9 +28,9 @@ Formula constant_formula(double si, const DimensionPowers& dimension = {});
 /// The input itself.
 Formula input_formula(const std::string& name, const DimensionPowers& dimension);
 
-/// Of nodes that end with the value and whose inputs, one node each, count through `names`.
+/// The formula of nodes that end with the value and whose inputs, one node each, count through `names`.
 Formula formula_of(Nodes nodes, const std::vector<std::string>& names, const DimensionPowers& dimension);
-/// What was recorded of x, as a formula; `names` are those of the tape's inputs.
+/// The formula that was recorded for x; `names` are the names of the tape's inputs.
 Formula recorded_formula(const Number& x, const std::vector<std::string>& names, const DimensionPowers& dimension = {});
 
 /// The formula's value on numbers of type T. @param inputs  In the order of Formula::inputs, SI.

@@ -60,7 +60,7 @@ struct Node {
 };
 using Nodes = std::vector<Node>;
 
-// Of two equal values the first is taken. Intervals and recorded numbers have overloads of their own.
+// The first of two equal values is taken. Intervals and recorded numbers have overloads of their own.
 inline double minimum(double a, double b) { return b < a ? b : a; }
 inline double maximum(double a, double b) { return b > a ? b : a; }
 inline double choose(double a, double b, double c) { return a < 0 ? b : c; }
@@ -121,9 +121,9 @@ T applied(Operation operation, const T& a, const T& b, const T& c) {
     return a;
 }
 
-/// d(value)/d(operand) of each operand at a, b, c; `value` is the operation's value there. Of minimum, maximum, absolute and choose the
-/// side that is taken is differentiated, and the first one where they are equal; choose has no derivative in its condition. Where there is
-/// none (a root at 0), infinity or NaN. Of a^b the derivative in b is asked for only where b varies: it needs a logarithm.
+/// d(value)/d(operand) of each operand at a, b, c; `value` is the operation's value there. The side that minimum, maximum, absolute and
+/// choose take is differentiated, and the first one where they are equal; choose has no derivative in its condition. Where there is none (a
+/// root at 0), infinity or NaN. The derivative of a^b in b is asked for only where b varies: it needs a logarithm.
 std::array<double, 3> slopes(Operation operation, double a, double b, double c, double value, bool exponent_varies);
 
 /// How near the operands are to where the derivative jumps: |a - b| of minimum and maximum, |a| of absolute and choose; infinity of the

@@ -26,7 +26,7 @@ bool is_of_word(char c) { return starts_word(c) || is_digit(c) || c == '.'; }
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 std::string in_quotes(std::string_view text) { return "`" + std::string(text) + "`"; }
 
-// What a function takes, and what comes out.
+// What a function takes and returns.
 enum class Kind {
     keeps,      // of the dimension of its operands
     root,       // of the square root of it

@@ -53,7 +53,7 @@ private:
     base::Errors errors_;
 };
 
-/// Writes to a descriptor until nothing is left; what has been written is taken off the front. @return 0, or errno of what failed
+/// Writes to a descriptor until nothing is left; the bytes written are taken off the front. @return 0, or errno of what failed
 int write_all(int file, std::string_view& left);
 
 /// The first of NAME.1.EXT, NAME.2.EXT, ... beside NAME.EXT that nothing has, not even a link that leads nowhere.

@@ -13,9 +13,9 @@ namespace fettle::core::files {
 
 class JsonNode;
 
-/// Which of these keys the file's outermost object has first; empty: none. Reads up to where it stands. None of what cannot be read or is
-/// no object; of a file that is not JSON the answer may be either, for its reader to say what is wrong. Contract: keys without characters
-/// that JSON escapes.
+/// Which of these keys the file's outermost object has first; empty: none. Reads up to where it stands. A file that cannot be read or is no
+/// object has none; for a file that is not JSON the answer may be either, for its reader to say what is wrong. Contract: keys without
+/// characters that JSON escapes.
 std::string_view top_level_key(const std::filesystem::path& path, std::span<const std::string_view> keys);
 
 /// Is there this one?

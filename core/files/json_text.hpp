@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What is asked of a text before anything reads it as JSON. json_document.hpp asks it of what it reads; whoever gives a text to the JSON
+/// Checks of a text before anything reads it as JSON. json_document.hpp applies them to what it reads; whoever gives a text to the JSON
 /// library directly asks here: the library takes a NUL for the end of the text, whatever follows, and takes lists in lists without end,
 /// which copying and writing then go into by recursion.
 #pragma once

@@ -252,7 +252,7 @@ void widen(OwnedBox& box, const Vector3& by) {
     widen(box, point);
 }
 
-// Of the nodes' elements, add(element, box) each; children come after their parents.
+// The boxes of the nodes' elements, by add(element, box) each; children come after their parents.
 template <class Add>
 std::vector<OwnedBox> owned_boxes(const std::vector<HierarchyNode>& nodes, const std::vector<HierarchyElement>& elements, const Add& add) {
     std::vector<OwnedBox> boxes(nodes.size());

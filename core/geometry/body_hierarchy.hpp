@@ -36,7 +36,7 @@ struct HierarchyElement {
     std::array<std::array<int, 2>, 3> owned_edge_corners{};  ///< the same for the ends of each owned edge, in the edge's order
 };
 
-/// Axis-aligned, in the body's frame, rounded outwards to single precision. Of nothing: low above high.
+/// Axis-aligned, in the body's frame, rounded outwards to single precision. A box of nothing has low above high.
 struct OwnedBox {
     static constexpr float nowhere = std::numeric_limits<float>::infinity();
     std::array<float, 3> low{nowhere, nowhere, nowhere}, high{-nowhere, -nowhere, -nowhere};

@@ -13,7 +13,7 @@ namespace {
 using base::Four;
 using base::lanes;
 
-// Of the middles of the boxes.
+// The axis along which the middles of the boxes are spread widest.
 int widest_axis(const std::vector<Box>& boxes, const std::vector<int>& some) {
     Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
     for (const int i : some) {

@@ -85,7 +85,7 @@ private:
         return triangles;
     }
 
-    // Of distances from planes.
+    // The rounding of distances from planes.
     double rounding() const { return 16 * base::unit_roundoff * size_; }
 
     // Is the triangle on the plane, and wide enough to lie along it, not across?

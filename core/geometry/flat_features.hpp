@@ -29,7 +29,7 @@ struct FlatFeatures {
     unsigned of_face(int f) const { return static_cast<std::size_t>(f) < face.size() ? face[f] : 0U; }
 };
 
-/// Of the flatness: what is no farther from a plane is on it, but for the last digits of coordinates.
+/// A share of the flatness: what is no farther from a plane is on it, but for the last digits of coordinates.
 inline constexpr double plane = 1e-7;
 
 /// @param flatness  [m]. Contract: connectivity built.

@@ -19,7 +19,7 @@ struct Side {
 
 bool comes_before(const Side& a, const Side& b) { return std::tie(a.high, a.side) < std::tie(b.high, b.side); }
 
-/// Of one smaller index; they come in the order of their positions.
+/// Sorts the sides of one smaller index; they come in the order of their positions.
 void sort_bucket(Side* first, Side* last) {
     if (last - first > few) return std::sort(first, last, comes_before);
     for (Side* at = first; at < last; ++at) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The sides of a mesh's triangles, sorted so that those of one edge stand together: what checks and repairs of meshes walk over; and edges
-/// by number. All in linear time (counting by the smaller index) where indices are as dense as a mesh has them; right for any integers.
+/// The sides of a mesh's triangles, sorted so that those of one edge stand together, for checks and repairs of meshes to walk over; and
+/// edges by number. All in linear time (counting by the smaller index) where indices are as dense as a mesh has them; right for any
+/// integers.
 #pragma once
 
 #include <cstddef>

@@ -24,7 +24,7 @@ CornerSums corner_sums(const Vector3& a, const Vector3& b, const Vector3& c) {
     return sums;
 }
 
-/// Of the tetrahedron (0, a, b, c), V = det(a, b, c) / 6: int x = V/4 S, int x x^T = V/20 (a a^T + b b^T + c c^T + S S^T).
+/// Moments of the tetrahedron (0, a, b, c), V = det(a, b, c) / 6: int x = V/4 S, int x x^T = V/20 (a a^T + b b^T + c c^T + S S^T).
 struct TetrahedronSums {
     Matrix3 second = Matrix3::Zero();
     Vector3 first = Vector3::Zero();

@@ -33,7 +33,7 @@ private:
     std::uint64_t count_ = 0;
 };
 
-/// Of the counts, and of some of the vertices and triangles: meshes that it does not tell apart are compared anyhow.
+/// A hash of the counts, and of some of the vertices and triangles: meshes that it does not tell apart are compared anyhow.
 std::size_t shape_hash(const Mesh& mesh) {
     constexpr std::size_t looked_at = 256;
     WordHash hash;

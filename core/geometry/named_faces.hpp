@@ -20,7 +20,7 @@ struct SubMesh {
     Mesh mesh;
     std::vector<int> vertices, edges, triangles;  ///< indices into the whole's
 };
-/// @param triangles  Of the mesh, each once; at least one. Loose edges and points are left out.
+/// @param triangles  Triangles of the mesh, each once; at least one. Loose edges and points are left out.
 SubMesh sub_mesh(const Mesh& mesh, const std::vector<int>& triangles);
 
 }  // namespace fettle::core::geometry

@@ -13,7 +13,7 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 // These lie between two neighbours each.
 const Interval quarter_turn{0x1.921fb54442d18p+0, 0x1.921fb54442d19p+0}, half_turn{0x1.921fb54442d18p+1, 0x1.921fb54442d19p+1};
 
-// Of numbers by the C library, which is trusted to 2 ulps.
+// The range round numbers by the C library, which is trusted to 2 ulps.
 Range around(double low, double high) { return {lower(lower(low)), upper(upper(high))}; }
 
 Range clamped(const Range& a, double low, double high) {
@@ -25,7 +25,7 @@ Range with_gaps(Range a) {
     return a;
 }
 
-// Of a function that rises on all of the range.
+// The range of a function that rises on all of `a`.
 template <class Function>
 Range rising(const Range& a, Function f) {
     return around(f(a.low), f(a.high)).marked_as(a);
@@ -35,7 +35,8 @@ struct Extremes {
     double least, most;
 };
 
-// Of a function of two that has its extremes at the corners; NaN where one of them has no value, which must not get lost among the others.
+// The extremes of a function of two that has them at the corners; NaN where one of them has no value, which must not get lost among the
+// others.
 template <class Function>
 Extremes at_corners(const Range& a, const Range& b, Function f) {
     const double corners[] = {f(a.low, b.low), f(a.low, b.high), f(a.high, b.low), f(a.high, b.high)};
@@ -47,7 +48,7 @@ Extremes at_corners(const Range& a, const Range& b, Function f) {
     return out;
 }
 
-// Of a range that is not negative, to a power that is a number.
+// The power of a range that is not negative, with an exponent that is a number.
 Range power_of_magnitude(const Range& a, double exponent) {
     const double at_low = std::pow(a.low, exponent), at_high = std::pow(a.high, exponent);
     const Range found = exponent < 0 ? around(at_high, at_low) : around(at_low, at_high);

@@ -23,7 +23,7 @@ struct Corner {
         D = d.norm();
         S = s.norm();
         tau = std::min(length1, length2) / 2;
-        // Of equal lengths the derivative of their minimum is taken as the mean of both: symmetric, as a circle's.
+        // The derivative of the minimum of equal lengths is taken as the mean of both: symmetric, as a circle's.
         const bool equal = std::abs(length1 - length2) <= 1e-12 * std::max(length1, length2);
         share1 = equal ? 0.25 : length1 < length2 ? 0.5 : 0;
         share2 = 0.5 - share1;

@@ -18,7 +18,7 @@ constexpr double straightest = 1e-6;  // turns up to this are none [rad]
 // Share of a rectangle's width that stays plane, or it stands for a curved surface. At a round side's last rectangle half of it does.
 constexpr double smallest_plane = 2.0 / 3;
 
-// Of a plane facet. Corner k to corner k + 1 is side k, counter-clockwise seen from outside.
+// A rectangle of a plane facet. Corner k to corner k + 1 is side k, counter-clockwise seen from outside.
 struct Rectangle {
     std::array<int, 4> corner{};
     std::array<std::vector<int>, 4> border;  // edges of the mesh, in order
@@ -177,7 +177,7 @@ private:
     std::vector<int> edges_;  // [3 t + k]: edge of side k
     std::vector<EdgeSides> sides_of_;
     std::vector<int> leaving_;  // [vertex]: side of an outline from there, while it is looked at; -1
-    // Of the facet that is looked at: triangles; sides of triangles in any order, and one after another.
+    // The facet that is looked at: its triangles; sides of triangles in any order, and one after another.
     std::vector<int> facet_, border_, loop_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A rigid body's 6 x 6 mass matrix in (dq, phi): what accelerations take and what the inertia's Hessian is made of.
+/// A rigid body's 6 x 6 mass matrix in (dq, phi): accelerations take it, and the inertia's Hessian is made of it.
 /// docs/method/energy.md#integrators.
 #pragma once
 

@@ -121,7 +121,7 @@ bool BlockCholesky::analyse(const kinematics::BlockHessian& hessian, const FreeD
     return true;
 }
 
-// The rows of a column: those of the matrix, and those of the columns whose first row it is.
+// The rows of a column: the matrix's own, and those of the columns whose first row it is.
 void BlockCholesky::find_columns(const std::vector<std::vector<int>>& neighbours) {
     const std::size_t n = neighbours.size();
     for (std::vector<std::vector<Entry>>* lists : {&columns_, &rows_}) {

@@ -121,7 +121,7 @@ RankFactor factorise(const Sparse& matrix, double share) {
     return factor_by_eigen(matrix, share);
 }
 
-// Of what is left of each column that is kept, once those before it are taken out, the least.
+// The least remainder of the columns that are kept, each with those before it taken out.
 double least_left(const RankFactor& factor) {
     double least = 1;
     for (int i = 0; i < factor.rank; ++i) least = std::min(least, std::abs(factor.r.coeff(i, i)));

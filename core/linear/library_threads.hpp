@@ -17,7 +17,7 @@ struct LibraryThreads {
                         const int*) = nullptr;  ///< the BLAS's dsyrk; null where set_blas is
 };
 
-/// Of `library` and those that it was linked with. @param library  null: of the whole program
+/// The threads of `library` and of those that it was linked with. @param library  null: of the whole program
 LibraryThreads threads_of(const base::SharedLibrary* library);
 
 /// OpenBLAS asks for 128 MB of addresses at its first call, and asks again for ever where the system refuses them. Once per thread this

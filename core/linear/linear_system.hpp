@@ -2,7 +2,7 @@
 /// The one linear system: of a potential's second derivative H over the free degrees of freedom, under rows C (joints, motors) or none,
 ///   [ H  C^T ] [ y ]   [ r ]
 ///   [ C   0  ] [ m ] = [ c ]
-/// Behind it, by what there is to solve and by the graph of what is coupled alone, so that no bit depends on the number of threads:
+/// Behind it, by the kind of system and by the graph of what is coupled alone, so that no bit depends on the number of threads:
 ///   without rows   blocks of 6 x 6 (block_cholesky.hpp); above `supernodal_operations` CHOLMOD (supernodal_cholesky.hpp), where it is
 ///   there with rows      L D L^T (quasi_definite_factor.hpp) indefinite     L U (indefinite_factor.hpp), for derivatives alone
 /// docs/method/joints.md#the-step-under-rows.
@@ -49,9 +49,10 @@ public:
     /// @return NaNs where is_usable() is false: the matrix of what a scene says may be anything
     Solution solve(const MatrixX& r, const MatrixX& c = {}) const;
 
-    /// With refinement by the matrix that was factorised: once without rows, which is enough for how stiff contact makes H; with rows,
-    /// which delta is to be taken out of, until what is left is rounding, or falls no more by half. @param most_passes  with rows: the
-    /// usual ones are enough unless contact is far stiffer than what rows leave free, where each pass gains little.
+    /// Solves with refinement by the matrix that was factorised: once without constraints, which is enough for how stiff contact makes H;
+    /// with constraints, which delta is to be taken out of, until the remainder is rounding, or no longer falls by half. @param most_passes
+    /// with constraints: the usual ones are enough unless contact is far stiffer than what constraints leave free, where each pass gains
+    /// little.
     Solution solve_refined(const BlockHessian& hessian, const RowJacobian& rows, const MatrixX& r, const MatrixX& c = {},
                            int most_passes = usual_passes) const;
 

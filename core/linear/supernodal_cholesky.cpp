@@ -100,7 +100,7 @@ void for_each_lower_entry(const BlockHessian& hessian, const FreeDofs& dofs, con
     }
 }
 
-// Of the bodies in `order`, numbered by their place in it.
+// The graph of the bodies in `order`, numbered by their place in it.
 Lower graph_of(const BlockHessian& hessian, const FreeDofs& dofs, const std::vector<int>& order) {
     std::vector<int> place(dofs.index.size(), -1);
     for (std::size_t k = 0; k < order.size(); ++k) place[at(order[k])] = static_cast<int>(k);
@@ -152,7 +152,7 @@ struct SupernodalCholesky::Implementation {
         if (common.status == CHOLMOD_OUT_OF_MEMORY || common.status == CHOLMOD_TOO_LARGE) throw std::bad_alloc();
     }
 
-    // Of the bodies; empty: this CHOLMOD dissects nothing.
+    // The order of the bodies by dissection; empty: this CHOLMOD dissects nothing.
     std::vector<int> dissected(const BlockHessian& hessian, const FreeDofs& dofs, const std::vector<int>& bodies) {
         Lower graph = graph_of(hessian, dofs, bodies);
         cholmod_sparse view = graph.view();

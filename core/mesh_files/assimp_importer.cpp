@@ -117,7 +117,7 @@ Placement axes_of_the_file(const aiNode& root) {
     return out;
 }
 
-/// What assimp says of faces that it leaves out: a hole is no part of what the file says.
+/// Notes that assimp has left out faces: a hole is no part of the file's contents.
 void note_left_out(const char* message, char* left_out) {
     const std::string text(message);
     if (text.find("out-of-range") != std::string::npos || text.find("were dropped") != std::string::npos)

@@ -58,7 +58,7 @@ struct Element {
     std::uint64_t count = 0;
     std::vector<Property> properties;
 
-    /// Of the property of this name, or -1.
+    /// The place of the property of this name, or -1.
     int find(std::string_view property) const {
         for (std::size_t i = 0; i < properties.size(); ++i)
             if (properties[i].name == property) return static_cast<int>(i);
@@ -306,7 +306,7 @@ private:
         return {};
     }
 
-    /// Of one such element in a binary file, at least [bytes].
+    /// The least size of one such element in a binary file [bytes].
     static std::size_t least_size(const Element& element) {
         std::size_t size = 0;
         for (const Property& property : element.properties) size += size_of(property.count.value_or(property.type));

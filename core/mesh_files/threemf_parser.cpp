@@ -201,7 +201,7 @@ private:
         return t;
     }
 
-    /// Of a <component> or an <item>: which object, and where.
+    /// Reads from a <component> or an <item> which object it places, and where.
     Component component(XmlReader& xml, const std::string& part) {
         Component out;
         out.where = xml.where();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Zip archives in memory, by libzip. What is read may come from anywhere: stored or deflated entries, with zip64 sizes; what an entry
-/// claims is checked (place, size, checksum) and bounded. For 3MF. No encryption, no archives in several parts.
+/// Zip archives in memory, by libzip. They may come from anywhere: stored or deflated entries, with zip64 sizes; the claims of an entry are
+/// checked (place, size, checksum) and bounded. For 3MF. No encryption, no archives in several parts.
 #pragma once
 
 #include <cstdint>

@@ -117,7 +117,7 @@ private:
         return {};
     }
 
-    // Of legs that are fixed in one body.
+    // Does every leg that is fixed in one body have a length?
     bool has_legs(const Branch& branch) const {
         const std::vector<measure::Frame>& frames = model_.mechanism.set.frames;
         const auto leg = [&](int from, int to, int axis) {
@@ -136,7 +136,7 @@ private:
         return false;
     }
 
-    // What hangs on a body by joints other than these; where that is joined to something else again, only what is fixed to it.
+    // All that hangs on a body by joints other than these; where that is joined to something else again, only what is fixed to it.
     std::vector<int> carried(int body, int other, const std::vector<int>& cut) const {
         if (body == measure::world) return {};
         for (const bool all : {true, false}) {

@@ -21,7 +21,7 @@ base::Errors add_branches(const scene::Scene& scene, Model& model);
 /// are positive.
 std::string words_of_side(const Mechanism& mechanism, const constraint::Branch& branch, double sign);
 
-/// Of all bodies, at the start.
+/// The poses of all bodies at the start.
 std::vector<kinematics::Pose> start_poses(const Model& model);
 
 /// A joint's side of a closed linkage, and where that is said.
@@ -35,10 +35,10 @@ const char* to_string(scene::AssembleSide side);
 /// The other one of the two.
 scene::AssembleSide other_side(scene::AssembleSide side);
 
-/// The sides that no joint says and the written poses have decided: those of pairs of bodies that are joined to each other, and each by one
-/// joint more to what motors place (the world, bodies that cannot move, what a joint with a motor of kind `motion` or a fixed joint joins
-/// to these, and pairs found before), all three joints revolute, or one of them prismatic, in one plane. As the model stands at its start;
-/// a pair at a dead centre there is left out.
+/// The sides that no joint says and the written poses have decided: pairs of bodies that are joined to each other, and each by one joint
+/// more to a body that motors place (the world, bodies that cannot move, those that a joint with a motor of kind `motion` or a fixed joint
+/// joins to these, and pairs found before), all three joints revolute, or one of them prismatic, in one plane. As the model stands at its
+/// start; a pair at a dead centre there is left out.
 std::vector<JointSide> sides_left_open(const Model& model);
 /// The same as branches, each on its side.
 std::vector<constraint::Branch> branches_left_open(const Model& model);

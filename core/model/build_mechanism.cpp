@@ -175,7 +175,7 @@ private:
         return most;
     }
 
-    // Of a term.
+    // The lever of a term.
     double term_lever(const measure::Measure& m) const {
         double most = model_.dhat;
         for (const int frame : {m.a, m.b}) {
@@ -303,7 +303,7 @@ private:
         add_forces(from.forces, length, from.name);
     }
 
-    // Of a curve in one time step, while its table runs and after.
+    // The largest stride of a curve in one time step, while its table runs and after.
     double largest_stride(const scene::Curve& curve) const {
         constexpr int most_steps = 100000;
         const double h = model_.timestep, end = curve.times.empty() ? 0 : curve.times.back();

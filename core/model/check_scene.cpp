@@ -74,7 +74,7 @@ Errors check_strictly(const scene::Body& body, const std::string& where) {
     return errors;
 }
 
-/// @param closed  Of a volume: is the mesh as closed as its policy wants?
+/// @param closed  Is the mesh as closed as its policy wants? Asked of a volume.
 Errors check_mass(const scene::Body& body, const BodyMeasure& measure, bool closed, const std::string& where) {
     if (body.inertial) {
         const std::string fault = scene::fault_of(*body.inertial);
@@ -126,7 +126,7 @@ Errors check_friction(const scene::Scene& scene) {
     return errors;
 }
 
-/// Of a script: as many poses as times, times that increase from 0, everything finite.
+/// Does a script have as many poses as times, times that increase from 0, and everything finite?
 bool is_usable(const scene::PoseScript& script) {
     if (script.times.size() != script.poses.size()) return false;
     double before = 0;
@@ -319,7 +319,7 @@ void doubt_gravity(const scene::Scene& scene, SceneCheck& check) {
         ", which is hardly meant; is it in mm/s^2? m/s^2 are expected, whatever the unit of lengths (9.81 on the Earth)");
 }
 
-/// Contact across a good part of a body. Of the default nothing is said: it goes with the size of what moves.
+/// Contact across a good part of a body. Nothing is said of the default: it goes with the size of what moves.
 void doubt_contact_distance(const scene::Scene& scene, SceneCheck& check) {
     constexpr double share = 0.05;
     if (!scene.dhat) return;
@@ -337,7 +337,7 @@ void doubt_contact_distance(const scene::Scene& scene, SceneCheck& check) {
                              in_metres(1e-3 * scene::moving_diagonal(scene)) + ")");
 }
 
-/// More than a turn in each time step. (Of motors half a turn is refused: build_mechanism.hpp.)
+/// More than a turn in each time step. (Half a turn of a motor is refused: build_mechanism.hpp.)
 void doubt_turns(const scene::Scene& scene, SceneCheck& check) {
     const auto doubt = [&](const std::string& of, double rate) {
         const double turns = std::abs(rate) * scene.timestep / (2 * M_PI);

@@ -18,7 +18,7 @@ namespace fettle::core::model {
 /// 1 if there is no dynamic body: then nothing touches. A pure function of masses, loads, springs, h, gravity and dhat.
 double choose_kappa(const Model& model);
 
-/// Of the stops of joints and springs [N/m]: kappa; of an area-weighted barrier what kappa would be without areas.
+/// The stiffness of the stops of joints and springs [N/m]: kappa; of an area-weighted barrier what kappa would be without areas.
 /// Contract: kappa of the model is set.
 double choose_stop_stiffness(const Model& model);
 

@@ -18,9 +18,9 @@ inline constexpr double allowed_proximal_share = 1e-6;
 
 /// W = h^2/eps [s^2] of the proximal term 1/2 (eps/h^2) |P - P_t|^2_M = |P - P_t|^2_M / (2 W):
 ///   W = D / (allowed_proximal_share a),   a = min over bodies of (reference load / mass),   D the scene's diagonal.
-/// Its force on a body that moves by dx is m dx/W <= allowed_proximal_share (reference load) dx/D: what stays within the scene in a step is
-/// held, whatever its mass; what is held by nothing would have to move by D. Independent of the time step, which quasi-statics knows for
-/// prescribed motion and friction's slip only.
+/// Its force on a body that moves by dx is m dx/W <= allowed_proximal_share (reference load) dx/D: a body that stays within the scene in a
+/// step is held, whatever its mass; one that nothing holds would have to move by D. Independent of the time step, which quasi-statics knows
+/// for prescribed motion and friction's slip only.
 /// Without loads a = dhat / (40 h^2): that at which choose_kappa's two rules agree. 1 if nothing is free to move.
 /// A constant of a simulation; of all designs of an optimisation that of the scene as written, so that no derivative knows of it.
 double choose_proximal_weight(const Model& model);

@@ -44,7 +44,7 @@ struct Axis {
         const Vector3 n = (c[1] - c[0]).cross(c[2] - c[0]);
         return n.cross(along).norm() <= flat_sine * n.norm();
     }
-    // Of a surface of revolution: of a cylinder, or with a side on a ring.
+    // Is the facet one of a surface of revolution: of a cylinder, or with a side on a ring?
     bool is_revolved(const Corners& c) const {
         bool all = true, ring = false;
         for (std::size_t k = 0; k < 3; ++k) {

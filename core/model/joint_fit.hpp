@@ -3,11 +3,11 @@
 /// that was drawn without one, does not hinder the joint, and is no fault of a drawing that has a joint in their place. A frame that goes
 /// through the wheel which it carries is.
 ///
-/// Explained is what is round about the joint's axis, facet by facet: all that bounds it is flat across the axis, or a facet of a surface
-/// of revolution about it, in the body that it is from; and which is longer along the axis than thick across it, as a pin in its bore, and
-/// not as a shoulder that is sunk into a face. Of a ball joint what is round about its point: facets of spheres about it, but for those of
-/// a mouth or a neck that are round about one axis through the point and have less than half of the area. Fixed and planar joints explain
-/// nothing.
+/// A joint explains what is round about its axis, facet by facet: all that bounds it is flat across the axis, or a facet of a surface of
+/// revolution about it, in the body that it is from; and it is longer along the axis than thick across it, as a pin in its bore, and not as
+/// a shoulder that is sunk into a face. A ball joint explains what is round about its point: facets of spheres about it, but for the facets
+/// of a mouth or a neck that are round about one axis through the point and have less than half of the area. Fixed and planar joints
+/// explain nothing.
 #pragma once
 
 #include <optional>

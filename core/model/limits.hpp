@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Limits of joints and springs. They are closed: what stands at its limit, to within what rounding and assembling make of it, is within.
+/// Limits of joints and springs. They are closed: what stands at its limit, to within the errors of rounding and assembling, is within.
 /// docs/method/joints.md#springs-dampers-stops-friction.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace fettle::core::model {
 
-/// Of dhat: what stands beyond its limit by up to this stands at it.
+/// The share of dhat by which a coordinate may stand beyond its limit and still stand at it.
 inline constexpr double at_limit = 1e-2;
 
 /// How far a value is within a stop's limit, in lengths; less than 0: beyond it [m].

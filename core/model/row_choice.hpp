@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Which rows of a mechanism are solved for where its bodies stand. Of rows that follow from others (two hinges on one axis, a flat loop of
-/// ordinary hinges) some are left out. Which ones can be depends on where the bodies are: those that were kept at the start may come to
-/// depend on one another elsewhere, although all rows together determine as much there as anywhere.
+/// Which constraints of a mechanism are solved for where its bodies stand. Some that follow from others (two hinges on one axis, a flat
+/// loop of ordinary hinges) are left out. Which ones can be depends on where the bodies are: those that were kept at the start may come to
+/// depend on one another elsewhere, although all constraints together determine as much there as anywhere.
 /// docs/method/joints.md#the-step-under-rows.
 #pragma once
 

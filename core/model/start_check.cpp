@@ -98,7 +98,7 @@ bool bounds_a_solid(const PlacedBody& placed) {
     return placed.facts->bounds_a_solid.get([&] { return solids::bounds_a_solid(placed.body->mesh); });
 }
 
-/// Of an open mesh that may be meant as a solid: what it bounds if it is closed, in the body's frame.
+/// The closure of an open mesh that may be meant as a solid: what it bounds if it is closed, in the body's frame.
 const std::optional<solids::Closure>& closure(const PlacedBody& placed) {
     static const std::optional<solids::Closure> none;
     if (is_sheet(*placed.body)) return none;
@@ -309,7 +309,7 @@ std::vector<std::pair<int, int>> close_bodies(const std::vector<PlacedBody>& bod
     return pairs;
 }
 
-/// Of two bodies that a joint joins: what they share, if no joint between them explains it.
+/// The overlap of two bodies that a joint joins, if no joint between them explains it.
 std::optional<std::string> unexplained_overlap(const Model& model, int a, int b, const Messages& messages) {
     const base::Result<JoinedOverlap> found = joined_overlap(model, a, b);
     if (!found || found->explained) return std::nullopt;

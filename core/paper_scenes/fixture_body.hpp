@@ -17,7 +17,7 @@
 
 namespace fettle::core::paper_scenes {
 
-/// What the density of a mesh is per, and what is odd about its volume.
+/// The unit that the density of a mesh is per, and whether its volume is odd.
 struct MeshMass {
     scene::MassKind kind = scene::MassKind::volume;
     bool inside_out = false;  ///< its volume is not positive

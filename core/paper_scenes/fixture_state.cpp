@@ -79,7 +79,7 @@ void continue_body(const files::JsonNode& first, const files::JsonNode& last, sc
     if (body.type != scene::BodyType::dynamic_body) return;
     body.linear_velocity = fixture_vector(last["linear_velocity"].unless_null()).value_or(Vector3::Zero());
     body.angular_velocity = saved_angular_velocity(last, end.rotation);
-    // Of that program's centre of mass, which for an open mesh is another than ours.
+    // The velocity is that of that program's centre of mass, which for an open mesh is another than ours.
     if (const auto centre = scene::centre_of_mass(body.mesh, body.mass_kind)) {
         body.linear_velocity += body.angular_velocity.cross(kinematics::world_position(body.pose, *centre) - end.position);
     }

@@ -195,7 +195,7 @@ private:
         return too_many_facets(facets, "at least ", where);
     }
 
-    // Of an outline; what cannot be drawn is told when it is.
+    // The bound of a solid made from an outline; what cannot be drawn is told when it is.
     using OfOutline = std::function<SolidBound(const OutlineBound&, Sheet&)>;
     Maker of_outline(const JsonNode& node, const std::string& name, OfOutline bound_of) {
         return [profile = profiles_.read(node, name), bound_of = std::move(bound_of)](Sheet& sheet) -> Result<SolidBound> {

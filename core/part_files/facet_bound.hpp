@@ -16,10 +16,10 @@
 namespace fettle::core::part_files {
 
 /// The least number of facets of a part; or, where the part, or anything that it is cut from, asks for more facets than are drawn, an error
-/// that says where, how many and what to do. 0 of what cannot be drawn. Of a sheet of its own, on which outlines are drawn.
+/// that says where, how many and what to do. 0 of what cannot be drawn. It draws outlines on a sheet of its own.
 using FacetBound = std::function<Result<double>(const Sheet& sheet)>;
 
-/// Of the part that is `solid`, in a file that has been read without a fault.
+/// Reads the bound of the part that is `solid`, in a file that has been read without a fault.
 /// @param numbers, profiles  as SolidReader had them
 /// @param named              `solids` of the file
 FacetBound read_facet_bound(PartNumbers& numbers, ProfileReader& profiles, const files::JsonNode& named, const files::JsonNode& solid);

@@ -15,7 +15,7 @@
 /// Numbers: part_numbers.hpp; shapes: profile_reader.hpp, solid_reader.hpp; relations: part_relation.hpp; every key: part.schema.json. What
 /// draws is the part kernel (core/parts): the mesh and its exact derivative with respect to every dimension.
 ///
-/// A file may be anybody's: what it asks for is bounded (depth, copies, facets), and what is beyond ends in an error.
+/// A file may be anybody's: its demands are bounded (depth, copies, facets), and more than that ends in an error.
 #pragma once
 
 #include <functional>
@@ -84,7 +84,7 @@ public:
     /// dimension ("washer/bore"), or the relation's place.
     Errors faults(const std::vector<double>& values) const;
 
-    /// The part at these values. Errors: faults(), those of drawing, with the place of what could not be drawn, a mesh that is no solid.
+    /// The part at these values. Errors: faults(), faults of drawing, with the place of what could not be drawn, a mesh that is no solid.
     /// A pure function; may be called from several threads.
     /// @param facets  facets() if not given.
     Result<parts::DrawnPart> drawn(const std::vector<double>& values, const std::optional<parts::Facets>& facets = {},

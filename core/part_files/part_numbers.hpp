@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The numbers of a part's file (part_file.hpp): what they may name, how they are read, and what they are while the part is drawn.
+/// The numbers of a part's file (part_file.hpp): what they may name, how they are read, and their values while the part is drawn.
 ///     12      "12mm"      "= bore / 2 + clearance"
 /// A number without a unit counts in the file's unit of lengths, in degrees, or is a plain number, as its place wants it.
 #pragma once
@@ -21,7 +21,7 @@ namespace fettle::core::part_files {
 
 using expression::Number;
 
-/// One drawing of a part: the values that its formulas name, and what has been drawn of what has a name.
+/// One drawing of a part: the values that its formulas name, and the named shapes that have been drawn.
 struct Sheet {
     parts::Drawing& drawing;
     std::vector<Number> values;  ///< of dimensions and variables, in the order of PartNumbers::names()
@@ -67,9 +67,9 @@ public:
     PartNumber number(const files::JsonNode& node, base::Dimension dimension) const;
     PartNumber length(const files::JsonNode& node) const { return number(node, base::Dimension::length); }
     PartNumber angle(const files::JsonNode& node) const { return number(node, base::Dimension::angle); }
-    /// Of any dimension; a number without a unit is a plain one.
+    /// A number of any dimension; one without a unit is a plain one.
     PartNumber number_of_any(const files::JsonNode& node) const;
-    /// Of what no dimension changes: how many. Nothing if it is wrong, which the document is told.
+    /// A count, which no dimension changes. Nothing if it is wrong, which the document is told.
     std::optional<int> count(const files::JsonNode& node, int least, int most) const;
     std::optional<PartNumber> parsed(const std::string& text, const files::JsonNode& node) const;
     /// The number that the formula is.

@@ -58,7 +58,7 @@ bool all_hold(const Comparison& comparison, const std::vector<double>& found) {
     return true;
 }
 
-// Of the first side that is no bare number; bare ones take its unit.
+// Compares in the dimension of the first side that is no bare number; bare ones take its unit.
 std::optional<Comparison> read_comparison(const JsonNode& node, const PartNumbers& numbers) {
     const auto text = node.string();
     if (!text) return std::nullopt;

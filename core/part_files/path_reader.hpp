@@ -23,7 +23,7 @@ namespace fettle::core::part_files {
 
 using LoopMaker = std::function<Result<parts::Loop>(Sheet&)>;
 
-/// The object that has the key `path`. @param name  Of the feature that it bounds.
+/// The object that has the key `path`. @param name  The name of the feature that it bounds.
 LoopMaker read_path(const files::JsonNode& node, PartNumbers& numbers, const std::string& name);
 
 /// A list of points.

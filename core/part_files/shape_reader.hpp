@@ -22,7 +22,7 @@ namespace fettle::core::part_files {
 /// Shapes within one another, names looked through, that are drawn; more are a fault.
 inline constexpr int deepest_shape = 200;
 
-/// Of points that are not finite, or farther away than any number of a file.
+/// The error of points that are not finite, or farther away than any number of a file.
 Error out_of_reach(const std::string& feature, const std::string& where);
 
 /// The verb of a shape: which of `known` its object has as a key. Fault, and nothing: none, with what was probably meant; several.

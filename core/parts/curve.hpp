@@ -90,7 +90,7 @@ const Point2& end_of(const Curve& curve);
 
 /// Involute of the circle of radius `base` about the origin, at the roll angle u:
 ///     base (cos(u + turn) + u sin(u + turn), sin(u + turn) - u cos(u + turn)),  at distance base sqrt(1 + u^2) from the origin.
-/// @param mirrored  Of the other hand: u counts clockwise, the point at u = 0 stays at the angle `turn`.
+/// @param mirrored  The other hand: u counts clockwise, the point at u = 0 stays at the angle `turn`.
 /// With u from 0 on it leaves the circle at right angles.
 LawCurve involute(const Number& base, const Number& turn, const Number& from, const Number& to, bool mirrored = false);
 

@@ -23,7 +23,7 @@ struct Overloaded : Visitors... {
 template <class... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
-// Of what is counted; the least where that is no number.
+// The whole number of things that are counted; the least where `count` is no number.
 int whole_number(double count, int least) {
     return static_cast<int>(std::min<double>(most_segments, std::max<double>(least, std::ceil(count))));
 }
@@ -173,7 +173,7 @@ std::array<Bezier, 2> split(const Bezier& b, const Number& u) {
 
 double angle_between(const Vector2& a, const Vector2& b) { return std::abs(std::atan2(cross_of(a, b), a.dot(b))); }
 
-// Of a general curve: bound, or the largest sample, of |d2/du2| over a range of u.
+// The bend of a general curve: bound, or the largest sample, of |d2/du2| over a range of u.
 double bend_over(const Curve& curve, double from, double to, bool& proven) {
     if (const auto* bezier = std::get_if<Bezier>(&curve)) return largest_bend(*bezier);
     const auto& law_curve = std::get<LawCurve>(curve);
@@ -189,7 +189,8 @@ double bend_over(const Curve& curve, double from, double to, bool& proven) {
     return 1.1 * largest;
 }
 
-// Of a law's curve without a closed form: bound of its distance from its facets, `side` as it runs; nothing where it has none.
+// The chord deviation of a law's curve without a closed form: bound of its distance from its facets, `side` as it runs; nothing where it
+// has none.
 std::optional<ChordDeviation> law_deviation(const Curve& curve, int count) {
     const auto* law_curve = std::get_if<LawCurve>(&curve);
     if (law_curve == nullptr || law_curve->law->largest_bend) return std::nullopt;

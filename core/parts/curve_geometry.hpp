@@ -59,7 +59,7 @@ struct Cut {
     Number parameter = 0;
     Point2 point;
 };
-/// The part from one cut to a later one. Of a whole circle from a cut on round to `to`, whose u may exceed 1.
+/// The part from one cut to a later one. A whole circle goes from a cut on round to `to`, whose u may exceed 1.
 Curve between(const Curve& curve, const Cut& from, const Cut& to);
 
 /// The curve at a distance to its left (right if negative); nothing if an arc has no radius left. Its u is that of the curve.

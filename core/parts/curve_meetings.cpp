@@ -112,8 +112,8 @@ bool find_crossing(const Curve& a, const Curve& b, double& u, double& v, double 
     return (p.position - q.position).norm() <= tolerance && u >= -slack_u && u <= 1 + slack_u && v >= -slack_v && v <= 1 + slack_v;
 }
 
-// A root whose derivative is that of one step of Newton's method: what depends on a dimension moves it as the implicit function theorem
-// says. Its value stays as it was found: where the curves nearly touch, a step from what rounding has left would lead far away.
+// A root with the derivative of one step of Newton's method: what depends on a dimension moves it as the implicit function theorem says.
+// Its value stays as it was found: where the curves nearly touch, a step from what rounding has left would lead far away.
 Meeting recorded(const Curve& a, const Curve& b, double u, double v) {
     const CurvePoint p = at(a, u), q = at(b, v);
     Matrix2 j;

@@ -14,7 +14,7 @@ struct Meeting {
 };
 
 /// Every point that two curves have in common within `tolerance` [m], ends that lie on the other curve included: there the point is that
-/// end. Of stretches in common the ends are given.
+/// end. The ends of stretches in common are given.
 std::vector<Meeting> meetings(const Curve& a, const Curve& b, double tolerance);
 
 /// Crossings of the whole line and whole circles of which lines and arcs are parts, and of general curves as they are; u may be outside of

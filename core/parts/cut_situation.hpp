@@ -17,10 +17,10 @@ TriangleCorners corners_of(const geometry::Mesh& mesh, int triangle);
 /// shells that do not meet the other mesh are inside of it.
 std::vector<int> situation_of(const geometry::Mesh& a, const geometry::Mesh& b);
 
-/// Of meshes that do not meet: would they, but for rounding?
+/// Would meshes that do not meet do so, but for rounding?
 bool touch(const geometry::Mesh& a, const geometry::Mesh& b, double rounding);
 
-/// Of meshes that do not meet: whole shells.
+/// The whole shells of meshes that do not meet which make up their combination.
 SolidCut shells_of(const geometry::Mesh& a, const geometry::Mesh& b, Combination combination);
 
 }  // namespace fettle::core::parts

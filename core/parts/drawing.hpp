@@ -47,7 +47,7 @@ public:
     expression::Tape& tape() { return tape_; }
     const expression::Tape& tape() const { return tape_; }
 
-    /// Of what is drawn from here on and has none of its own. What is cut away is drawn with `opposite` lean.
+    /// The facets of all that is drawn from here on and has none of its own. What is cut away is drawn with `opposite` lean.
     Facets facets;
 
     /// What something is made of, without a choice: a change if it was kept and is another.
@@ -61,14 +61,14 @@ public:
     std::vector<int> decision(const std::string& what, const std::function<bool(const std::vector<int>&)>& holds,
                               const std::function<std::vector<int>()>& decide);
 
-    /// Of how many facets something is made: as many as were kept, whatever the dimensions have become since, else what `choose` returns.
-    /// Where counts are compared, a choice that is another than what was kept is told: other_counts().
+    /// The number of facets that something is made of: as many as were kept, whatever the dimensions have become since, else what `choose`
+    /// returns. Where counts are compared, a choice that is another than what was kept is told: other_counts().
     int count(const std::string& what, const std::function<int()>& choose);
 
     const Structure& structure() const { return made_; }
     const Structure& kept() const { return kept_; }
-    /// What could not be kept, a sentence each: the triangles are not those of the drawing whose structure was handed in. Empty where
-    /// none was.
+    /// A sentence for each thing that could not be kept: the triangles are not those of the drawing whose structure was handed in. Empty
+    /// where none was.
     const std::vector<std::string>& changes() const { return changes_; }
     /// Kept counts of facets that a drawing without a structure would choose otherwise: "segments of `ball`: 21, not 20". Empty where they
     /// are not compared.

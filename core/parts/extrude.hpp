@@ -11,7 +11,7 @@ namespace fettle::core::parts {
 
 /// Walls stand for planes and cylinders, with chamfers for planes and cones; other curves for extruded ones.
 /// Errors: an empty profile, heights out of order ("`collar` has no height: 0 mm"), facets that cross each other (the number of segments is
-/// too small for what is near), a chamfer larger than what it is cut from.
+/// too small for what is near), a chamfer larger than the solid it is cut from.
 Result<Solid> extruded(Drawing& drawing, const Profile& profile, const Number& from, const Number& to, const End& lower = {},
                        const End& upper = {});
 

@@ -16,7 +16,7 @@ enum class Lean {
     within,  ///< the mesh lies within the part: pins inscribed, holes circumscribed. For what is cut away from a part that is covered
     through  ///< vertices on the true surface
 };
-/// Of what is cut away from a part with `lean`: cover <-> within.
+/// The lean of what is cut away from a part with `lean`: cover <-> within.
 Lean opposite(Lean lean);
 
 struct Facets {
@@ -28,7 +28,7 @@ struct Facets {
     Lean lean = Lean::cover;
 };
 
-/// Of one curve or turn. What would take more is drawn with so many, and its chord is not kept: who draws, refuses that.
+/// The most segments of one curve or turn. What would take more is drawn with so many, and its chord is not kept: who draws, refuses that.
 inline constexpr int most_segments = 100'000;
 
 /// Segments for an arc of `radius` [m] that turns by `angle` [rad]: the least number that keeps the chord, or by Facets::segments. At least

@@ -24,7 +24,7 @@ inline std::string place(const Vector3& p) {
     return "(" + millimetres(p.x()) + ", " + millimetres(p.y()) + ", " + millimetres(p.z()) + ")";
 }
 
-/// Of a curve or a turn, quoted, that takes as many segments as are drawn of one, or more.
+/// The fault of a curve or a turn, quoted, that takes as many segments as are drawn of one, or more.
 inline base::Error too_many_segments(const std::string& feature, const std::string& quoted, const Facets& facets) {
     return {base::ErrorCode::out_of_range, feature,
             quoted + " would have " + std::to_string(most_segments) + " segments or more" +

@@ -17,7 +17,7 @@ struct ChordDeviation {
     int side = 0;         ///< 1, -1: the curve turns left, right all along as its parameter rises, and is on one side of its chords
 };
 
-/// Of `count` even steps between the two parameters. Contract: low < high, count > 0.
+/// The deviation of the chords of `count` even steps between the two parameters. Contract: low < high, count > 0.
 ChordDeviation chord_deviation(const Law& law, double low, double high, int count);
 
 }  // namespace fettle::core::parts

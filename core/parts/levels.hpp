@@ -19,7 +19,7 @@ struct Level {
 /// Errors: as of extruded.
 Result<std::vector<Level>> levels_of(Drawing& drawing, const Layer& layer);
 
-/// Of a layer, or else of its profile.
+/// The name of a layer, or else of its profile.
 const std::string& name_of(const Layer& layer);
 
 }  // namespace fettle::core::parts

@@ -80,7 +80,7 @@ Loop circle(const Point2& centre, const Number& radius, std::string feature = {}
 /// Sides along x and y, from its lower left corner.
 Loop rectangle(const Point2& corner, const Number& width, const Number& height, std::string feature = {});
 Loop polygon(const std::vector<Point2>& corners, std::string feature = {});
-/// Of round ends about a and b: the outline of a slot or a link. Contract: a and b differ, radius > 0.
+/// The outline of a slot or a link, with round ends about a and b. Contract: a and b differ, radius > 0.
 Loop slot(const Point2& a, const Point2& b, const Number& radius, std::string feature = {});
 
 /// Every corner of a loop rounded or chamfered alike, or those that `which` says.

@@ -7,7 +7,7 @@
 namespace fettle::core::parts {
 namespace {
 
-// Of the fraction k / n of the first eighth, so that points mirrored in the diagonal have the same two numbers.
+// The point at the fraction k / n of a turn, by the first eighth, so that points mirrored in the diagonal have the same two numbers.
 Vector2 first_quarter(int k, int n) {
     const double step = 2 * std::numbers::pi / n;
     if (8 * k == n) return {std::numbers::sqrt2 / 2, std::numbers::sqrt2 / 2};

@@ -47,8 +47,8 @@ inline Vector3 value(const Point3& a) { return {a.x.value, a.y.value, a.z.value}
 inline Point2 constant(const Vector2& a) { return {a.x(), a.y()}; }
 inline Point3 constant(const Vector3& a) { return {a.x(), a.y(), a.z()}; }
 
-/// (cos angle, sin angle). Of a constant angle exact at multiples of 90 degrees, and symmetric about the axes and diagonals up to the
-/// rounding of the angle.
+/// (cos angle, sin angle). With a constant angle it is exact at multiples of 90 degrees, and symmetric about the axes and diagonals up to
+/// the rounding of the angle.
 Point2 direction(const Number& angle);
 /// The same of the whole circle's fraction k / n, symmetric to the bit where 4 divides n.
 Point2 direction(int k, int n);

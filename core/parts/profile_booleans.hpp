@@ -22,8 +22,8 @@ Result<Profile> intersection(const Profile& a, const Profile& b);
 Result<Profile> polar_repeat(const Profile& profile, int count, const Point2& about = {});
 Result<Profile> linear_repeat(const Profile& profile, int count, const Point2& step);
 
-/// Everything within `distance` of the figure (> 0, corners become arcs), or what is left when everything within -distance of what is not
-/// the figure is taken away (< 0). Exact for lines and arcs. Of other curves it is the curve through the offset points, whose tangents are
+/// Everything within `distance` of the figure (> 0, corners become arcs), or what is left when everything within -distance of its outside
+/// is taken away (< 0). Exact for lines and arcs. The offset of another curve is the curve through the offset points, whose tangents are
 /// exact. Parts that vanish are left out: a figure that vanishes altogether is empty.
 /// Errors: as above.
 Result<Profile> offset(const Profile& profile, const Number& distance);

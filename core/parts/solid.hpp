@@ -16,7 +16,7 @@ namespace fettle::core::parts {
 
 using geometry::Deviation;
 
-/// Of vertices whose formulas are some tens of operations long, where the largest coordinate is so large [m].
+/// The rounding of vertices whose formulas are some tens of operations long, where the largest coordinate is so large [m].
 inline double usual_rounding(double largest) { return 64 * 0x1p-52 * largest; }
 
 struct Solid {

@@ -173,7 +173,7 @@ Deviation combined_deviation(const Deviation& a, const Deviation& b, Combination
         out.add(b);
         return out;
     }
-    // Cut away, what is beyond the tool's mesh is missing from the part, and what the mesh has too much of is left.
+    // In a subtraction, the tool's material beyond its mesh is missing from the part, and the mesh's excess over the tool is left.
     const bool subtract = combination == Combination::subtract;
     const double b_out = subtract ? b.in : b.out, b_in = subtract ? b.out : b.in;
     const bool b_out_is_proven = subtract ? b.in_is_proven : b.out_is_proven, b_in_is_proven = subtract ? b.out_is_proven : b.in_is_proven;
@@ -299,7 +299,7 @@ Result<Solid> intersection(Drawing& drawing, const Solid& a, const Solid& b) { r
 
 namespace {
 
-// The order does not matter to what comes out, but to what stands in between, which may be no solid: it is then tried later.
+// The result does not depend on the order, but what stands in between does, and may be no solid: the cut is then tried later.
 bool may_work_later(const Errors& errors) { return can_cut_solids() && errors.size() == 1 && errors[0].code == ErrorCode::unsupported; }
 
 Result<Solid> one_after_another(Drawing& drawing, Solid out, std::vector<Solid> others, Combination combination) {

@@ -21,13 +21,13 @@ namespace fettle::core::parts {
 /// Whether this build can cut solids.
 bool has_solid_booleans();
 
-/// What is flush to rounding is made flush (aligned_solids.hpp), and flat faces stay one face (merged_faces.hpp): cuts of cuts of what
-/// stands on a grid stay on it. Errors: unsupported (no CGAL; a surface that touches itself along an edge); an empty result; corners that
+/// Faces that are flush to rounding are made flush (aligned_solids.hpp), and flat faces stay one face (merged_faces.hpp): cuts of cuts of
+/// solids on a grid stay on it. Errors: unsupported (no CGAL; a surface that touches itself along an edge); an empty result; corners that
 /// are not finite, and such as rounding does not tell from each other.
 Result<Solid> united(Drawing& drawing, const Solid& a, const Solid& b);
 Result<Solid> difference(Drawing& drawing, const Solid& a, const Solid& b);
 Result<Solid> intersection(Drawing& drawing, const Solid& a, const Solid& b);
-/// Of many, in an order in which what stands in between is a solid, too, if one is found.
+/// The same of many, in an order in which what stands in between is a solid, too, if one is found.
 Result<Solid> united(Drawing& drawing, const std::vector<Solid>& solids);
 Result<Solid> difference(Drawing& drawing, const Solid& a, const std::vector<Solid>& cut);
 Result<Solid> intersection(Drawing& drawing, const std::vector<Solid>& solids);

@@ -125,7 +125,7 @@ std::optional<Operand> operand_of(const geometry::Mesh& mesh, int first_origin, 
     return out;
 }
 
-// What CGAL finds, before it changes the meshes, and what becomes of faces.
+// A record of what CGAL finds, before it changes the meshes, and of where the faces end up.
 struct Record {
     const geometry::Mesh *mesh_a, *mesh_b;
     const Operand *a, *b;
@@ -242,7 +242,7 @@ bool touches_itself(const std::array<double, 2>& a, const std::array<double, 2>&
     return changes > 2;
 }
 
-// Of two meshes that have been cut by each other.
+// The error about two meshes that have been cut by each other.
 Error no_solid(const ExactMesh& a, const ExactMesh& b, Combination combination) {
     std::map<std::pair<Kernel::Point_3, Kernel::Point_3>, Halfedge> of_b;
     for (const Halfedge h : b.halfedges()) of_b.emplace(std::pair(b.point(b.source(h)), b.point(b.target(h))), h);

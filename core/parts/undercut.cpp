@@ -58,7 +58,7 @@ Bend bend_between(const Curve& curve, Place from, Place to, int side) {
     return out;
 }
 
-// Of a curve, towards its left (side 1) or right (side -1).
+// The sharpest bend of a curve, towards its left (side 1) or right (side -1).
 Bend sharpest_bend(const Curve& curve, int side) {
     Bend out;
     if (std::holds_alternative<Line>(curve)) return out;

@@ -98,7 +98,7 @@ base::Errors check_times(const PosesTable& table) {
     return errors;
 }
 
-// Of the reference point, from that of the file's frame.
+// The pose of the reference point, from that of the file's frame.
 Pose of_reference_point(const Pose& file, const model::Body& body) {
     return {file.rotation, kinematics::world_position(file, body.reference_point)};
 }

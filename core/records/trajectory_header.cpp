@@ -50,7 +50,7 @@ std::vector<int> indices(const JsonNode& node, std::size_t columns, Eigen::Index
     return out;
 }
 
-// Of a triangle or an edge whose corners are not distinct nothing can be said.
+// Nothing can be said of a triangle or an edge whose corners are not distinct.
 bool are_distinct(const std::vector<int>& list, std::size_t columns, const JsonNode& node) {
     for (std::size_t i = 0; i < list.size(); i += columns) {
         const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The kinds of joint, by the `type` that a scene file calls them: what the reader takes, and what lists show.
+/// The kinds of joint, by the `type` that a scene file calls them: the reader takes them, and lists show them.
 #pragma once
 
 #include <string_view>

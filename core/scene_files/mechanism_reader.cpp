@@ -17,7 +17,7 @@ using files::JsonNode;
 
 constexpr std::string_view force_keys[] = {"stiffness", "rest", "preload", "damping", "friction", "limits"};
 
-// Of a coordinate: what its numbers are in.
+// The unit of a coordinate's numbers.
 struct CoordinateUnit {
     bool is_angle = false;
     double length = 1;
@@ -110,7 +110,7 @@ private:
         return {};
     }
 
-    // Of a body's file frame; the numbers of its node, with what they follow from.
+    // A body's file frame: the numbers of its node, with what they follow from.
     Frame frame_of(const std::string& body) const {
         Frame frame;
         for (const scene::Body& b : bodies_) {
@@ -308,7 +308,7 @@ private:
         return nullptr;
     }
 
-    // Of a joint by name; a length where there is none.
+    // The unit of a joint's coordinate, by the joint's name; a length where there is no such joint.
     CoordinateUnit unit_at(const std::string& joint) const {
         const scene::Joint* found = find_joint(joint);
         return found ? unit_of(found->kind) : CoordinateUnit{false, unit_};

@@ -43,8 +43,8 @@ public:
     expression::Number number(const files::JsonNode& node, double value) const;
     Number3 vector(const files::JsonNode& node, const Vector3& value) const;
 
-    /// What a name of the file's formulas stands for at present, if there is one: its number, what quantity it is, and whether it follows
-    /// from an input, which a design moves.
+    /// What a name of the file's formulas stands for at present, if there is one: its number, its quantity, and whether it follows from an
+    /// input, which a design moves.
     struct Named {
         expression::Number number;
         expression::DimensionPowers dimension;

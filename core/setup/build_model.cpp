@@ -99,10 +99,10 @@ Friction build_friction(const scene::Scene& scene, std::vector<Body>& bodies) {
     return friction;
 }
 
-// What a solve may leave of the forces, well below what the integrator's own error of a step is of them: a half for implicit Euler, a
-// twelfth times the angle or phase of the step for those of second order. What is left adds up over the steps, and of a linkage it is a
-// share of what its joints carry, beside which the torque that turns it may be small: with 1e-6, Andrews' squeezer turned 8e-6 rad too far
-// however short the step (tests/scenes/andrews_squeezer_test.cpp). Newmark has no joints.
+// The share of the forces that a solve may leave, well below the integrator's own error of a step: a half for implicit Euler, a twelfth
+// times the angle or phase of the step for those of second order. The remainder adds up over the steps, and of a linkage it is a share of
+// what its joints carry, beside which the torque that turns it may be small: with 1e-6, Andrews' squeezer turned 8e-6 rad too far however
+// short the step (tests/scenes/andrews_squeezer_test.cpp). Newmark has no joints.
 double default_accuracy(scene::Integrator integrator) {
     switch (integrator) {
         case scene::Integrator::implicit_euler:
@@ -180,7 +180,7 @@ base::Result<Model> build(const scene::Scene& scene, const BuildOptions& options
     model.max_newton_iterations = scene.max_newton_iterations;
     const double diagonal = scene::bounding_diagonal(scene);
     model.diagonal = diagonal > 0 ? diagonal : 1;
-    // Of what moves: a ground plane must not decide how close things come to one another.
+    // Only what moves counts: a ground plane must not decide how close things come to one another.
     const double moving = scene::moving_diagonal(scene);
     const double size = moving > 0 ? moving : model.diagonal;
     model.dhat = scene.dhat.value_or(1e-3 * size);

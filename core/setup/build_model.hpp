@@ -28,9 +28,9 @@ struct BuildOptions {
 /// of other bodies too where they have one by their MassKind, else the middle of their box; or mass and centre are given (Body::inertial).
 /// Inertia of wires and points: a straight wire has none about itself. An isotropic second moment is added, the least that makes the
 /// inertia about every axis 1e-8 m r^2 (r: the largest |X|, at least dhat), which keeps the Newton matrix definite; a body that has this
-/// much already gets nothing. Friction: `friction.mu` by pairs of what bodies rub with (material, own coefficient); equal coefficients stay
-/// exactly what they are. kappa may adapt unless the scene or the options give it. dhat and velocity_tolerance, where the scene does not
-/// say: 1e-3 and 1e-2 (per second) of the diagonal of the box of what is not static at the start, or of everything where all is static.
+/// much already gets nothing. Friction: `friction.mu` by pairs, each of a material or a body's own coefficient; equal coefficients stay
+/// exactly as they are. kappa may adapt unless the scene or the options give it. dhat and velocity_tolerance, where the scene does not say:
+/// 1e-3 and 1e-2 (per second) of the diagonal of the box of all that is not static at the start, or of everything where all is static.
 ///
 /// @return the model, with `warnings` (meshes: check_scene.hpp; the start: start_check.hpp), or every fault found: `where` names body, mesh
 /// and element.

@@ -53,7 +53,7 @@ std::vector<Bearing> bearings_of(const RoundSurfaces& round) {
     return out;
 }
 
-// Why two sides take facets: what they leave each other, and what they would need.
+// Why two sides take facets: the room that they leave each other, and the room that they would need.
 struct Narrow {
     double has = 0, needs = 0;
     bool is_play = true;  // else the gap at the start

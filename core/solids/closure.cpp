@@ -94,7 +94,7 @@ std::optional<Closure> closure_of(const geometry::Mesh& mesh) {
             out.reach = std::max(out.reach, distance_to_segment(opening.centre, mesh.vertices.col(edge[0]), mesh.vertices.col(edge[1])));
         }
     }
-    // Not by the signed volume: that of parts, or of faces, that are turned over cancels what is there.
+    // Not by the signed volume: parts, or faces, that are turned over cancel what is there.
     const auto parts = connected_parts(out.triangles, static_cast<std::size_t>(out.vertices.cols()));
     if (std::all_of(parts.begin(), parts.end(), [&](const auto& part) { return is_flat(out.vertices, part); })) return std::nullopt;
     const double size = (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).norm();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// What an open mesh bounds once its openings have lids: each is closed by a fan to the middle of its edge, as for its mass
-/// (geometry/mass_moments.hpp). A guess at what was meant, and so never a proof that something is inside; but what stays outside of it, and
-/// does not come through a lid, is not inside of what was meant to be closed.
+/// (geometry/mass_moments.hpp). It is a guess at what was meant, and so never a proof that something is inside; but a thing that stays
+/// outside of it, and does not come through a lid, is not inside of the body that was meant to be closed.
 #pragma once
 
 #include <optional>

@@ -124,7 +124,8 @@ private:
         if (findings_.errors.empty()) refuse("mesh", "is open too far to be capped");
     }
 
-    /// Of the lesser of the mass as it is told and as it is meant, if the volume told is too much by `over` or too little by `under`.
+    /// The share of the lesser of the mass as it is told and as it is meant, if the volume told is too much by `over` or too little by
+    /// `under`.
     std::string share(double over, double under) const {
         if (!(over < volume_)) return unbounded;
         return "which changes its mass by at most " + base::percent(std::min(std::max(over / (volume_ - over), under / volume_), 1e6)) +

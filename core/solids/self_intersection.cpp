@@ -141,7 +141,7 @@ private:
 
     bool cross(int t, int u) const { return intersect_improperly(mesh_.vertices, mesh_.triangles[t], mesh_.triangles[u]); }
 
-    /// Of triangles with a vertex in common; some twice.
+    /// Pairs of triangles with a vertex in common; some twice.
     TrianglePairs of_neighbours() {
         const VertexCorners corners(mesh_);
         return base::ordered_reduce(
@@ -172,7 +172,7 @@ private:
         }
     }
 
-    /// Of triangles without a common vertex.
+    /// Pairs of triangles without a common vertex.
     TrianglePairs of_others() {
         std::vector<geometry::Box> boxes;
         std::vector<int> triangles;

@@ -13,7 +13,7 @@
 namespace fettle::core::solids {
 namespace {
 
-/// Of two shells that do not cross: is `inner` within `outer`? Asked of a vertex that is not on `outer`; all others are on the same side.
+/// Is `inner` within `outer`, if the two do not cross? Asked of a vertex that is not on `outer`; all others are on the same side.
 bool lies_within(const Shell& inner, const Shell& outer, const Matrix3X& vertices) {
     for (const int vertex : inner.vertices) {
         if (std::binary_search(outer.vertices.begin(), outer.vertices.end(), vertex)) continue;
@@ -23,7 +23,7 @@ bool lies_within(const Shell& inner, const Shell& outer, const Matrix3X& vertice
     return false;
 }
 
-/// Of the triangles of a shell, in order. @param last_shell  per vertex the last shell that it was found in.
+/// The vertices of the triangles of a shell, in order. @param last_shell  per vertex the last shell that it was found in.
 std::vector<int> distinct_vertices(const std::vector<geometry::Triangle>& triangles, std::vector<int>& last_shell, int shell) {
     std::vector<int> out;
     for (const geometry::Triangle& t : triangles) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The shells of a mesh (its edge-connected parts) and which lies within which: what orientation is judged by, and what makes a solid: a
-/// shell with its cavities.
+/// The shells of a mesh (its edge-connected parts) and which lies within which: orientation is judged by it, and solids are made of it,
+/// each a shell with its cavities.
 #pragma once
 
 #include <vector>
@@ -28,7 +28,7 @@ struct Shell {
 std::vector<Shell> shells_of(const geometry::Mesh& mesh);
 
 /// The solids of a mesh. A closed shell turned inwards right within a closed one turned outwards is that one's cavity; every other shell is
-/// a solid of its own: what lies in a cavity, a solid within a solid, what is open.
+/// a solid of its own: one that lies in a cavity, a solid within a solid, an open one.
 struct SolidsOfMesh {
     std::vector<int> of_shell;  ///< from 0, in the order of their first triangles
     int count = 0;

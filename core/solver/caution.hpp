@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Levenberg's shift of the Hessian, for solves whose inertia is too small to make it definite (quasi-statics): how much of the inertia is
-/// added for the next iteration. It begins at a given value, rises where steps had to be cut, and falls as they do what they promise, so
-/// that the way is that of a heavily damped motion, and the last steps are Newton's. docs/method/solver.md#when-a-solve-has-converged.
+/// added for the next iteration. It begins at a given value, rises where steps had to be cut, and falls as they keep their promise, so that
+/// the way is that of a heavily damped motion, and the last steps are Newton's. docs/method/solver.md#when-a-solve-has-converged.
 #pragma once
 
 namespace fettle::core::solver {
@@ -26,8 +26,8 @@ public:
         bool arrived = true;    ///< nothing that is prescribed remains
     };
     /// Cut below a quarter: the curvature over the fraction, at least fourfold. Whole: 1/100 where the value fell as predicted or by more,
-    /// 1/10 or 1/2 where less so; below negligible_shift 0. Until what is prescribed has arrived, the initial one: what is pushed must not
-    /// be heavy.
+    /// 1/10 or 1/2 where less so; below negligible_shift 0. Until prescribed coordinates have arrived, the initial one: what is pushed must
+    /// not be heavy.
     void adapt(const Outcome& outcome);
 
     /// After a search that found no step: is a larger shift worth another one? At most six in a row.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The message about a step that could not be solved: which body is held, by what, how close, and what stiffness would do.
+/// The message about a step that could not be solved: which body is held, by which others, how close, and what stiffness would do.
 #pragma once
 
 #include <string>

@@ -156,8 +156,8 @@ private:
     // Not with joints, which straight ways leave.
     bool may_coast() const { return workspace_.slides && !caution_.is_on() && !workspace_.rows && options_.start.empty(); }
 
-    // From where a step starts friction holds what slides, and Newton steps are as short as what it takes to tell sticking from sliding:
-    // half a dozen of them go by before it slides again. Bodies that coast do not have to get going.
+    // From the start of a step friction holds what slides, and Newton steps are no longer than it takes to tell sticking from sliding: half
+    // a dozen of them go by before it slides again. Bodies that coast do not have to get going.
     void begin_where_bodies_coast() {
         std::vector<ChartPoint> points = coasted(problem_, targets_, workspace_.dofs());
         if (points.empty()) return;
@@ -207,8 +207,8 @@ private:
         return true;
     }
 
-    // The first lag of a cautious step is that of a point on the way, which is no solution of anything: a derivative is that of normal
-    // forces which are those of the end. Then the last two ends tell whether they are.
+    // The first lag of a cautious step is that of a point on the way, which is no solution of anything: a derivative needs the normal
+    // forces of the end. Then the last two ends tell whether the lag has these.
     bool is_fixed_point() const {
         const auto& ends = result_.round_ends;
         return result_.friction_rounds >= most_settling_rounds ||
@@ -261,9 +261,9 @@ private:
         return range;
     }
 
-    // Is this share of a body's forces still too much to be unbalanced when a whole Newton step with this motion has been taken? Of a stiff
-    // force the step leaves about as much as it was out of balance times its length. Friction of a joint that is about to slide has next to
-    // no stiffness left: what the step leaves is the bend of its law, however little it was out of balance.
+    // Is this share of a body's forces still too much to be unbalanced when a whole Newton step with this motion has been taken? The step
+    // leaves about as much of a stiff force as it was out of balance times its length. Friction of a joint that is about to slide has next
+    // to no stiffness left: what the step leaves is the bend of its law, however little it was out of balance.
     bool leaves_too_much(double share, double motion) const {
         const double length = std::min(1.0, motion / quadratic_range());
         return options_.accuracy > 0 && !(std::max(share, joints_rub_ ? length : 0) * length <= options_.accuracy);
@@ -283,7 +283,7 @@ private:
         return ++since_least_share_ >= tries;
     }
 
-    // Where contact is far stiffer than what is left free under joints, what the usual solves leave out is what keeps the iteration going.
+    // Where contact is far stiffer than the freedoms that joints leave, the errors that the usual solves leave keep the iteration going.
     void refine_fully() {
         workspace_.rows->refine_fully(true);
         refines_fully_ = true;

@@ -3,7 +3,7 @@
 /// intersections. docs/method/solver.md.
 ///
 /// Prescribed coordinates are equality constraints y_k = target, met exactly at the solution, or to 1e-9 of the scene's size where
-/// contact leaves no more (they stall, or what remains is all the gap there is). Each iteration moves them by what remains, and the free
+/// contact leaves no more (they stall, or what remains is all the gap there is). Each iteration moves them by the remainder, and the free
 /// ones by the Newton step given that motion: dy_f = -H_ff^-1 (g_f + H_fk dy_k); by a share of what remains where contact stops larger
 /// ones. The step length is the longest that CCD allows, then backtracked on the exact penalty E + nu |remaining| (Nocedal and Wright,
 /// Numerical Optimization, section 18.4). The exact Hessian is used wherever it is positive definite, the projected one elsewhere, shifted

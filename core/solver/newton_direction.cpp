@@ -40,14 +40,14 @@ ChartDerivatives derivatives(const StepProblem& problem, const Iterate& at, Hess
     return d;
 }
 
-// Of the Lagrangian, with the multipliers of the last solve.
+// Adds the constraint forces of the Lagrangian, with the multipliers of the last solve.
 void add_row_forces(const model::Model& model, const NewtonWorkspace& workspace, ChartDerivatives& d) {
     if (!workspace.rows) return;
     const std::vector<double> magnitude = workspace.rows->add_forces(model, d.gradient);
     for (std::size_t i = 0; i < magnitude.size(); ++i) d.force_magnitude[i] += magnitude[i];
 }
 
-// Of one body: its free forces, squared, and what they are measured by.
+// The share of one body: its free forces, squared, and what they are measured by.
 struct ResidualShare {
     double square = 0, magnitude = 0;
 };
@@ -113,7 +113,7 @@ bool is_finite(const ChartDerivatives& d, const linear::FreeDofs& dofs) {
     return finite;
 }
 
-// Of body i.
+// The inertia of body i.
 Matrix6 inertia_in_chart(const StepProblem& problem, const Iterate& at, std::size_t i) {
     Matrix6 to_tangent = Matrix6::Identity();
     to_tangent.bottomRightCorner<3, 3>() = kinematics::left_jacobian(at.points[i].rotation_vector);
@@ -230,8 +230,8 @@ void solve_for_step(const ChartDerivatives& d, NewtonWorkspace& workspace, Direc
     scatter(workspace.dofs(), workspace.system.solve(rhs).y, direction.step);
 }
 
-// Of a body's step, what it may take of it: a nearly singular Hessian sends bodies round the world, where every search is dear and nothing
-// is gained.
+// The share of its step that a body may take: a nearly singular Hessian sends bodies round the world, where every search is dear and
+// nothing is gained.
 double allowed_share(const StepProblem& problem, const Direction& direction, std::size_t i) {
     const Matrix34 stride = problem.pose_hat[i] - pose_matrix(problem.poses_t0[i]);
     const Vector6 &step = direction.step[i], &remaining = direction.remaining[i];

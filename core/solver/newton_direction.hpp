@@ -66,7 +66,7 @@ double motion_of(const model::Body& body, const Vector6& step);
 /// What is left to solve at a point, by first derivatives alone.
 struct Remainder {
     std::vector<double> motion;      ///< [k] bound on the motion of the points of bodies[k] in the step that it would make if its inertia
-                                     ///< were all that stands against what is left of the forces: what else is stiff makes it shorter [m];
+                                     ///< were all that stands against what is left of the forces: other stiffness makes it shorter [m];
                                      ///< infinity without inertia, 0 where nothing is free
     std::vector<double> unbalanced;  ///< [k] Direction::unbalanced, here
     double residual = 0;             ///< NewtonResult::residual

@@ -30,7 +30,7 @@ struct KnownContacts {
     contact::ContactSet contacts;
 };
 
-/// What is worth keeping from one solve to the next; what a solve comes to depends on it by no more than its tolerance.
+/// Things worth keeping from one solve to the next; the result of a solve depends on them by no more than its tolerance.
 struct NewtonWorkspace {
     linear::LinearSystem system;          ///< its symbolic factor
     ccd::Candidates candidates;           ///< near where the last solve ended

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// How prescribed coordinates are driven to their targets where contact is in the way: the share of what remains that an iteration takes,
-/// the weight nu of what remains in the exact penalty E + nu |remaining| that the search descends on (newton.hpp), and whether the way
+/// the weight nu of the remainder in the exact penalty E + nu |remaining| that the search descends on (newton.hpp), and whether the way
 /// is blocked.
 #pragma once
 
@@ -8,7 +8,7 @@ namespace fettle::core::solver {
 
 class PrescribedDrive {
 public:
-    /// Share of what remains for the next iteration to take, in [0, 1]; 0 while what is pushed is given time.
+    /// Share of the remainder for the next iteration to take, in [0, 1]; 0 while what is pushed is given time.
     double share() const { return resting_ > 0 ? 0 : share_; }
     /// nu, in units of the potential per metre.
     double penalty() const { return penalty_; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Do energy and momentum balance over a simulation? What they changed by against what forces did: what is left is the error of the time
-/// integration and of the solver together, measured against what was there and was supplied. docs/method/energy.md#integrators.
+/// Do energy and momentum balance over a simulation? Their change is compared with the work and the impulse of the forces: the difference
+/// is the error of the time integration and of the solver together, measured against what was there and was supplied.
+/// docs/method/energy.md#integrators.
 #pragma once
 
 #include <string>
@@ -16,9 +17,9 @@ struct Balance {
     double work = 0;                          ///< by motors, prescribed coordinates, torques and forces that have no potential [J]
     double dissipated = 0;                    ///< by friction and dampers [J]
     double energy_error = 0;                  ///< energy_end - energy_start - work + dissipated: > 0 comes from nowhere, < 0 is lost [J]
-    /// What was there and was supplied, none of it made by the time integration: kinetic and stored energy at the start, what gravity and
-    /// constant forces gave up of theirs at most, what was supplied while it was positive, and what their work is over the contact
-    /// distance, within which contact does not tell energies [J].
+    /// The energy that was there and was supplied, none of it made by the time integration: kinetic and stored energy at the start, the
+    /// most that gravity and constant forces gave up of theirs, the supply while it was positive, and the work of gravity and those forces
+    /// over the contact distance, within which contact does not tell energies [J].
     double energy_available = 0;
     double energy_rounding = 0;  ///< of the energies that energy_error is the difference of [J]
     /// -energy_error without the steps in which a drive starts, stops or jumps (StepOutputs::drive_jumps) and the three after them [J].

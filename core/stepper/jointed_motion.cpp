@@ -34,7 +34,7 @@ constexpr double followed_gap = 1e-9;  // of the scene's size, by rows that foll
 constexpr double default_gap = 1e-5;   // of the smallest mechanism's size
 constexpr double widest_turn = 0.5;    // of a body between two nodes, so that angles can be counted with room [rad]
 
-// Of what no script moves.
+// Does anything that no script moves turn far?
 bool turns_far(const model::Model& model, const TrajectoryStep& step) {
     for (std::size_t k = 1; k < step.nodes.size(); ++k)
         for (std::size_t i = 0; i < step.nodes[k].size(); ++i) {
@@ -85,7 +85,7 @@ public:
 
     std::set<std::string> held, open;
 
-    /// Of the smallest group that rows connect [m]; infinity if there is none.
+    /// The size of the smallest group that constraints connect [m]; infinity if there is none.
     double least_size() const {
         std::map<int, geometry::Box> boxes;
         for (const auto& [root_body, count] : counts_) {

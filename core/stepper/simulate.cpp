@@ -113,7 +113,7 @@ public:
         return first;
     }
 
-    /// Of what the steps before have left, nothing but the state is carried on.
+    /// Nothing but the state is carried on from the steps before.
     void begin_anew() {
         if (!workspace_ || chosen_) use(std::nullopt);
         workspace_->forget();

@@ -19,7 +19,7 @@ using kinematics::Pose;
 constexpr int most_halvings_of_segment = 10;  // 1024 parts
 constexpr double farthest_turn = 0.5;         // of a middle from the straight path's [rad]: beyond half a turn the chart has others
 
-// Of one segment of a step.
+// The gap of one segment of a step.
 PathGap segment_gap(const model::Model& model, const std::vector<Pose>& poses_t0, const std::vector<ChartPoint>& from,
                     const std::vector<ChartPoint>& to) {
     PathGap out;

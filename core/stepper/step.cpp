@@ -50,8 +50,8 @@ bool is_clear(const model::Model& model, const std::vector<PathSegment>& segment
     return clear;
 }
 
-// Of one stretch, on from the nodes that are there: straight where that is clear, else through as few of the accepted points as are needed.
-// Those are moved there, but for the last, which is copied.
+// Stores the path of one stretch, on from the nodes that are there: straight where that is clear, else through as few of the accepted
+// points as are needed. Those are moved there, but for the last, which is copied.
 void store_path(const model::Model& model, const StepState& state, std::vector<std::vector<ChartPoint>>& accepted,
                 solver::NewtonWorkspace& workspace, TrajectoryStep& out) {
     const std::size_t last = accepted.size() - 1;

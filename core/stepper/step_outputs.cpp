@@ -86,7 +86,7 @@ double drive_power(const std::vector<DriveForce>& drives, const energy::History&
     return power;
 }
 
-// Of motors that are rows: their effort along the rate of their joint's coordinate.
+// The power of motors that are constraints: their effort along the rate of their joint's coordinate.
 double motor_power(const model::Mechanism& mechanism, const std::vector<JointForce>& joints, const energy::History& end) {
     const auto is_motor = [&](const JointForce& f) { return mechanism.joints[f.joint].is_motor; };
     if (std::none_of(joints.begin(), joints.end(), is_motor)) return 0;
@@ -131,7 +131,7 @@ Vector6 about_origin(Vector6 force, const Vector3& position) {
     return force;
 }
 
-// What acts on a body beside gravity is what its inertia shows, less what the solve has left unbalanced.
+// The forces on a body beside gravity show in its inertia, less what the solve has left unbalanced.
 void add_momentum_defects(const energy::StepProblem& problem, const solver::NewtonResult& solved, const std::vector<Vector6>& unbalanced,
                           const StepState& start, const StepState& end, StepOutputs& out) {
     const model::Model& model = *problem.model;

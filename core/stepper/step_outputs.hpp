@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a step did, beyond where the bodies are: energies, momenta, forces between bodies, and what it took to drive prescribed ones.
+/// The outcome of a step, beyond where the bodies are: energies, momenta, forces between bodies, and what it took to drive prescribed ones.
 #pragma once
 
 #include <string>
@@ -36,9 +36,9 @@ struct StepOutputs : energy::TermReport {
     /// half a step's impulse.
     Vector3 momentum_defect = Vector3::Zero();          ///< [kg m/s]
     Vector3 angular_momentum_defect = Vector3::Zero();  ///< about the world's origin [kg m^2/s]
-    /// What that defect is measured against, of the same bodies, about the world's origin [kg m^2/s]: the sum of their |angular momentum|,
-    /// where it is larger, at the step's start or end; of their forces (all but gravity together, and each contact's) times the farthest
-    /// that the body reaches and the step; and what rounding of poses makes of the defect.
+    /// The sizes that this defect is measured against, of the same bodies, about the world's origin [kg m^2/s]: the sum of their |angular
+    /// momentum|, where it is larger, at the step's start or end; of their forces (all but gravity together, and each contact's) times the
+    /// farthest that the body reaches and the step; and the defect that rounding of poses makes.
     double angular_momentum_size = 0, angular_impulse = 0, angular_momentum_rounding = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What answers have in common, as JSON: keys and units are those of docs/interface.md.
+/// The common parts of answers as JSON; keys and units are those of docs/interface.md.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

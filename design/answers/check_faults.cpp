@@ -32,12 +32,12 @@ std::string few(const Names& names) {
     return core::base::joined(Names(names.begin(), names.begin() + most)) + formatted(" and %zu more", names.size() - most);
 }
 
-/// What speaks against a gradient, and what only leaves it open.
+/// The causes that speak against a gradient, and those that only leave it open.
 struct Causes {
     Names faults, open;
 };
 
-// Of the table of differences.
+// The causes that the table of differences shows.
 Causes causes_of_differences(const CheckReport& report, double limit) {
     Names disagreeing, kinks, hidden, along;
     for (const CheckRow& row : report.rows) {
@@ -79,7 +79,7 @@ Causes causes_of(const CheckReport& report, double limit) {
     return causes;
 }
 
-// Of a check in which nothing disagrees.
+// The text about a check in which nothing disagrees.
 std::string measured_text(const CheckReport& report) {
     if (report.rows.empty() && report.along.empty()) return "; no difference was measured";
     return formatted("; all differences that were measured agree, to %.2g", report.largest_relative_error);

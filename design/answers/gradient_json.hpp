@@ -12,7 +12,7 @@
 
 namespace fettle::design::answers {
 
-/// Of a term of the objective or of a constraint; null where one branch alone attains its value.
+/// The tie of a term of the objective or of a constraint; null where one branch alone attains its value.
 const problem::Tie* tie_of(const problem::DesignEvaluation& evaluation, bool of_objective, std::size_t index);
 
 /// One unit of a parameter, as the design has it, in SI. Contract: the design has a parameter of this name.
@@ -24,11 +24,11 @@ gradient_audit::GradientWarnings gradient_warnings(const description::Design& de
 /// {status, message} of a design that cannot be evaluated.
 nlohmann::ordered_json not_evaluated_json(const problem::DesignEvaluation& evaluation);
 
-/// Of one that can: values and gradients.
+/// Values and gradients of a design that has them.
 nlohmann::ordered_json values_json(const description::Design& design, const problem::DesignEvaluation& evaluation);
 
 /// What --check adds.
-/// @param limit  Of the verdict (check_faults.hpp). Contract: > 0
+/// @param limit  The limit of the verdict (check_faults.hpp). Contract: > 0
 nlohmann::ordered_json check_json(const description::Design& design, const gradient_audit::CheckReport& report, double limit);
 
 }  // namespace fettle::design::answers

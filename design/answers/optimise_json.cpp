@@ -145,7 +145,8 @@ Json optimality_json(const Design& design, const optimisers::Optimality& o) {
     return json;
 }
 
-// What a design is held by: an infeasible one by what limits it; else requirements that cost something, the dearest first, then bounds.
+// Names what limits a design: for an infeasible one the limits found; else requirements that cost something, the dearest first, then
+// bounds.
 std::vector<std::string> limited_by(const Design& design, const OptimiseOutcome& outcome) {
     const optimisers::Optimality& o = outcome.report.optimality;
     if (!outcome.report.feasible) return outcome.limits;

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// By its lines. Of the first format, whose first line does not end the bodies, it is not known: there may be any number.
+// By its lines. It is not known for the first format, whose first line does not end the bodies: there may be any number.
 std::size_t stored_steps(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::size_t steps = 0;

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-// Of the file's frame: its origin is at -c in the body's frame.
+// The bodies' file frames at the end: a frame's origin is at -c in the body's frame.
 Json bodies_at_end(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
     constexpr int bodies_at_once = 32;
     Json::array_t list(model.bodies.size());

@@ -17,7 +17,7 @@ namespace fettle::design::answers {
 struct SummaryRow {
     std::string name;
     std::string before;  ///< at the start, in `unit`; empty: not known
-    std::string now;     ///< of the final design: what it is judged by, rounded so that it stays on its side of what is required
+    std::string now;     ///< of the final design: the value that it is judged by, rounded so that it stays on its side of what is required
     std::string unit;    ///< of both; empty: plain numbers
     std::string asked;   ///< "at least 0.3 mm", "as little as possible"
     /// of_facets: proven of the meshes, not of the round surfaces for which their facets stand.
@@ -36,7 +36,8 @@ struct Summary {
 
 Summary summary_of(const description::Design& design, const studies::OptimiseOutcome& outcome, const RunFacts& run);
 
-/// What is proven of a clearance of the round surfaces that facets stand for; nothing: it holds what the meshes do, or is none.
+/// The proven bounds of a clearance of the round surfaces that facets stand for, where these do not prove what the meshes do; nothing: they
+/// do, or it is no clearance.
 std::optional<core::clearance::TrueBounds> less_when_round(const description::Constraint& constraint,
                                                            const description::Measurement& measured,
                                                            const problem::DesignEvaluation& final);
@@ -44,8 +45,8 @@ std::optional<core::clearance::TrueBounds> less_when_round(const description::Co
 /// What it is known by, in words: "proven", "computed", "proven for the facets".
 const char* words(SummaryRow::Known known);
 
-/// Which rows are shown where not all are: what is violated or in doubt, what holds the design or was missed before, what is wanted, the
-/// rest; in their order.
+/// Chooses the rows that are shown where not all are: those violated or in doubt, those that hold the design or were missed before, those
+/// wanted, the rest; in their order.
 std::vector<SummaryRow> chosen_rows(const std::vector<SummaryRow>& rows, std::size_t most);
 
 nlohmann::ordered_json summary_json(const Summary& summary);

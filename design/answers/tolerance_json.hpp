@@ -12,8 +12,7 @@
 
 namespace fettle::design::answers {
 
-/// @param design  As made.
-/// Of a study. @param design  As made. @param tolerances  That were studied.
+/// The answer of a study. @param design  As made. @param tolerances  That were studied.
 nlohmann::ordered_json tolerance_json(const description::Design& design, const std::vector<description::Tolerance>& tolerances,
                                       const studies::ToleranceReport& report);
 

@@ -48,8 +48,8 @@ bool moves(const core::stepper::Trajectory& trajectory, int body) {
 
 const char* const of_path_alone = "about the path as stored, between whose nodes the joints may put the bodies elsewhere";
 
-// A certificate of a motion that neither has joints nor says that the path as stored is what it is of: what its bounds of moving bodies
-// are worth is known only where the source has no joints.
+// Doubts the bounds of a certificate of a motion that neither has joints nor says that it is of the path as stored: the worth of bounds of
+// moving bodies is known only where the source has no joints.
 void doubt_bounds(const core::stepper::Trajectory& trajectory, CheckedCertificate& checked) {
     for (Claim& claim : checked.claims)
         if (moves(trajectory, claim.a) || moves(trajectory, claim.b)) claim.doubt = of_path_alone;

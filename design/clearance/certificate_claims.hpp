@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What a certificate is worth: is every claim of it proven (certificate_checker.hpp), is it stale (its path, the scene or design that it
-/// was made from, or files of its bodies have changed since), what does it not cover, and do its bounds meet a minimum.
+/// The worth of a certificate: is every claim of it proven (certificate_checker.hpp), is it stale (its path, the scene or design that it
+/// was made from, or files of its bodies have changed since), what does it not cover, and do its bounds meet a minimum?
 #pragma once
 
 #include <array>

@@ -12,7 +12,7 @@ namespace {
 using core::clearance::PairClearance;
 using core::clearance::PairStatus;
 
-// Of two that share material: a doubt is no clash.
+// Leaves two that share material undecided: a doubt is no clash.
 void doubt(const std::string& reason, JoinedPair& pair) {
     pair.finding = JoinedFinding::undecided;
     pair.clearance.status = PairStatus::undecided;

@@ -15,7 +15,7 @@ namespace fettle::design::clearance {
 enum class JoinedFinding {
     clash,      ///< they share material that no joint between them explains
     undecided,  ///< they share material, and it is not known whether a joint explains it: `clearance.reason`; or nothing is proven of them
-    explained,  ///< what they share is that of a pin in its bore, or of a ball in its socket
+    explained,  ///< their common part is that of a pin in its bore, or of a ball in its socket
     touching,   ///< faces lie on each other
     apart
 };

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-/// Which pairs `fettle clearance` judges and what it requires of each: --pairs, --ignore, --group, --minimum, --process.
+/// The pairs that `fettle clearance` judges, and its requirements of each: --pairs, --ignore, --group, --minimum, --process.
 ///   as assembled, or where nothing moves: every pair, whatever types they have, but those of one group of the scene, those that the scene
 ///   ignores, and those that a joint joins
 ///   over a motion: every pair of these that may collide; where nothing is dynamic, every pair of which one moves; the others are looked at
 ///   for a clash only
-///   what a joint joins is looked at as assembled alone (joined_pairs.hpp)
+///   pairs that a joint joins are looked at as assembled alone (joined_pairs.hpp)
 ///   of a design: those that its objective or its constraints are about too, whatever joins them (design_pairs)
 ///   --pairs A:B,C:D      bodies or groups by name; `*` stands for any letters (pin*:plate); A:B=0.4mm has a minimum of its own, and of
 ///                        one without any, where --minimum and --process give none, only the distance is wanted
 ///   --ignore A:B,...     the same without minimum; order of the two does not matter
-///   --allow-touch A:B    they may touch: no minimum applies to them, and what is deeper than rounding is still a clash; A:B=0.02mm: up to
+///   --allow-touch A:B    they may touch: no minimum applies to them, and a depth above rounding is still a clash; A:B=0.02mm: up to
 ///                        that depth. A pair that is named so is judged
 ///   --group name=a,b,c   bodies that are one rigid set: not judged against each other, one row of the report against others
 #pragma once
@@ -82,7 +82,7 @@ std::vector<PairMinimum> design_minima(const description::Design& design, int sc
 Result<PairSelection> select_pairs(const core::model::Model& model, const PairOptions& options, bool moves, const BodyPairs& wanted = {});
 
 /// Are these two judged over a motion when no pairs are named? Those that may collide; where nothing is dynamic, those of which one moves;
-/// where nothing moves, all; but never those of one group, nor what a joint joins.
+/// where nothing moves, all; but never two of one group, nor two that a joint joins.
 bool judged_by_default(const core::model::Model& model, int a, int b);
 
 /// "A:B" of each.

@@ -201,7 +201,7 @@ PathProof PathProver::stopped() const {
     return proof;
 }
 
-// Of pairs of which one may lie inside the other, whose mesh is not closed, the surfaces alone.
+// Proves the surfaces alone of pairs of which one may lie inside the other, whose mesh is not closed.
 PathProof PathProver::proven(double lower, std::vector<PairRequest> unverified, int steps) const {
     if (unverified.empty()) return {ProofState::proven, lower, {}, steps};
     make_unique(unverified);

@@ -29,9 +29,9 @@ struct PathProof {
 };
 
 /// The least distance of all pairs that may collide, over the whole path: first to about 1% of what the ends of the steps saw; where that
-/// gives the least distance badly once more, by what was found; pairs that this leaves open a hundred times closer each time. The path may
-/// be proven while it is simulated, stretch by stretch, each by the least distance that was known by then: so a run that is interrupted is
-/// proven up to there, and little is left to do at the end. The answer is the same to the accuracy asked for; the same bits for the same
+/// gives the least distance badly once more, by the distance found; pairs that this leaves open a hundred times closer each time. The path
+/// may be proven while it is simulated, stretch by stretch, each by the least distance that was known by then: so a run that is interrupted
+/// is proven up to there, and little is left to do at the end. The answer is the same to the accuracy asked for; the same bits for the same
 /// stretches.
 class PathProver {
 public:

@@ -29,7 +29,7 @@ using core::base::formatted;
 using core::base::joined;
 using core::scene::BodyType;
 
-// What moves without dynamics is kinematic, what does not move is static: whoever reads the stored trajectory then knows.
+// Bodies that move without dynamics are kinematic, those that do not move are static: whoever reads the stored trajectory then knows.
 void mark_as_scripted(Subject& subject) {
     for (size_t i = 0; i < subject.model.bodies.size(); ++i) {
         bool moves = false;
@@ -146,7 +146,7 @@ void simulate(int steps, const SubjectWatch& watch, Subject& subject) {
         subject.incomplete = why.empty() || why == status ? status : status + ": " + why;
 }
 
-// Of a scene or design, whose joints have ranges.
+// The subject of a scene or design whose joints have ranges.
 Result<Subject> from_ranges(const SubjectOptions& options, reading::LoadedModel& loaded) {
     Result<core::clearance::JointRanges> ranges = core::clearance::joint_ranges(loaded.model);
     if (!ranges) {
@@ -181,7 +181,7 @@ Result<int> steps_of(const SubjectOptions& options, const core::model::Model& mo
     return steps ? steps : Error{ErrorCode::out_of_range, "--time", steps.errors().front().message};
 }
 
-// Of a motion without dynamics [s].
+// The duration of a motion without dynamics [s].
 double duration_of(const SubjectOptions& options, const core::model::Model& model, int design_steps) {
     if (options.time >= 0) return options.time;
     if (options.steps < 0 && model.end_time > 0) return model.end_time;
@@ -207,7 +207,7 @@ Result<std::optional<core::clearance::LoopedRanges>> positions_of(const SubjectO
     return Positions{*std::move(found)};
 }
 
-// Of a design, as made.
+// The design as made, over its tolerances.
 Result<Subject> from_tolerances(const SubjectOptions& options, const reading::InputOptions& input, reading::FileKind kind,
                                 const SubjectWatch& watch) {
     const auto with_file = [&](Errors errors) {
@@ -299,7 +299,7 @@ Errors check_inputs(const SubjectOptions& options, bool meshes) {
     if (meshes) return {};
     if (!options.more.empty())
         return {{ErrorCode::inconsistent, options.more.front(), "several files are judged together only if all are meshes"}};
-    const bool is_json = std::filesystem::path(options.path).extension() == ".json";  // of what is none it is told what it is
+    const bool is_json = std::filesystem::path(options.path).extension() == ".json";  // a file of another kind is told what it is
     if (!options.unit.empty() && is_json) return {{ErrorCode::inconsistent, "--unit", "is for meshes; this file states its own unit"}};
     return {};
 }

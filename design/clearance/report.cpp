@@ -155,7 +155,7 @@ std::string why_not_judged(const Subject& subject, const PairSelection& selectio
     return message;
 }
 
-// Of more pairs than this nobody reads each distance: those that nobody named, and that stay twice their minimum apart, are left at that.
+// Nobody reads each distance of more pairs than this: those that nobody named, and that stay twice their minimum apart, are left at that.
 constexpr std::size_t most_measured = 100;
 
 std::vector<PairRequest> requests_of(const PairSelection& selection, bool all_measured) {

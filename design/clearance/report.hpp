@@ -39,7 +39,7 @@ struct ReportedPair {
     Change change;          ///< against the baseline
 };
 
-/// Of the parts that the meshes were drawn for. Nothing where core::clearance::true_bounds has none, and over tolerances.
+/// Bounds for the parts that the meshes were drawn for. Nothing where core::clearance::true_bounds has none, and over tolerances.
 std::optional<core::clearance::TrueBounds> true_bounds(const Subject& subject, const ReportedPair& pair);
 
 struct ClearanceReport {
@@ -69,8 +69,8 @@ struct Question {
 };
 
 /// Judges the pairs. If there are more than 100 pairs of bodies over a path, those that nobody named and that stay twice their minimum
-/// apart are proven to, and not measured. Once a stop is asked for, what the rest would have shown is not known: nothing is reported as
-/// violated but what was certified before. Errors: of the pairs' options (select_pairs).
+/// apart are proven to, and not measured. Once a stop is asked for, the rest is not known: nothing is reported as violated but what was
+/// certified before. Errors: of the pairs' options (select_pairs).
 Result<ClearanceReport> judge_clearances(const Subject& subject, const Question& question);
 
 /// Marks findings as new, existing or resolved.

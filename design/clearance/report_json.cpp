@@ -37,7 +37,7 @@ Json witness_json(const Witness& w) {
     return json;
 }
 
-// Of a clash of closed bodies.
+// Adds the overlap of a clash of closed bodies.
 void add_overlap(Json& json, const PairClearance& pair) {
     if (!pair.overlap) return;
     const core::clearance::Overlap& overlap = *pair.overlap;
@@ -96,7 +96,7 @@ Json deviations_json(const Subject& subject, const PairClearance& pair) {
     return list;
 }
 
-// Of all bodies that the pair's joints move to where it is worst.
+// The poses of all bodies that the pair's joints move, where the pair is worst.
 Json moved_poses(const Subject& subject, const PairClearance& pair) {
     Json json = Json::object();
     for (int body = 0; body < count_of(subject.model.bodies); ++body) {
@@ -132,7 +132,7 @@ void add_worst_position(Json& json, const ReportedPair& pair, const Subject& sub
     json["witness"] = {{"feature_a", feature_json(w.kind_a, w.primitive_a)}, {"feature_b", feature_json(w.kind_b, w.primitive_b)}};
 }
 
-// Of a pair that stays far enough apart nothing else is known.
+// Nothing else is known of a pair that stays far enough apart.
 void add_no_witness(Json& json) {
     json["measured"] = false;
     for (const char* key : {"time", "point_a", "point_b", "gap", "sampled", "pose_a", "pose_b", "witness"}) json[key] = Json();

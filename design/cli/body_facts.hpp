@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a person checks before trusting a file: how large, how much, how heavy; and what cannot well be meant.
+/// The facts that a person checks before trusting a file: how large, how much, how heavy; and what cannot well be meant.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -25,7 +25,7 @@ struct JointSpan {
     double low = 0, high = 0;  // [rad or m]
 };
 
-// Of the coordinates that have a range; what follows from others, by loops, has none of its own.
+// The spans of the coordinates that have a range; one that follows from others, by loops, has none of its own.
 std::vector<JointSpan> joint_spans(const Certificate& certificate) {
     std::vector<JointSpan> out;
     const auto add = [&](const LinkageCoordinate& c) {

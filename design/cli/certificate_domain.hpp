@@ -17,7 +17,7 @@ namespace fettle::design::cli {
 const char* domain_name(const core::certificate::Certificate& certificate);
 
 /// {over, joints [{joint, low, high, unit, whole_turn}], tolerances [{of, lower, upper}], duration, steps}, SI; what does not apply is left
-/// out. Of any certificate that can be read, whether or not it is sound.
+/// out. Any certificate that can be read has it, whether or not it is sound.
 nlohmann::ordered_json domain_json(const core::certificate::Certificate& certificate, const core::stepper::Trajectory& trajectory);
 
 /// "tolerances: pin_radius -0.05 to +0.05 mm\njoints: elbow -50 to 30 deg\n"; of a motion how long it is.

@@ -75,7 +75,7 @@ Json json_of(const ResolutionReport& report) {
 
 std::string share_text(double share) { return std::isfinite(share) ? core::base::percent(share) : "-"; }
 
-// What the largest change by settled friction is worth, and what to do about it.
+// The worth of the largest change by settled friction, and what to do about it.
 std::string friction_text(const ResolutionReport& report) {
     const ResolvedQuantity* most = nullptr;
     for (const ResolvedQuantity& quantity : report.quantities)

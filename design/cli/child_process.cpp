@@ -23,7 +23,7 @@ constexpr int could_not_start = 127;
 
 // Between fork and exec, where nothing may allocate or lock: the parent has other threads.
 [[noreturn]] void become(char* const* words, const ChildProcess::Streams& streams, pid_t parent) {
-    // Nobody would collect what it finds: it dies with the parent, and what its history holds is not lost.
+    // Nobody would collect its results: it dies with the parent, and what its history holds is not lost.
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(could_not_start);
     setpgid(0, 0);  // Ctrl-C reaches the parent alone, who passes it on once

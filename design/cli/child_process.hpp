@@ -16,8 +16,8 @@ namespace fettle::design::cli {
 /// A child that still runs is killed by the destructor.
 class ChildProcess {
 public:
-    /// Starts this program (the same executable) with these arguments. What it prints on stdout is dropped, what on stderr goes to a file.
-    /// Throws std::runtime_error if the system has no process left.
+    /// Starts this program (the same executable) with these arguments. Its stdout is dropped, its stderr goes to a file. Throws
+    /// std::runtime_error if the system has no process left.
     static ChildProcess start(const std::vector<std::string>& arguments, const std::filesystem::path& log);
 
     /// Descriptors of a child's standard streams; -1: /dev/null.

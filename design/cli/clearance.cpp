@@ -58,7 +58,7 @@ ClearanceFiles files_of(const ClearanceArguments& options) {
     return {options.subject.path, options.csv, options.certificate, options.out, options.no_report};
 }
 
-/// Of meshes that are one body.
+/// Says why meshes that are one body are not two parts.
 std::string why_not_two(const Subject& subject) {
     const std::string remedy = "name a second mesh, a folder of them, or a 3MF with several parts";
     const int solids = core::solids::solids_of_shells(subject.model.bodies.front().mesh).count;

@@ -119,7 +119,7 @@ std::string overlapped(const ReportedPair& pair, const Lengths& lengths) {
     return overlapped(*pair.least.overlap, lengths);
 }
 
-// Of a clash that round parts need not have.
+// A remark on a clash that round parts need not have.
 std::string by_facets(const ReportedPair& pair, const Subject& subject, const Lengths& lengths) {
     const auto reach = pair.finding == Finding::clash ? core::clearance::clash_of_facets(subject.model, pair.least) : std::nullopt;
     if (!reach) return {};
@@ -127,7 +127,7 @@ std::string by_facets(const ReportedPair& pair, const Subject& subject, const Le
            " beyond the round surfaces that they stand for: whether the round parts share material, finer facets tell (\"facets\")";
 }
 
-// Of parts that share material, or touch, a distance says nothing.
+// A distance says nothing of parts that share material, or touch.
 bool has_distance(const ReportedPair& pair) { return pair.finding != Finding::clash && pair.finding != Finding::touching; }
 
 std::string table(const ClearanceReport& report, const Subject& subject, const Lengths& lengths, const Console& console) {
@@ -166,7 +166,7 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
     return text;
 }
 
-// What is proven: of the distance, or of what the parts share or touch over.
+// The proven text: of the distance, or of the material that the parts share, or the area that they touch over.
 std::string found_of(const ReportedPair& pair, const Subject& subject, const Lengths& lengths) {
     const PairClearance& least = pair.least;
     if (pair.finding == Finding::clash) {
@@ -180,7 +180,7 @@ std::string found_of(const ReportedPair& pair, const Subject& subject, const Len
            lengths.unit();
 }
 
-// Of a pair that touches.
+// How to accept a pair that touches.
 std::string how_to_accept(const ReportedPair& pair) { return "--allow-touch " + pair_name(pair) + " accepts it"; }
 
 std::string pose_line(const std::string& name, const core::kinematics::Pose& pose, const Lengths& lengths) {
@@ -215,7 +215,7 @@ std::string clash(const ReportedPair& pair, const Subject& subject, const Length
     return text + "\n" + (facets.empty() ? "" : "   " + facets + "\n");
 }
 
-// Of round surfaces, which facets stand for.
+// The bounds of the round surfaces that facets stand for.
 std::string round_surfaces(const ReportedPair& pair, const Subject& subject, const Lengths& lengths) {
     const auto parts = clearance::true_bounds(subject, pair);
     if (!parts) return {};
@@ -299,7 +299,7 @@ std::string summary(const ClearanceReport& report, const Subject& subject) {
     return text + "\n";
 }
 
-// Of meshes, the file of that name; else what was judged.
+// The file of that name if meshes are judged; else `otherwise`, what was judged.
 std::string file_of_part(const Subject& subject, const std::string& part, const std::string& otherwise) {
     for (const std::string& file : subject.files)
         if (std::filesystem::path(file).stem() == part) return file;

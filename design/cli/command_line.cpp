@@ -108,7 +108,7 @@ std::string joined_names(const std::vector<const CLI::Option*>& options) {
     return names;
 }
 
-// What was typed that no option and no place takes: the first option of it, with what was probably meant; else the first word.
+// The typed words that no option and no place takes: the first option of them, with what was probably meant; else the first word.
 std::string unexpected(const CLI::App& program, const CLI::App* command) {
     std::vector<std::string> words = program.remaining(true);
     if (words.empty()) return {};

@@ -85,7 +85,7 @@ const PairClearance* worst_of(const std::vector<PairClearance>& pairs) {
     return worst;
 }
 
-/// Of those that interfere, of which there is one: measured, up to so many.
+/// The deepest of the pairs that interfere, of which there is at least one: measured, up to so many.
 PairClearance deepest_of(const core::model::Model& model, const Trajectory& trajectory, const std::vector<PairClearance>& pairs,
                          core::clearance::ClearanceOptions options) {
     constexpr std::size_t most_measured = 32;
@@ -121,7 +121,7 @@ struct Instant {
     std::optional<PairClearance> worst;
 };
 
-// Of --time.
+// Faults of --time.
 Errors time_faults(const DrawArguments& options, const Trajectory& path) {
     const double first = core::stepper::time_at(path, 0), last = core::stepper::time_at(path, count_of(path.steps));
     if (!options.time || (*options.time >= first && *options.time <= last)) return {};

@@ -103,7 +103,7 @@ Result<Plan> plan_of(const ExportArguments& options, const std::string& stem) {
 /// Files of the bodies' meshes, which a certificate can name.
 bool has_meshes_alone(const std::string& format) { return format == "3mf" || format == "stl" || format == "obj"; }
 
-/// Of files that hold meshes alone the parts can be arranged.
+/// Errors where parts cannot be arranged: only those of files that hold meshes alone can.
 Errors arrange_errors(const ExportArguments& options) {
     if (options.arrange == "assembled") return {};
     const Result<Plan> plan = plan_of(options, "");

@@ -99,7 +99,7 @@ Json result_of(const Check& check, const Checks& checks) {
     const std::string uri = uri_of(place.empty() ? "." : place);
     result["locations"] =
         Json::array({{{"physicalLocation", {{"artifactLocation", {{"uri", uri}}}, {"region", {{"startLine", line_of(check, place)}}}}}}});
-    // The same finding in the next run. Of one file there can be several warnings and faults, which their messages tell apart; those of a
+    // The same finding in the next run. One file can have several warnings and faults, which their messages tell apart; those of a
     // requirement have numbers that change with every design.
     const bool is_told_by_message = check.outcome == CheckOutcome::remarked || check.outcome == CheckOutcome::fault;
     const std::string more = is_told_by_message ? ":" + core::files::hash_of(check.message) : "";

@@ -20,7 +20,8 @@ reading::InputOptions input_options(const CommonOptions& common, bool check_star
 // While the file is read other threads are made, and memory for what it becomes.
 void begin_to_read(const std::string& path) {
     constexpr std::uintmax_t growth = 64;                      // of a body's text to the body and a motion of some fifty steps
-    constexpr std::uintmax_t least = 1 << 20, most = 8 << 20;  // bytes: what pays, and what is cleared before it is wanted
+    constexpr std::uintmax_t least = 1 << 20, most = 8 << 20;  // bytes: the least that pays, and the most that is cleared before it is
+                                                               // wanted
     std::error_code unreadable;
     const std::uintmax_t size = std::filesystem::file_size(path, unreadable);
     const std::uintmax_t bytes = unreadable ? 0 : std::min(most / growth, size) * growth;

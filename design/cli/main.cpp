@@ -95,8 +95,8 @@ void keep_apart(FindingFiles& files, const Errors& twice) {
         if (std::any_of(twice.begin(), twice.end(), [&](const Error& error) { return error.where == *file; })) file->clear();
 }
 
-// What was found, where it is wanted, then the answer, which tells what could not be written. Of a command that tells nothing of its own
-// its end is told. @return the exit code
+// Writes the findings, where they are wanted, then the answer, which tells what could not be written. A command that tells nothing of its
+// own has its end told. @return the exit code
 int finish(const FindingFiles& files, const std::string& command, int verdict, Console& console) {
     if (!files.wanted()) {
         console.give_answer();
@@ -135,7 +135,7 @@ int refuse(const CommonOptions& common, const std::string& command, const Errors
     return finish(common.finding_files, command, console.input_errors(errors), console);
 }
 
-// Of a command line that cannot be read: the files that it may mean all the same must not stay as an earlier run left them.
+// Refuses a command line that cannot be read: the files that it may mean all the same must not stay as an earlier run left them.
 int refuse_usage(int argc, char** argv, const std::string& command, const std::string& message) {
     const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     const std::vector<NamedFile> named = named_files_in(words, {"--junit", "--sarif", "--markdown"});

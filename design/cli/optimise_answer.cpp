@@ -81,7 +81,7 @@ std::string eased_text(const answers::Cost& cost) {
     return (lower_bound ? "with a lower limit that is " : "with an upper limit that is ") + amount + (lower_bound ? " lower" : " higher");
 }
 
-// What each requirement that holds costs, the dearest first; what could still move.
+// The cost of each requirement that holds, the dearest first; what could still move.
 std::string verdict_text(const Design& design, const optimisers::Optimality& o, const std::string& minimised, double objective) {
     std::string text;
     const std::vector<answers::Cost> costs = answers::costs_of(design, o);
@@ -131,7 +131,7 @@ const char* held_text(optimisers::Held held) {
     return "unknown";
 }
 
-// Of --repair.
+// The changes of --repair.
 std::string changes_text(const Design& design, const optimisers::OptimiserReport& report) {
     std::string text =
         formatted("smallest change found that meets every requirement: %.4g of the ranges\n", std::sqrt(report.best.objective));

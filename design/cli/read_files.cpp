@@ -116,7 +116,7 @@ private:
                                  "design.final.json", "steps.csv", "contacts.csv", "drives.csv", "joints.csv"}) {
             const std::string file = (fs::path(folder) / name).string();
             if (std::string_view(name) == "result.json" && is_file(file)) {
-                found.push_back({folder, file, false});  // what it names is what was written
+                found.push_back({folder, file, false});  // the files that it names are those that were written
             } else {
                 add(folder, file);
             }

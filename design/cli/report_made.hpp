@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What commands with --out leave for people beside what they leave for programs (answers/run_folder.hpp).
+/// The files that commands with --out leave for people beside those they leave for programs (answers/run_folder.hpp).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

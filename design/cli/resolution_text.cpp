@@ -23,7 +23,7 @@ constexpr double noticeable = 0.01;  // share that a number changes by
 constexpr double least_told = 1e-3;
 constexpr std::size_t most_lines = 6;
 
-// Has it to be told? Of the objective a term counts for what it is of it.
+// Has it to be told? A term of the objective counts for its share of it.
 bool is_told(const Design& design, const studies::OptimiseOutcome& outcome, const FinerValue& value) {
     if (is_flip(value)) return true;
     if (!value.of_objective) return value.share > noticeable;

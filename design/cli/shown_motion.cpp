@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> up_names{"x", "-x", "y", "-y", "z", "-z"};
 
-/// Of a folder the trajectory in it, of a certificate that beside it.
+/// A folder's file to read is the trajectory in it, a certificate's the one beside it.
 Result<std::string> file_to_read(const ShownOptions& options, std::string& certificate) {
     const std::string& path = options.path;
     std::error_code code;

@@ -36,7 +36,7 @@ void add_shown_options(CommandLine& app, ShownOptions& options);
 /// the nearest that is.
 Result<std::vector<int>> shown_bodies(const std::string& wanted, const std::vector<std::string>& bodies);
 
-/// Of a list for all bodies what is about these.
+/// The entries of these bodies in a list for all bodies.
 template <class Each>
 std::vector<Each> only(const std::vector<int>& bodies, const std::vector<Each>& of_all) {
     std::vector<Each> chosen;

@@ -44,7 +44,7 @@ std::string without_unit(std::string text) {
     return text;
 }
 
-// @param unit  Of a file that states none; empty: its places are numbers.
+// @param unit  The unit of a file that states none; empty: its places are numbers.
 Verdict validate_mesh_file(const std::string& path, const std::string& unit, bool strict) {
     Verdict verdict;
     const Result<double> metres = unit.empty() ? Result<double>(1e-3) : core::base::metres_per_unit(unit, "--unit");

@@ -129,7 +129,7 @@ Json checked_json(const CheckedCertificate& checked, const StoredTrajectory& sto
     return json;
 }
 
-// Of an accepted certificate.
+// The text about an accepted certificate.
 std::string accepted_text(const CheckedCertificate& checked, const Model& model, const std::optional<double>& minimum) {
     std::string text = formatted("every claim is proven, in %ld pieces, %s:\n", checked.leaves, domain_name(*checked.certificate)) +
                        claims_text(checked, model, minimum);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// What a coupon holds and where: the test plate that shows what a printer or a laser makes of holes, pins, slots, walls and gaps. A row
-/// for each kind, its letter (H, P, S, W, G) at the left, the size [mm] below each feature. Its solid: coupon_solid.hpp; the form for what
-/// is measured: coupon_form.hpp.
+/// The features of a coupon and their places: the test plate shows what a printer or a laser makes of holes, pins, slots, walls and gaps. A
+/// row for each kind, its letter (H, P, S, W, G) at the left, the size [mm] below each feature. Its solid: coupon_solid.hpp; the form for
+/// what is measured: coupon_form.hpp.
 ///   printed  holes and slots through the plate; pins, walls and pairs of walls (the gap is between them) on it; pins are of different
 ///            heights, which are measured from the plate's underside
 ///   cut      holes and slots; on the upper edge fingers (walls) with gaps between them

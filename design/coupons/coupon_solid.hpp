@@ -17,7 +17,7 @@ Result<core::geometry::Mesh> coupon_mesh(const Coupon& coupon);
 /// Outline, holes and slots of a cut coupon. Contract: cut.
 Result<core::parts::Profile> coupon_outline(const Coupon& coupon);
 
-/// What to cut (black) and what to engrave (blue: the labels, as lines in the middle of their bars), in millimetres. Contract: cut.
+/// The drawing of the cuts (black) and engravings (blue: the labels, as lines in the middle of their bars), in millimetres. Contract: cut.
 Result<std::string> coupon_svg(const Coupon& coupon);
 
 /// [m^3]

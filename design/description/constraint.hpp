@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// A requirement on a simulated design: lower <= quantity <= upper. The optimiser aims at bounds narrowed by a margin and sees the
 /// quantity's `value`; whether a design meets the requirement is judged by the quantity's bounds alone: measured.lower >= lower and
-/// measured.upper <= upper. Where these are proven (Measurement::is_proven), that it is met is proven. (Of a clearance `value` is the
+/// measured.upper <= upper. Where these are proven (Measurement::is_proven), that it is met is proven. (A clearance's `value` is the
 /// certificate's upper bound, which its witness attains up to rounding.) Where the value has come to an end short of a bound, the optimiser
 /// sees its continuation (quantity.hpp) instead.
 #pragma once

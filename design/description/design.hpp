@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A design: a scene, what may be changed in it, what is wanted and what is required. Plain data, SI units; made by a program, or read from
-/// a file (reading/design_reader.hpp). Evaluation: problem/design_problem.hpp, which also says what is wrong with one.
+/// A design: a scene, its parameters, objective and requirements. Plain data, SI units; made by a program, or read from a file
+/// (reading/design_reader.hpp). Evaluation: problem/design_problem.hpp, which also says what is wrong with one.
 ///
 ///     Design design;
 ///     design.scene.timestep = 0.01;
@@ -97,7 +97,7 @@ std::vector<bool> moved_dimensions(const core::scene::Scene& scene, const std::v
                                    const Shape& shape);
 
 /// Lets the number at a place of the scene (core/scene/place.hpp) follow from the parameters, in place of what it followed from.
-/// @param formula  Of the parameters (core/expression/parse_formula.hpp); numbers without a unit count in SI.
+/// @param formula  A formula of the parameters (core/expression/parse_formula.hpp); numbers without a unit count in SI.
 /// @return what is wrong with it, or with the place; then nothing is changed.
 Errors set_number(Design& design, const std::string& place, const std::string& formula);
 

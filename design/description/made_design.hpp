@@ -21,7 +21,7 @@ struct Deviations {
 };
 Deviations deviations_of(const std::vector<Tolerance>& tolerances);
 
-/// @param side  1: of an upper bound, and of what is minimised; -1: of a lower bound, and of what is maximised.
+/// @param side  1: for an upper bound, and a number that is minimised; -1: for a lower bound, and one that is maximised.
 tolerances::RobustOffset offset_of(const OverTolerances& over, const VectorX& gradient, const Deviations& deviations, int side);
 
 struct MadeDesign {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How a number counts that a design asks for over its tolerances, and not as drawn: with what is kept in reserve for the deviations of
-/// what is made: to first order of its derivatives (tolerances/robust_offset.hpp), or proven.
+/// How a number counts that a design asks for over its tolerances, and not as drawn: with a reserve for the deviations of the design as
+/// made, to first order of its derivatives (tolerances/robust_offset.hpp), or proven.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A number that a simulated design has: what an objective sums and what a constraint bounds. Value and derivative are two functions, so
-/// that their times can be distinguished; the derivative starts from what the value found (witness, extremal nodes), so nothing is searched
+/// A number that a simulated design has, for an objective to sum or a constraint to bound. Value and derivative are two functions, so that
+/// their times can be distinguished; the derivative starts from what the value found (witness, extremal nodes), so nothing is searched
 /// twice. Those of the program: ../quantities. Add one: derive from Quantity, and hand it to the design (design.hpp).
 #pragma once
 
@@ -33,7 +33,7 @@ struct Simulated {
     const Simulated& in(int other) const { return scenarios == nullptr ? *this : scenarios[other]; }
 };
 
-/// `value`, in [lower, upper], is what the optimiser sees and what is differentiated.
+/// The optimiser sees, and derivatives are taken of, `value`, which is in [lower, upper].
 ///   is_proven:  lower <= true value <= upper, rounding included: certified distances, and formulas of these alone.
 ///   otherwise:  as computed. Nothing bounds the error of the time step, of facets, of the solver's tolerance, of rounding.
 /// Requirements are judged by lower and upper either way.
@@ -52,9 +52,9 @@ struct Branch {
     std::function<void(double, Seeds&)> add_seeds;  ///< adds scale * d(value); holds references to what it was made from
 };
 
-/// What a search is given in place of a value that has come to an end where it does not change any more, short of what is required: a
-/// force of contact is 0 however far apart the bodies are. It goes on from there, so that it says how far the design is from what is
-/// required, and which way leads there. What is reported, and what requirements are judged by, stays the value.
+/// A value for a search in place of one that has come to an end where it does not change any more, short of what is required: a force of
+/// contact is 0 however far apart the bodies are. It goes on from there, so that it says how far the design is from the requirement, and
+/// which way leads there. Reports show the value itself, and requirements are judged by it.
 struct Continuation {
     double value = 0;                               ///< SI; the quantity's own value where that has only just come to its end
     std::function<void(double, Seeds&)> add_seeds;  ///< adds scale * d(value); holds references to what it was made from

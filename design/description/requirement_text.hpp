@@ -35,8 +35,9 @@ std::string required_text(const Bounds& bounds, const std::string& unit_name);
 /// A bound, rounded to its safe side: 0.30199996 mm downwards -> "0.3019999 mm".
 std::string bound_text(double si, Towards towards, double unit, const std::string& unit_name);
 
-/// What a requirement is judged by, and what that is (Measurement::is_proven): "proven 0.302 to 0.304 mm", the lower bound rounded down and
-/// the upper one up; "computed 29.996 mm", the one that is nearer to its limit, where the two do not differ in the digits that are shown.
+/// The value that a requirement is judged by, with its standing (Measurement::is_proven): "proven 0.302 to 0.304 mm", the lower bound
+/// rounded down and the upper one up; "computed 29.996 mm", the one that is nearer to its limit, where the two do not differ in the digits
+/// that are shown.
 std::string known_text(const Measurement& measured, const Bounds& bounds, const std::string& unit_name);
 
 }  // namespace fettle::design::description

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How far the numbers of a made mechanism lie from those of its design: what `fettle tolerance` varies (studies/tolerance_study.hpp).
+/// How far the numbers of a mechanism as made lie from those of its design: `fettle tolerance` varies these deviations
+/// (studies/tolerance_study.hpp).
 ///
 /// A design as made has a parameter for each toleranced number, its value the nominal one: the design's own parameter, the scene's
 /// variable, or, for a place of the scene, the deviation from what the place has as designed (add_deviation). So y as a function of the

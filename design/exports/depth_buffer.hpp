@@ -36,7 +36,7 @@ public:
     /// from the viewer than towards him.
     /// @param hatch  across its lines, one over their distance long [1/pixels].
     void close_solid(const Colour& colour, const Colour& shared, const Vector2& hatch);
-    /// After those of what is not closed: it has no material.
+    /// After the triangles of a mesh that is not closed: it has no material.
     void close_open();
 
     /// After all: material in the cut has a line round it, a pixel on each side.

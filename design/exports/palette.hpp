@@ -22,7 +22,7 @@ inline constexpr Colour white{255, 255, 255}, ink{29, 32, 36}, nearest{31, 86, 1
 /// lighter, so that they can be shaded), from the ninth on the same in paler tones.
 Colour part_colour(int index);
 
-/// One for each body. What is fixed is pale beside what moves; where nothing moves, nothing is.
+/// A colour for each body. Fixed bodies are pale beside those that move; where nothing moves, none is.
 std::vector<Colour> part_colours(const core::model::Model& model);
 
 /// A part's colour under so much light: 1 as it is. The page's materials (design/report/web/src/materials.js) do the same.

@@ -42,7 +42,8 @@ std::vector<Vector3> normals_of(const Mesh& mesh, const Matrix3X& x) {
     return normals;
 }
 
-// Of the faces that meet in a corner below the crease, weighted by their angles there. A corner of very many, a fan's middle, is flat.
+// The mean normals of the faces that meet in a corner below the crease, weighted by their angles there. A corner of very many, a fan's
+// middle, is flat.
 std::vector<std::array<Vector3, 3>> corner_normals_of(const Mesh& mesh, const Matrix3X& x, const std::vector<Vector3>& normals,
                                                       double crease) {
     constexpr std::size_t most = 64;

@@ -30,7 +30,7 @@ struct Projection {
     }
 };
 
-/// Of one part, its edges' visible stretches.
+/// The visible stretches of the edges of one part.
 struct PartEdges {
     Colour colour{};
     std::vector<PictureLine> lines;
@@ -51,7 +51,7 @@ public:
     Projection fitted(const ProjectionView& view, int width, int height) const;
     /// Diagonal of the box of all parts [m].
     double diagonal() const;
-    /// Does a part hide this point [m]? Of all edges the nearest to the viewer hides none of itself.
+    /// Does a part hide this point [m]? The nearest of all edges to the viewer hides none of itself.
     bool hides(const Vector3& point, const Projection& projection, int width, int height) const;
     /// @param cut  in the picture's pixels.
     ViewedParts seen(const Projection& projection, int width, int height, const std::optional<Cut>& cut = std::nullopt) const;

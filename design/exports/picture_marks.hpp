@@ -14,8 +14,8 @@ namespace fettle::design::exports {
 ///   lines(lines, colour, width)           with round ends
 ///   circle(centre, radius, colour, width), box(corner, size, colour, width)     width 0: filled
 ///   text(place, words, colour, letters)   `place`: the left end of the baseline
-///   within(corner, size, draw)            what draw() draws counts from this corner, and is cut off at the box
-///   group(name, draw)                     what draw() draws belongs together, under a name for those who work on the picture
+///   within(corner, size, draw)            all that draw() draws counts from this corner, and is cut off at the box
+///   group(name, draw)                     all that draw() draws belongs together, under a name for those who work on the picture
 template <class Canvas>
 void put_marks(const Picture& picture, Canvas& canvas);
 

@@ -32,7 +32,7 @@ namespace {
     CAIRO(set_source_rgb) CAIRO(set_source_surface) CAIRO(status) CAIRO(stroke) CAIRO(stroke_preserve)                      \
     CAIRO(surface_destroy) CAIRO(surface_flush) CAIRO(surface_mark_dirty) CAIRO(surface_status)                             \
     CAIRO(surface_write_to_png_stream) CAIRO(text_path) CAIRO(toy_font_face_create) CAIRO(translate)
-/// Of FreeType, which reads fonts and comes with cairo.
+/// Functions of FreeType, which reads fonts and comes with cairo.
 #define FETTLE_FREETYPE_FUNCTIONS(FREETYPE) FREETYPE(Done_FreeType) FREETYPE(Init_FreeType) FREETYPE(New_Face)
 // clang-format on
 
@@ -141,7 +141,7 @@ Font font_of(const std::string& folder, bool bold) {
     return {font, cairo.font_face_destroy};
 }
 
-/// Of picture_marks.hpp.
+/// A Canvas of picture_marks.hpp.
 class CairoCanvas {
 public:
     CairoCanvas(const Surface& surface, const std::string& fonts)

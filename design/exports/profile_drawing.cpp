@@ -79,7 +79,7 @@ double turning_area(const std::vector<Knot>& knots) {
 
 void pair(std::string& text, int code, const std::string& value) { text += std::to_string(code) + "\n" + value + "\n"; }
 
-// Of a curve as it lies, its extreme points too.
+// The box of a curve as it lies, with its extreme points.
 struct Box {
     Vector2 low = Vector2::Constant(std::numeric_limits<double>::infinity()), high = -low;
     void add(const Vector2& p) {

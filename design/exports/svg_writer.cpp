@@ -26,7 +26,7 @@ std::string attribute(const char* name, double x) { return std::string(" ") + na
 
 std::string size_of(double width, double height) { return attribute("width", width) + attribute("height", height); }
 
-/// Of picture_marks.hpp.
+/// A Canvas of picture_marks.hpp.
 class SvgCanvas {
 public:
     void pixels(const Image& image) {

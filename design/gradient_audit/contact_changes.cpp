@@ -35,7 +35,7 @@ bool are_neighbours(const ContactState& x, const ContactState& y) {
 
 using Contacts = std::vector<ContactState>;
 
-// What is in one step's contacts alone, and what both have; each in order.
+// The contacts that one of two steps has alone, and those that both have; each in order.
 struct Compared {
     std::vector<const ContactState*> lost, found;
     std::vector<std::pair<const ContactState*, const ContactState*>> kept;

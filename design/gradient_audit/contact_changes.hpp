@@ -54,7 +54,7 @@ struct ContactChange {
 /// Collects what simulations at several moves of one parameter to one side show.
 class ContactWatch {
 public:
-    /// @param contacts  Of the design itself. Contract: outlives this.
+    /// @param contacts  The contacts of the design itself. Contract: outlives this.
     explicit ContactWatch(const std::vector<std::vector<ContactState>>& contacts) : contacts_(&contacts) {}
 
     /// @param share  The move's size in the parameter's range. Contract: > 0.

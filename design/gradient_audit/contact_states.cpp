@@ -86,7 +86,7 @@ private:
     std::map<int, std::vector<int>> vertices_;
 };
 
-// Of an edge-edge pair: all of the edge where the mollifier acts, which feels more than the closest points.
+// The corners of an edge-edge pair: all of the edge where the mollifier acts, which feels more than the closest points.
 Corners edge_corners(const ContactPair& pair, int first, bool is_mollified) {
     constexpr double least_weight = 1e-12;  // as closest_feature
     std::vector<int> met;
@@ -97,7 +97,7 @@ Corners edge_corners(const ContactPair& pair, int first, bool is_mollified) {
     return {met[0], met[1], met[2]};
 }
 
-// Of one step.
+// The contact states of one step.
 class StatesAt {
 public:
     StatesAt(const Model& model, const std::vector<PlaneFaces>& faces, const core::energy::StepProblem& problem,

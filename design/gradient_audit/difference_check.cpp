@@ -27,7 +27,7 @@ struct DifferenceSteps {
     VectorX size;       ///< per quantity: its largest value
     VectorX tolerance;  ///< per quantity: what need not be distinguished
 
-    // Of (q(s) - q(-s)) / 2s: standard deviation noise / (sqrt(2) s), three of it.
+    // The error of (q(s) - q(-s)) / 2s by noise: standard deviation noise / (sqrt(2) s), three of it.
     double noise_error(Eigen::Index q, double step) const { return 3 / std::sqrt(2.0) * noise[q] / step; }
 };
 
@@ -147,7 +147,7 @@ private:
         return true;
     }
 
-    // @param step  Of the newest difference.
+    // @param step  The step of the newest difference.
     std::vector<DifferenceEstimate> estimates(double step) const {
         std::vector<DifferenceEstimate> result;
         if (differences_.empty()) return result;
@@ -218,8 +218,8 @@ double told_error(bool resolved, double relative_error, double difference_error)
     return resolved ? relative_error : std::max(0.0, relative_error - difference_error);
 }
 
-// Of differences that ended early only those are taken that are as good as the limit. @return per parameter, whether some of it, or all,
-// was not compared
+// Differences that ended early are taken only if they are as good as the limit. @return per parameter, whether some of it, or all, was not
+// compared
 std::vector<bool> compare(const problem::DesignProblem& problem, const MatrixX& adjoint, const std::vector<ParameterDifferences>& found,
                           const DifferenceSteps& steps, const CheckOptions& options, CheckReport& report) {
     std::vector<bool> is_open(found.size(), false);

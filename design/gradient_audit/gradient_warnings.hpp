@@ -20,7 +20,7 @@ double gradient_reach(const description::Design& design, const VectorX& gradient
 /// most a tenth of the violation.
 bool is_out_of_reach(const description::Design& design, int constraint, double value, const VectorX& gradient);
 
-/// That it is, with the numbers, what may hide the dependence, and what to do. Contract: is_out_of_reach
+/// Says that it is, with the numbers, what may hide the dependence, and the remedy. Contract: is_out_of_reach
 std::string out_of_reach_text(const description::Design& design, int constraint, double value, const VectorX& gradient);
 
 struct GradientWarnings {
@@ -29,7 +29,7 @@ struct GradientWarnings {
 };
 
 /// @param values     The objective, then each constraint's value, SI (design_line.hpp, quantities_of). Contract: 1 + m.
-/// @param gradients  Of these, a row each, SI. Contract: (1 + m) x n.
+/// @param gradients  The gradients of these, a row each, SI. Contract: (1 + m) x n.
 GradientWarnings gradient_warnings(const description::Design& design, const VectorX& values, const MatrixX& gradients);
 
 }  // namespace fettle::design::gradient_audit

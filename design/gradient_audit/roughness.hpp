@@ -69,7 +69,7 @@ VectorX downhill_direction(const description::Design& design, const VectorX& p, 
 /// its margin, and no finer than settings.tolerance in the unit that its violation is counted in. SI.
 VectorX quantity_tolerances(const description::Design& design, const problem::DesignEvaluation& at);
 
-/// What makes a motion smoother, and with it what is measured of it, a sentence each.
+/// Remedies that make a motion smoother, and with it what is measured of it, a sentence each.
 std::vector<std::string> motion_remedies(const core::scene::Scene& scene);
 
 /// What would make the rough quantities of the report smoother, a sentence each; empty if none is rough.

@@ -26,7 +26,7 @@ Matrix34 motion_matrix(const Vector6& tangent, const Matrix3& rotation) {
     return out;
 }
 
-// Of the sizes of things: each part of it counts about as much as the others.
+// A random direction by the sizes of things: each part of it counts about as much as the others.
 ModelTangent random_direction(const Model& model, int steps, std::mt19937_64& random) {
     std::uniform_real_distribution<double> uniform(-1, 1);
     const auto vector = [&](double scale) { return Vector3(scale * Vector3::NullaryExpr([&] { return uniform(random); })); };
@@ -87,7 +87,7 @@ struct Motion {
     adjoint::stepper::StepTangents within;
 };
 
-// Of what a seed has of some steps, or of none.
+// The product of a seed and a change, over the steps that the seed has, some or none.
 double within_steps(const std::vector<std::vector<Matrix34>>& bars, const std::vector<std::vector<Matrix34>>& dots) {
     double sum = 0;
     for (size_t t = 0; t < bars.size(); ++t)
@@ -105,8 +105,8 @@ double forwards(const adjoint::TrajectoryGradient& seed, const Trajectory& traje
     return sum + within_steps(seed.velocity_bar, motion.within.velocities) + within_steps(seed.lag_bar, motion.within.lags);
 }
 
-// What the quantity would change by if every body moved as far as the direction moves the start, and as fast, and if what rows carry came
-// and went.
+// The change of the quantity if every body moved as far as the direction moves the start, and as fast, and if the forces of constraints
+// came and went.
 // @param multipliers  [step], of the rows; none: the seed asks for none.
 double reach_of(const adjoint::TrajectoryGradient& seed, const Trajectory& trajectory, const ModelTangent& direction,
                 const std::vector<VectorX>& multipliers) {
@@ -126,7 +126,7 @@ double reach_of(const adjoint::TrajectoryGradient& seed, const Trajectory& traje
     return sum;
 }
 
-// Of the objective and of each constraint: what depends on the motion of one scenario.
+// The seeds of the objective and of each constraint that depend on the motion of one scenario.
 std::vector<adjoint::TrajectoryGradient> motion_seeds(const description::Design& design, const problem::DesignEvaluation& at,
                                                       const description::Simulated& simulated) {
     const auto zero = [&] { return adjoint::zero_seeds(simulated.model, count_of(simulated.trajectory.steps)); };
@@ -176,7 +176,7 @@ void compare(const description::Simulated& simulated, const std::vector<adjoint:
         for (size_t q = 0; q < seeds.size(); ++q) {
             const Pairing back = backwards(model, (*gradients)[q], direction);
             const double forth = forwards(seeds[q], trajectory, motion);
-            // Of what motors drive, or springs, nothing in the direction moves the quantity, and both are rounding.
+            // Where motors or springs drive a quantity, nothing in the direction moves it, and both are rounding.
             const double nothing = 1e-6 * reach_of(seeds[q], trajectory, direction, multipliers);
             const double scale = std::max({std::abs(back.sum), std::abs(forth), 1e-2 * back.parts, nothing});
             double apart = back.sum == forth ? 0 : std::abs(back.sum - forth) / scale;

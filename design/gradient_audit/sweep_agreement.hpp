@@ -11,8 +11,8 @@ namespace fettle::design::gradient_audit {
 
 struct SweepAgreement {
     /// Largest |backwards - forwards| of all quantities and directions, relative to the larger of the two, and to no less than a hundredth
-    /// of their parts' sum (by body and kind of number) and to a millionth of what the quantity would change by if all bodies moved by
-    /// their sizes and what joints and motors carry came and went. Infinity if either is no number.
+    /// of their parts' sum (by body and kind of number) and to a millionth of the change of the quantity if all bodies moved by their sizes
+    /// and what joints and motors carry came and went. Infinity if either is no number.
     double disagreement = 0;
     std::string quantity;  ///< whose it is
     std::string failure;   ///< why nothing could be compared; empty: it could

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What is known of a problem round one evaluated point, and what it promises.
+/// A model of a problem round one evaluated point, from what is known there, and the gain that it promises.
 #pragma once
 
 #include <optional>

@@ -165,7 +165,7 @@ private:
         if (!now_.solution.solved || now_.gain <= worth_ || margin_worth() <= worth_) now_ = last;
     }
 
-    // To first order, what the best point's distance from what its step aims at and reaches is worth.
+    // The worth, to first order, of the best point's distance from what its step aims at and reaches.
     double margin_worth() const {
         const VectorX y = whole_multipliers(now_.solution);
         double sum = 0;
@@ -278,7 +278,7 @@ private:
         return found;
     }
 
-    // The one answer to what holds a variable: nothing does what could still move.
+    // The one answer to what holds a variable: nothing holds one that could still move.
     Held what_holds(Eigen::Index k) const {
         const std::vector<int> moving = improvable();
         if (std::find(moving.begin(), moving.end(), static_cast<int>(k)) != moving.end()) return Held::free;

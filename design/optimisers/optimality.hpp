@@ -9,11 +9,11 @@
 /// The search has kept a margin to what is required. Where nothing is left to gain with it, steps go to within a twentieth of it, or a
 /// quarter where that was not enough, and a design that could gain so is not optimal, even if shorter steps promise nothing. A step that
 /// misses a requirement by less than its margin, because requirements curve, is followed by the shortest step back. Where no gain is left
-/// to first order, one or two designs are looked at aside, along what neither requirements nor bounds hold and nothing that was evaluated
-/// has told of (unexplored.hpp): a saddle is left for what is found there. A step that promises a gain and leads to designs that cannot be
-/// evaluated, however short it is made, shows no optimum either: what stands in the way is no requirement that was asked for. Values that
-/// scatter by more than the tolerance (noise.hpp: the objective's own noise, and each constraint's times its multiplier) show no optimum,
-/// whatever the derivatives say.
+/// to first order, one or two designs are looked at aside, along directions that neither requirements nor bounds hold and that nothing
+/// evaluated has told of (unexplored.hpp): a saddle is left for what is found there. A step that promises a gain and leads to designs that
+/// cannot be evaluated, however short it is made, shows no optimum either: what stands in the way is no requirement that was asked for.
+/// Values that scatter by more than the tolerance (noise.hpp: the objective's own noise, and each constraint's times its multiplier) show
+/// no optimum, whatever the derivatives say.
 #pragma once
 
 #include <string>

@@ -269,7 +269,7 @@ private:
         return native;
     }
 
-    // The verdict needs derivatives, and so does what tells what limits a design. A derivative-free optimiser has had none.
+    // The verdict needs derivatives, and so do the limits of a design. A derivative-free optimiser has had none.
     static bool complete_best(Evaluator& evaluator) {
         try {
             return evaluator.at(evaluator.best_scaled_point()).usable;

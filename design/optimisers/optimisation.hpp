@@ -50,7 +50,8 @@ struct OptimiserReport {
     /// Where the smoother models have led to, if the run ended before the problem itself was evaluated there: it may be better than `best`.
     /// Empty: it was, or there are none.
     VectorX untried;
-    /// Of the smoother models, then of the problem itself: from where they led to and, if that ended worse than the start, from the start.
+    /// The stages of the smoother models, then of the problem itself: from where they led to and, if that ended worse than the start, from
+    /// the start.
     std::vector<StageReport> stages;
 };
 

@@ -44,7 +44,7 @@ struct QuadraticSolution {
     double decrease = 0;      ///< of the function to be minimised, from d = 0; at least 0
 };
 
-/// Deterministic. Of several threads one computes at a time (run_ipopt).
+/// Deterministic. Only one of several threads computes at a time (run_ipopt).
 QuadraticSolution solve(const QuadraticProgram& program);
 
 /// sum_i v_i of rows with these values.

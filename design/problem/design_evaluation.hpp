@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A design, simulated and measured: what DesignProblem::evaluate (design_problem.hpp) is asked for, and what it answers.
+/// A design, simulated and measured: the question of DesignProblem::evaluate (design_problem.hpp), and its answer.
 #pragma once
 
 #include <cmath>
@@ -41,7 +41,7 @@ struct ContinuedRow {
 };
 
 /// A constraint or a term of the objective that is asked for over the tolerances: its measurement has its reserve for them, is computed and
-/// not proven (but for what is asked to be: proven_clearance.hpp), and keeps the certificate of what is drawn.
+/// not proven (unless that is asked for: proven_clearance.hpp), and keeps the certificate of the design as drawn.
 struct RobustRow {
     bool of_objective = false;
     int index = 0;                   ///< of the constraint or term
@@ -50,7 +50,7 @@ struct RobustRow {
     double standard_deviation = 0;   ///< over the tolerances, SI
     double reserve = 0;              ///< what is added to the drawn value, SI
     VectorX gradient;                ///< d value / d deviation, per tolerance, SI
-    VectorX deviations{};            ///< of what is proven: those of the worst parts, SI
+    VectorX deviations{};            ///< of a proven one: the deviations of the worst parts, SI
     bool is_at_kink = false;         ///< gradients jump close by: how the reserve changes from there is not known, and counts as nothing
 };
 
@@ -79,7 +79,7 @@ struct DesignEvaluation {
     double backward_seconds = 0;               ///< seeds, sweep, chain
 };
 
-/// What a search sees of the constraints, with those that are continued: values, and derivatives (those of `jacobian`), SI.
+/// The constraints as a search sees them, with those that are continued: values, and derivatives (as `jacobian` has them), SI.
 VectorX search_values(const DesignEvaluation& evaluation);
 MatrixX search_jacobian(const DesignEvaluation& evaluation);
 /// What is to be known of a constraint beside its numbers: its fault, or why it is continued; empty: nothing.

@@ -134,7 +134,7 @@ Result<DesignProblem> DesignProblem::create(Design design) {
     return problem;
 }
 
-// @param model  Of the scene as written.
+// @param model  The model of the scene as written.
 Result<DesignProblem::Setting> DesignProblem::fixed(Design design, Model model) {
     core::setup::BuildOptions options;
     options.check_start = false;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// Owns the chain from parameters to numbers and their gradients, and holds no mathematics of its own:
 ///   parameters -> parts and poses -> Scene -> Model -> simulate -> objective and constraints -> seeds -> reverse sweep -> d/d(parameters)
-/// Of a design with scenarios each is simulated and swept by itself, at the same time; derivatives of a quantity are the sums of theirs.
+/// Each scenario of a design is simulated and swept by itself, at the same time; derivatives of a quantity are the sums of theirs.
 /// Fixed once, from the scene as written, so that they are no hidden function of the parameters: reference points, barrier stiffness kappa,
 /// activation distance, solver tolerance, stiffness of stops and the radii by which stops and friction of angles are measured. The same
 /// design has the same numbers, bit for bit, whether a program made it or a file.
-/// Of a robust design (description/made_design.hpp) the design as made is simulated, without deviations, which is the same motion, bit for
+/// A robust design (description/made_design.hpp) is simulated as made, without deviations, which is the same motion, bit for
 /// bit; what is asked for over the tolerances follows (evaluate_over_tolerances.hpp).
 #pragma once
 

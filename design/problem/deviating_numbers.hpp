@@ -35,7 +35,7 @@ bool varies(const std::vector<Number>& numbers);
 
 class DeviatingNumbers {
 public:
-    /// @param scene  Of the design, at the base.
+    /// @param scene  The scene of the design, at the base.
     DeviatingNumbers(const description::Design& design, const std::vector<description::Tolerance>& tolerances, const VectorX& base,
                      core::scene::Scene scene);
     DeviatingNumbers(const DeviatingNumbers&) = delete;

@@ -30,7 +30,7 @@ bool slides(const Joint& joint) {
     return joint.kind == JointKind::prismatic || joint.kind == JointKind::cylindrical || joint.kind == JointKind::screw;
 }
 
-// Of a joint in the frame of its body a.
+// The axis of a joint in the frame of its body a.
 Vector3 axis_of(const Model& model, const Joint& joint) { return model.mechanism.set.frames[joint.frame_a].axes.col(2); }
 
 Matrix3 written_rotation(const Model& model, int body) {

@@ -14,7 +14,7 @@
 ///   masses, loads, springs,
 ///   friction, velocities            nothing
 /// Beside that, bodies that neither joints' ranges nor motors hold stand where the assembly puts them, least by mass: where deviations move
-/// the joints away from the bodies as written, what moves them is refused.
+/// the joints away from the bodies as written, the deviations that do so are refused.
 #pragma once
 
 #include <optional>
@@ -27,7 +27,7 @@
 
 namespace fettle::design::problem {
 
-/// What is refused. @param model  At the base of the numbers. @param ranges  Of the model; nothing: a tree as assembled.
+/// What is refused. @param model  At the base of the numbers. @param ranges  The model's; nothing: a tree as assembled.
 Errors refused_places(const DeviatingNumbers& numbers, const core::model::Model& model,
                       const std::optional<core::clearance::LoopedRanges>& ranges);
 

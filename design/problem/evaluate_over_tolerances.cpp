@@ -145,7 +145,7 @@ public:
     }
 
 private:
-    // Of what is proven: what lies between the two values.
+    // The offset of a proven number is the difference between its values as made and as drawn.
     RobustOffset offset_of(std::size_t r, const VectorX& gradient, const std::vector<description::Measurement>& drawn) const {
         if (!proven_[r]) return offset_of(asked_[r], gradient);
         RobustOffset out;

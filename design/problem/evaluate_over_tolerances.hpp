@@ -22,8 +22,8 @@
 
 namespace fettle::design::problem {
 
-/// Of a standard deviation. Differences of gradients err by its square times what the second order's third derivatives add, and by the
-/// noise of gradients over it.
+/// The share of a standard deviation. Differences of gradients err by its square times what the second order's third derivatives add, and
+/// by the noise of gradients over it.
 inline constexpr double robust_step = 1.0 / 32;
 
 /// design.as_made->design, to be asked by several threads at once.
@@ -42,7 +42,7 @@ struct EvaluateAsMade {
 DesignEvaluation evaluate_over_tolerances(const description::Design& design, const EvaluateAsMade& as_made, const VectorX& p,
                                           const EvaluateOptions& options);
 
-/// The same of some constraints that a simulation changes nothing of, without the reserves' derivatives, but for those of what is proven.
+/// The same of some constraints that a simulation changes nothing of, without the reserves' derivatives, but for those of proven ones.
 /// @param p     The parameters as drawn.
 /// @param rows  Theirs, as made: gets the reserves, and loses the columns of parameters that tolerances alone have.
 /// @return false: something that is to be proven cannot be.

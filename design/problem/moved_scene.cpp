@@ -72,7 +72,7 @@ private:
         return ShapeInstance{std::move(mesh).value(), {}};
     }
 
-    // Of a body whose dimensions are moved.
+    // Makes the shape of a body whose dimensions are moved.
     void make_shape(size_t i, Errors& errors) {
         const Shape* shape = description::shape_of(design_, static_cast<int>(i));
         if (shape == nullptr) return;

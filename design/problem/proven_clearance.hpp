@@ -24,7 +24,7 @@ VectorX base_point(const description::MadeDesign& made, const VectorX& here);
 
 /// @param here   Parameters as made, without a deviation. @param model  At base_point.
 /// @param range  As assembled, or over the ranges, of whole bodies. @param tolerance  upper - lower wanted [m]
-/// Errors: what toleranced_bodies refuses; joints without ranges; what is undecided, with the reason.
+/// Errors: all that toleranced_bodies refuses; joints without ranges; what is undecided, with the reason.
 Result<ProvenClearance> proven_clearance(const description::MadeDesign& made, const VectorX& here, const core::model::Model& model,
                                          const quantities::ClearanceRange& range, double tolerance);
 

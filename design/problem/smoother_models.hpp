@@ -32,8 +32,9 @@ double play_of_fits(const DesignProblem& problem, const VectorX& p);
 std::vector<SmootherDesign> smoother_models(const DesignProblem& problem, const VectorX& p);
 
 /// The model in which the play of a design's fits (fits.hpp) is taken up: contact of the same kind as the design's own, nearly as wide as
-/// the play at these parameters, so that parts stay in the middle of their fits. It says what the play changes where nothing else has
-/// wider contact that matters: not where a contact that is none of a fit's carries a load, nor where it would reach across what is near.
+/// the play at these parameters, so that parts stay in the middle of their fits. It shows the effect of the play where nothing else has
+/// wider contact that matters: not where a contact that is none of a fit's carries a load, nor where it would reach across parts that are
+/// near.
 struct PlayTakenUp {
     std::optional<SmootherDesign> model;  ///< none: there is no fit, contact is as wide as the play already, or:
     std::string why_not = {};             ///< a sentence without its full stop: why there is none, though there are fits

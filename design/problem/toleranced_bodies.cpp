@@ -213,7 +213,7 @@ private:
 
     // --- poses
 
-    // Of a body's file frame, as written.
+    // The rotation of a body's file frame, as written.
     NumberMatrix rotation_of(int i) const {
         const core::scene::Body& body = scene_.bodies[i];
         const bool is_vector = body.orientation.kind == core::scene::Orientation::Kind::vector;

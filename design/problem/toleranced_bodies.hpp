@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// The bodies of a design as made, for clearances within tolerances (core/certificate/toleranced.hpp): what of its parts, poses, joints and
-/// motions follows from the numbers with a tolerance is recorded as formulas of their deviations. deviating_places.hpp says of every number
-/// of a scene whether it is.
+/// The bodies of a design as made, for clearances within tolerances (core/certificate/toleranced.hpp): its parts, poses, joints and
+/// motions, as far as they follow from the numbers with a tolerance, are recorded as formulas of their deviations. deviating_places.hpp
+/// says of every number of a scene whether it is.
 ///   as assembled   bodies are where the scene has them, or where motors and loops hold their joints at the start
 ///   over ranges    the joints' coordinates in their ranges as designed (core/clearance/looped_ranges.hpp); in closed loops those that
 ///                  others determine follow
@@ -26,8 +26,8 @@ namespace fettle::design::problem {
 VectorX base_of(const std::vector<description::Tolerance>& tolerances);
 
 /// @param design  As made, of one scenario (description::design_of_scenario), without faults. @param model  At its base.
-/// @param ranges  Of the model; nothing: as assembled.
-/// Errors, by name: what deviating_places.hpp refuses (unsupported); parts whose vertices are no formulas (unsupported), that cannot be
+/// @param ranges  The ranges of the model; nothing: as assembled.
+/// Errors, by name: all that deviating_places.hpp refuses (unsupported); parts whose vertices are no formulas (unsupported), that cannot be
 /// made, or are made with other facets, at the ends of their tolerances; scripts that turn a body about its centre of mass, which deviates.
 Result<core::certificate::Toleranced> toleranced_bodies(const description::Design& design,
                                                         const std::vector<description::Tolerance>& tolerances,

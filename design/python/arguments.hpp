@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What Python gave, looked at before the library is asked: refused as fettle.Error, whose `where` is the argument, and whose message says
-/// what was found and what is allowed. The same is allowed as on the command line.
+/// Checks of Python's arguments before the library is asked: faults are refused as fettle.Error, whose `where` is the argument, and whose
+/// message says what was found and the values that are allowed. The same is allowed as on the command line.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The parts of the Python module `fettle._fettle`, one file each, in the order of the library's layers. No arithmetic: what is computed is
-/// the library's, and what is pleasant is Python's (fettle/).
+/// The parts of the Python module `fettle._fettle`, one file each, in the order of the library's layers. No arithmetic: all that is
+/// computed is the library's, and what is pleasant is Python's (fettle/).
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -41,7 +41,7 @@ std::vector<PairRequest> pairs_that_may_collide(const Model& model, double minim
     return pairs;
 }
 
-// Of a PairRequest, or of (a, b) and (a, b, minimum); bodies by name or number.
+// Makes a pair of a PairRequest, or of (a, b) and (a, b, minimum); bodies by name or number.
 PairRequest pair_from(py::handle given, const std::vector<std::string>& names, double minimum, const std::string& where) {
     PairRequest pair{.a = 0, .b = 0, .minimum = minimum};
     const auto set_bodies = [&](const py::object& a, const py::object& b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The members of what describes a design and what comes of it, for records.hpp.
+/// The members of the classes that describe a design and its results, for records.hpp.
 #pragma once
 
 #include "fettle/design/description/design.hpp"

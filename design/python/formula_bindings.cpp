@@ -83,7 +83,7 @@ Formula from_state(const py::tuple& state) {
     out.inputs = state[1].cast<std::vector<std::string>>();
     out.dimension.exponents = state[2].cast<std::array<double, 4>>();
     out.text = state[3].cast<std::string>();
-    // Of a pickle that is none of ours nothing is evaluated.
+    // Nothing is evaluated of a pickle that is none of ours.
     const auto is_sound = [&](std::size_t k) {
         const Node& node = out.nodes[k];
         if (node.operation > Operation::choose) return false;

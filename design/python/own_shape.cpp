@@ -81,7 +81,7 @@ core::geometry::Mesh mesh_from(py::handle answer, const std::string& where) {
     return mesh_from_python(answer);
 }
 
-// What `make` returns of a shape of Python's, or what is wrong with it. Takes the interpreter's lock.
+// The result of `make` for a shape of Python's, or its fault. Takes the interpreter's lock.
 template <class Make>
 auto made_by(const Make& make, const std::string& where) -> Result<decltype(make())> {
     const py::gil_scoped_acquire locked;

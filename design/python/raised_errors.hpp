@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Errors of the library on their way to Python, as what is thrown; what becomes of them there is errors.hpp.
+/// Errors of the library on their way to Python, as exceptions; their fate there is in errors.hpp.
 #pragma once
 
 #include <exception>

@@ -8,12 +8,12 @@
 /// sign of the bound and the gap g_t of the two bodies (of the nearest that it may collide with, for a force of all), as contact measures
 /// it (core/clearance/contact_gap.hpp), at the steps without contact
 ///   z_t = -sign k (g_t - dmin - dhat),   k = |bound| / (10 dhat),   else z_t = y_t,
-/// of which the same is taken as of y. At g = dmin + dhat, where contact begins, z is 0 as y is: the row is continuous, with a kink. It
-/// falls with the gap, and what is missed grows from the bound on by as much for every 10 dhat. What k should be the design does not say:
-/// in contact the force rises by its bound within less than dhat where the bodies are pressed together whatever they meet, and as slowly as
-/// what is behind them is soft where springs do. With 10 dhat a linear model aims at bodies that are pressed 10 dhat into each other. That
-/// is sure to make contact, where the force's own derivative takes over, without going far beyond it; and gaps of a mechanism's size
-/// outweigh what else is missed only as far as they are many times as large as contact.
+/// of which the same is taken as of y. At g = dmin + dhat, where contact begins, z is 0 as y is: the constraint is continuous, with a kink.
+/// It falls with the gap, and what is missed grows from the bound on by as much for every 10 dhat. The design does not say how large k
+/// should be: in contact the force rises by its bound within less than dhat where the bodies are pressed together whatever they meet, and
+/// as slowly as the parts behind them are soft where springs do. With 10 dhat a linear model aims at bodies that are pressed 10 dhat into
+/// each other. That is sure to make contact, where the force's own derivative takes over, without going far beyond it; and gaps of a
+/// mechanism's size outweigh what else is missed only as far as they are many times as large as contact.
 #pragma once
 
 #include <optional>

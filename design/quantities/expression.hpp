@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// A formula of other quantities and of the design's parameters: max_force / mass, travel_a - travel_b, stroke - 2 * gap.
 ///   J = f(q_1, .., q_n, p),   dJ = sum df/dq_i dq_i + df/dp dp
-/// so that one sweep backwards serves it, however many quantities it names. What is proven of it follows from what is proven of them: its
-/// bounds enclose f over theirs, rounding of f included (core/geometry/range.hpp), and are proven if all of theirs are. Where one of them
-/// can meet no bound, it meets none either.
+/// so that one sweep backwards serves it, however many quantities it names. Its proof follows from theirs: its bounds
+/// enclose f over their bounds, rounding of f included (core/geometry/range.hpp), and are proven if all of theirs are. Where one of
+/// them can meet no bound, it meets none either.
 ///
 ///     const auto ratio = Expression::parse("force / mass", {{"force", force}, {"mass", mass}}, design.parameters);
 #pragma once
@@ -30,7 +30,8 @@ public:
     /// Errors: a dimension that has no unit (wrong_type).
     static Result<std::shared_ptr<const Expression>> create(core::expression::Formula formula, const std::vector<NamedQuantity>& parts);
 
-    /// Of a text (core/expression/parse_formula.hpp) that names parts, and parameters of the design; numbers without a unit count in SI.
+    /// Parses a text (core/expression/parse_formula.hpp) that names parts, and parameters of the design; numbers without a unit count in
+    /// SI.
     static Result<std::shared_ptr<const Expression>> parse(std::string_view text, const std::vector<NamedQuantity>& parts,
                                                            const std::vector<description::Parameter>& parameters = {});
 

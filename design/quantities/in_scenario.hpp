@@ -41,12 +41,12 @@ private:
     int scenario_;
 };
 
-/// The quantity in that scenario. Of an expression, what it names that is of no scenario yet.
+/// The quantity in that scenario. An expression has those of its parts in it that are of no scenario yet.
 std::shared_ptr<const description::Quantity> in_scenario(const std::shared_ptr<const description::Quantity>& quantity, int scenario);
 
 /// What is measured, in whichever scenario: the quantity itself where it is of none.
 const description::Quantity& without_scenario(const description::Quantity& quantity);
-/// Of which scenario it is, by its number; 0 where it is of none, or an expression of several.
+/// The number of the scenario that it is of; 0 where it is of none, or an expression of several.
 int scenario_of(const description::Quantity& quantity);
 
 /// Is it of a scenario already, and an expression's parts each?

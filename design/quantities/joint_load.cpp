@@ -58,7 +58,7 @@ public:
         for_each_row([&](size_t i) { multiplier_bar[i] -= scale / weight_; });
     }
 
-    // Of scale (force . n), or of the torque.
+    // Adds the seeds of scale (force . n), or of the torque.
     void add_load_seeds(bool is_torque, const Vector3& n, double scale, size_t step, Seeds& seeds) const {
         const Vector3& arm = frames_[frame_].arm;
         Vector6 motion = Vector6::Zero();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// What a joint or motor carries at each step's end (core/stepper/joint_outputs.hpp): with m_i the multipliers of its rows c_i, of the
-/// potential times `weight`,
+/// The load of a joint or motor at each step's end (core/stepper/joint_outputs.hpp): with m_i the multipliers of its constraints c_i, of
+/// the potential times `weight`,
 ///   force     F = - sum m_i dc_i/dq / weight                 on body b (of a joint with the world alone: on that body), world [N]
 ///   torque    T = - sum m_i dc_i/dphi / weight - arm x F     on it, about the joint's point in b [N m]
 ///   effort    - m / weight                                   of a motor, along its joint's coordinate [N], [N m]
-/// For a direction n of the world, F . n is the rows' change along the translation n of the body, times -m_i / weight, and T . n that along
-/// the turn n about the joint's point, so that derivatives are those of a measure's change along a motion. Conditions of a joint that
+/// For a direction n of the world, F . n is the constraints' change along the translation n of the body, times -m_i / weight, and T . n
+/// that along the turn n about the joint's point, so that derivatives are of a measure's change along a motion. Conditions of a joint that
 /// follow from others carry nothing.
 #pragma once
 

@@ -2,7 +2,7 @@
 /// A law that a motion is to follow: a table (core/scene/curve.hpp, as a motor's) at each instant, over the time or along what another
 /// quantity is then, such as the angle of a cam; its values may follow from parameters,
 ///   y_t = sum_k w_k(x_t) v_k(p),   x_t = time_t, or the other's number;   dy_t = sum_k w_k dv_k + y'(x_t) dx_t
-/// In an expression over the steps (step_expression.hpp) it is what a lift or a turn deviates from.
+/// A lift or a turn deviates from it in an expression over the steps (step_expression.hpp).
 #pragma once
 
 #include <memory>

@@ -25,7 +25,7 @@ double mean_square(const std::vector<double>& y) {
     return std::inner_product(y.begin(), y.end(), y.begin(), 0.0) / static_cast<double>(y.size());
 }
 
-// Of the window's instants; none for `integral` and `at`, which are about times.
+// The number of the window's instants; none for `integral` and `at`, which are about times.
 double number_of_window(Over over, const std::vector<double>& y) {
     switch (over) {
         case Over::sum:
@@ -77,7 +77,7 @@ std::vector<double> weights_at(double time, std::size_t count) {
     return out;
 }
 
-// Of the integral in that time, likewise; before the first instant y is constant.
+// The weights of the integral in that time, likewise; before the first instant y is constant.
 std::vector<double> weights_between(double from, double to, std::size_t count) {
     std::vector<double> out(count, 0.0);
     out[0] += std::max(0.0, std::min(to, 0.0) - std::min(from, 0.0));
@@ -91,7 +91,7 @@ std::vector<double> weights_between(double from, double to, std::size_t count) {
     return out;
 }
 
-// Of a number that is linear in y: at a time, an integral.
+// The weights of a number that is linear in y: at a time, an integral.
 std::vector<double> linear_weights(const Reduction& reduction, const Instants& instants, std::size_t count) {
     const auto place = [&](double time) { return time / instants.timestep - instants.first; };
     if (reduction.at) return weights_at(place(*reduction.at), count);

@@ -21,7 +21,7 @@
 
 namespace fettle::design::quantities {
 
-/// Of the window's instants. The extremes are those of extreme.hpp: of what runs through the numbers, smooth in the parameters.
+/// Numbers of the window's instants. The extremes are as in extreme.hpp: of what runs through the numbers, smooth in the parameters.
 enum class Over {
     end,  ///< the last
     sum,
@@ -73,13 +73,13 @@ SignedExtreme extreme_of(Over over, const std::vector<double>& y);
 /// Is it one of these three?
 inline bool is_extreme(Over over) { return over == Over::largest || over == Over::least || over == Over::peak; }
 
-/// Of y after the derivative. NaN where an instant that it depends on has no finite number. Contract: check() finds nothing.
+/// The number of y after the derivative. NaN where an instant that it depends on has no finite number. Contract: check() finds nothing.
 double number_of(const Reduction& reduction, const std::vector<double>& y, const Instants& instants);
 /// d(number_of)/dy_k.
 std::vector<double> weights_of(const Reduction& reduction, const std::vector<double>& y, const Instants& instants);
 
 /// The derivative in time, at each instant, of the parabola through it and its two neighbours; at the first and last one, of the parabola
-/// through the first and last three. Of numbers or vectors; of order 0 y itself. Errors O(h^2), of the second derivative at the two ends
+/// through the first and last three. y has numbers or vectors; order 0 is y itself. Errors O(h^2), of the second derivative at the two ends
 /// O(h). Contract: three instants, where the order is not 0.
 template <class T>
 std::vector<T> time_derivative(const std::vector<T>& y, double timestep, int order) {

@@ -29,7 +29,7 @@ public:
     static Result<std::shared_ptr<const StepExpression>> create(core::expression::Formula formula, const std::vector<NamedQuantity>& parts,
                                                                 const Reduction& reduction);
 
-    /// Of a text, as Expression::parse.
+    /// Parses a text, as Expression::parse.
     static Result<std::shared_ptr<const StepExpression>> parse(std::string_view text, const std::vector<NamedQuantity>& parts,
                                                                const Reduction& reduction,
                                                                const std::vector<description::Parameter>& parameters = {});

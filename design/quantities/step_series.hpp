@@ -33,9 +33,9 @@ public:
     };
     Window window(const description::Simulated& simulated) const;
 
-    /// Of y_k.
+    /// The dimension of y_k.
     virtual Dimension instant_dimension() const = 0;
-    /// Of numbers(). Contract of both: there is a unit of it, which check() sees to (until then: number).
+    /// The dimension of numbers(). Contract of both: there is a unit of it, which check() sees to (until then: number).
     Dimension numbers_dimension() const;
     Dimension dimension() const final;
     /// Does the sign tell a direction, as of a torque about an axis? Not of magnitudes, nor of energies, whose zero is a convention.
@@ -43,7 +43,7 @@ public:
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
-    /// What the reduction cannot be taken of; the derivative of a magnitude, which is not that of its vector.
+    /// Faults of a reduction that cannot be taken; the derivative of a magnitude, which is not that of its vector.
     Errors check(const core::model::Model& model, int steps) const override;
 
 protected:
@@ -52,7 +52,7 @@ protected:
     /// Adds the seeds of sum_k weights[k] y_k.
     virtual void add_series_seeds(const description::Simulated& simulated, const std::vector<double>& weights,
                                   description::Seeds& seeds) const = 0;
-    /// The derivative in time of the series, and its seeds; those of a magnitude are that of the vector's derivative.
+    /// The derivative in time of the series, and its seeds; a magnitude's is the magnitude of the vector's derivative.
     virtual std::vector<double> series_derivative(const description::Simulated& simulated, int order) const;
     virtual void add_series_derivative_seeds(const description::Simulated& simulated, int order, const std::vector<double>& weights,
                                              description::Seeds& seeds) const;

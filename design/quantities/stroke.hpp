@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Stroke of a body along a world axis: largest minus smallest coordinate axis . q over the motion, of its reference point.
 ///
-/// The extremes are those of what runs through the configurations (extreme.hpp), not of the configurations themselves.
+/// The extremes are those of a curve that runs through the configurations (extreme.hpp), not of the configurations themselves.
 #pragma once
 
 #include <optional>

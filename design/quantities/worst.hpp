@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// The worst of several quantities, such as one in all of a design's scenarios:
-///   q = max_i q_i   (what is to be small),   q = min_i q_i   (what is to be large)
+///   q = max_i q_i   (to be made small),   q = min_i q_i   (to be made large)
 /// It has a kink where two are equal. Its derivative is that of the one that it is; the others are its branches, which the optimisers that
-/// know of branches take as rows, so that no maximum is differentiated (docs/method/design.md).
+/// know of branches take as constraints, so that no maximum is differentiated (docs/method/design.md).
 #pragma once
 
 #include <memory>

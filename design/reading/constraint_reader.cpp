@@ -167,7 +167,7 @@ private:
         add("upper", upper, &Bounds::upper);
     }
 
-    // Of those that parameters change the values at the parameters' values.
+    // Reads bounds; those that parameters change have the values at the parameters' values.
     Bounds read_bounds(const JsonNode& node, Dimension dimension, const std::optional<MovingBound>& lower,
                        const std::optional<MovingBound>& upper) const {
         Bounds bounds;

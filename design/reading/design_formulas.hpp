@@ -35,7 +35,7 @@ public:
     void add_parameters(const core::files::JsonNode& node, const std::vector<description::Parameter>& parameters);
     /// From here on a number is added to a variable of the design or of the scene: how far it is off as made. The design's own formulas
     /// follow from it; settings of the file that can follow from nothing are what they are where it is 0 (Measuring).
-    /// @param names  Of the added numbers, by variable. @param scene  Whose variables are read again.
+    /// @param names  The names of the added numbers, by variable. @param scene  Whose variables are read again.
     void add_deviations(const std::map<std::string, std::string>& names, core::files::JsonDocument& scene);
     /// The design's own `variables`.
     void read_variables(const core::files::JsonNode& node);
@@ -53,8 +53,8 @@ public:
     /// The formula of a number that parameters change: a text that begins with "=". Nothing where it is another number, or is wrong; then
     /// reading the number as such tells what is wrong with it.
     std::optional<core::expression::Formula> followed(const core::files::JsonNode& node, Dimension dimension, double si_per_number) const;
-    /// While one lives, what is read is a number of what is measured: where a deviation reaches it and it cannot follow, it is refused, as
-    /// it is where a parameter does. Other numbers of the file (margins, weights, settings) are what they are without deviations.
+    /// While one lives, what is read is a measured number: where a deviation reaches it and it cannot follow, it is refused, as it is where
+    /// a parameter does. Other numbers of the file (margins, weights, settings) are as they are without deviations.
     class Measuring {
     public:
         explicit Measuring(const DesignFormulas& formulas) : formulas_(formulas) { ++formulas_.measuring_; }

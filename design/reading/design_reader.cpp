@@ -128,7 +128,7 @@ private:
         });
     }
 
-    // What makes the parts, unless the caller says what does.
+    // The process that makes the parts, unless the caller names it.
     ProcessChoice read_processes(const JsonNode& node) {
         ProcessChoice choice;
         choice.folder = fs::path(file_.path).parent_path().string();
@@ -167,7 +167,7 @@ private:
         return out;
     }
 
-    // Of a design as drawn they are checked, and left. @param parameters  As made, but for those of places.
+    // The tolerances of a design as drawn are checked, and left. @param parameters  As made, but for those of places.
     void take_tolerances(std::vector<ToleranceEntry>& entries, const JsonNode& scene, const ToleranceUnits& units,
                          const DesignFormulas& formulas, const std::vector<description::Parameter>& parameters) {
         if (entries.empty()) return;
@@ -182,7 +182,7 @@ private:
         for (ToleranceEntry& entry : entries) file_.tolerances.push_back(std::move(entry.tolerance));
     }
 
-    // Of a design as made they are checked, and left: what is made has to meet the requirements without a reserve.
+    // The requests over tolerances of a design as made are checked, and left: it has to meet the requirements without a reserve.
     void take_over_tolerances(const JsonNode& root, bool has_none) {
         if (description::asks_over_tolerances(design_) && has_none)
             root.fail(ErrorCode::missing_key,
@@ -421,7 +421,7 @@ private:
         }
     }
 
-    // Of the derivatives that the design takes.
+    // Remarks on the derivatives that the design takes.
     void take_remarks(const Setting& setting) {
         for (size_t i = 0; i < setting.shapes.size(); ++i) {
             if (!setting.shapes[i]) continue;

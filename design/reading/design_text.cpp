@@ -27,7 +27,7 @@ void make_numbers_equal(nlohmann::json& json) {
     for (auto& child : json) make_numbers_equal(child);
 }
 
-// All of a mesh: what its file, or what made it, may have had from others that nobody opened here.
+// Adds all of a mesh: its file, or its maker, may depend on other files that nobody opened here.
 void add_mesh(core::files::Fnv1a& hash, const core::geometry::Mesh& mesh) {
     const auto add = [&](const auto& list, const auto& add_one) {
         hash.add(static_cast<std::uint64_t>(list.size()));

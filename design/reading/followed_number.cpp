@@ -42,7 +42,7 @@ std::string of_body(const JsonNode& file, const std::string& body, bool turns) {
     return {};
 }
 
-// Of the one end that is given, which the other is computed from.
+// Tells of the one end that is given, which the other is computed from.
 std::string of_end(const JsonNode& each, const std::string& pair, const std::string& pointer, const char* what) {
     const auto is_given_alone = [&](const std::string& end, const std::string& other) {
         return pointer.find("/" + pair + end + "/") != std::string::npos && !each[pair + other].exists() && !each[pair].exists();

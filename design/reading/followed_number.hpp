@@ -11,7 +11,7 @@
 
 namespace fettle::design::reading {
 
-/// What follows from the number at `place` as the file is read, and what to do instead; empty: nothing does.
+/// Names the number that follows from the one at `place` as the file is read, and what to do instead; empty: nothing follows.
 /// @param file  The scene's file, whose `joints`, `springs` and `dampers` say how their ends are given.
 std::string what_follows(const core::files::JsonNode& file, const core::scene::Scene& scene, const core::scene::Place& place);
 

@@ -57,7 +57,7 @@ Errors foreign_error(const std::string& path) {
     return {{ErrorCode::unsupported, path, what + "; " + read_here()}};
 }
 
-/// Of a design the meshes are read as its scene says; asked to be strict, the scene is looked at once more.
+/// The meshes of a design are read as its scene says; asked to be strict, the scene is looked at once more.
 /// @param made  Its parts.
 Errors strict_faults(const std::string& scene_path, const InputOptions& options, const std::shared_ptr<std::vector<MadePart>>& made) {
     core::scene::ReadOptions read_options = scene_read_options(options.mesh_dirs, options.programs, made);
@@ -100,7 +100,7 @@ Errors faults_of_part(Errors errors, const std::string& path) {
     const std::string file = std::filesystem::path(path).filename().string();
     for (Error& error : errors) {
         if (!error.where.starts_with(path + "#")) continue;
-        // Of what the part's own reader says the message begins with its place: "/folder/a.part.json#/solid: ...".
+        // The message begins with its place if it is from the part's own reader: "/folder/a.part.json#/solid: ...".
         const std::size_t end = error.message.find(": "), named = error.message.rfind(file, end);
         const bool has_place = end != std::string::npos && named != std::string::npos && named + file.size() < end &&
                                (named == 0 || error.message[named - 1] == '/');

@@ -46,8 +46,8 @@ struct LoadedModel {
     std::shared_ptr<const problem::DesignProblem> problem;  ///< of a design; else null
 };
 
-/// From a scene, or from a design at its parameters' values, in one of its scenarios. Errors: what is neither (a mesh, a table, another
-/// program's file) is named with what is read instead; with `strict` its warnings too. @param kind  of the file
+/// From a scene, or from a design at its parameters' values, in one of its scenarios. Errors: a file that is neither (a mesh, a table,
+/// another program's file) is named with what is read instead; with `strict` its warnings too. @param kind  of the file
 Result<LoadedModel> load_model(const std::string& path, FileKind kind, const InputOptions& options);
 Result<LoadedModel> load_model(const std::string& path, const InputOptions& options);
 
@@ -57,8 +57,8 @@ Result<LoadedModel> loaded_design(DesignFile file, const VectorX& values, const 
 /// Which of the design's scenarios is called so; "": the first. Errors (unknown_key): none is. @param path  of the file, for messages
 Result<int> scenario_of(const description::Design& design, const std::string& name, const std::string& path);
 
-/// A design, for what takes nothing else, and all of its scenarios. Errors: one is asked for; a file that is something else by its name and
-/// first character is named with what is read instead; with `strict` also faults of its meshes, and what is doubted of its scene.
+/// Opens a design, for commands that take nothing else, with all of its scenarios. Errors: one is asked for; a file that is something else
+/// by its name and first character is named with what is read instead; with `strict` also faults of its meshes, and doubts about its scene.
 Result<DesignFile> open_design(const std::string& path, const InputOptions& options);
 
 /// What `strict` makes of warnings.

@@ -12,7 +12,7 @@
 
 namespace fettle::design::reading {
 
-/// @param variables    Of the scene, as its file has them.
+/// @param variables    The scene's variables, as its file has them.
 /// @param length_unit  The file's: for a parameter that names no unit and has no other dimension.
 /// Faults go to the node's document.
 std::vector<description::Parameter> read_parameters(const core::files::JsonNode& node, const std::vector<core::scene::Variable>& variables,

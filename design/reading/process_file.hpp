@@ -2,8 +2,8 @@
 /// A user's own process (tolerances/process.hpp) as a file, NAME.process.json, described by process.schema.json beside this file:
 ///     {"fettle_process": 1, "units": "mm", "based_on": "fdm", "correlation": 0.5,
 ///      "features": {"hole": {"bias": -0.18, "tolerance": 0.15}, "pin": {"bias": 0.05, "spread": 0.04}}}
-/// The name of the process is the file's. What it does not say is that of the process that it is based on. `fettle process` makes it of
-/// what was measured.
+/// The name of the process is the file's. All that it does not say is as in the process that it is based on. `fettle process` makes it of
+/// measurements.
 #pragma once
 
 #include <string>

@@ -150,7 +150,7 @@ bool has_reduction(const JsonNode& node) {
     return std::any_of(std::begin(reduction_keys), std::end(reduction_keys), [&](std::string_view key) { return node[key].exists(); });
 }
 
-// @param of_instants  What an instant's number is. Of what depends on the motion, Quantity::check tells.
+// @param of_instants  What an instant's number is. Quantity::check tells of what depends on the motion.
 quantities::Reduction read_reduction(const JsonNode& node, Dimension of_instants) {
     static const std::vector<std::string_view> names{"end", "sum", "mean", "largest", "least", "peak", "rms", "integral"};
     const std::string name = node["over"].choice(names).value_or("end");
@@ -252,7 +252,7 @@ std::shared_ptr<const Quantity> read_motor_effort(const JsonNode& node, const Re
     return std::make_shared<quantities::JointLoad>(of, read_reduction(node, of.effort_dimension));
 }
 
-// Of the force, or its torque about a point.
+// Reads the force, or its torque about a point.
 std::shared_ptr<const Quantity> read_contact_load(const JsonNode& node, const ReadContext& context,
                                                   const std::optional<quantities::OwnPoint>& about) {
     const auto body = context.body(node.require("body"));

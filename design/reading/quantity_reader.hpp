@@ -35,7 +35,7 @@ std::shared_ptr<const description::Quantity> read_quantity(const QuantityType& t
 
 inline constexpr std::string_view expression_type = "expression";
 
-/// What a clearance is between, and over what: all keys of the quantity.
+/// The bodies that a clearance is between, and what it is over: all keys of the quantity.
 std::optional<quantities::ClearanceRange> read_clearance_range(const core::files::JsonNode& node, const ReadContext& context);
 
 /// The `quantities` of a design file, which expressions name:

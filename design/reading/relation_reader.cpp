@@ -20,7 +20,7 @@ using description::Bounds;
 using description::Relation;
 using description::RelationValue;
 
-constexpr double usual_slack = 1e-5;  // of what a relation changes by over the parameters' ranges: above what optimisers leave open
+constexpr double usual_slack = 1e-5;  // share of a relation's change over the parameters' ranges: above what optimisers leave open
 
 // In which a number without a unit is understood; none: it has to have one.
 bool may_be_plain(const DimensionPowers& dimension) {

@@ -9,8 +9,8 @@
 
 namespace fettle::design::reading {
 
-/// Is what the pointer names neither of a part nor of where it is at the start (gravity, motors, loads, what moves a body ...)? Of
-/// variables that is not known: have_same_parts.
+/// Is what the pointer names neither of a part nor of where it is at the start (gravity, motors, loads, a body's motion ...)? That is not
+/// known of variables: have_same_parts.
 bool leaves_parts(std::string_view pointer);
 
 /// Have two scenes with the same bodies the same parts at the same places, whatever values the parameters have? Compared are the bodies as

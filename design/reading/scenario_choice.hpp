@@ -36,7 +36,7 @@ struct ScenarioQuantity {
 std::vector<ScenarioQuantity> in_scenarios(const core::files::JsonNode& entry, const std::shared_ptr<const description::Quantity>& quantity,
                                            const ScenarioNames& scenarios);
 
-/// Of `quantities`: in the scenario that the entry names; left as it is where it names none.
+/// The quantity in the scenario that its entry in `quantities` names; left as it is where it names none.
 std::shared_ptr<const description::Quantity> in_named_scenario(const core::files::JsonNode& entry,
                                                                const std::shared_ptr<const description::Quantity>& quantity,
                                                                const ScenarioNames& scenarios);

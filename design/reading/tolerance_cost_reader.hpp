@@ -13,7 +13,7 @@
 
 namespace fettle::design::reading {
 
-/// @param node     The tolerance's object. @param nominal  Of the number [SI]. @param unit  In which plain numbers of it are.
+/// @param node     The tolerance's object. @param nominal  The number's [SI]. @param unit  In which plain numbers of it are.
 /// @param tolerance  As read but for these. Faults go to the node's document.
 void read_cost(const core::files::JsonNode& node, double nominal, const Unit& unit, description::Tolerance& tolerance);
 

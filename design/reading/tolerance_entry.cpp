@@ -55,7 +55,7 @@ public:
         read_cost(node_, nominal_.value, nominal_.unit, tolerance);
     }
 
-    /// Of "*": why this number has no tolerance of it; empty: it has. Contract: the entry is without faults.
+    /// Why this number has no tolerance of "*"; empty: it has. Contract: the entry is without faults.
     std::string why_not() const {
         const bool is_angle = nominal_.unit.dimension == Dimension::angle;
         if (!is_angle && nominal_.unit.dimension != Dimension::length) return "no length or angle";
@@ -177,7 +177,7 @@ private:
         return units_.processes.usual;
     }
 
-    // Of an entry that is an object.
+    // The process that an entry names, if it is an object.
     std::optional<Process> process_of_entry() const {
         const JsonNode at = node_["process"];
         if (!at.exists()) return usual_process();

@@ -4,10 +4,10 @@
 ///     "bore": { "lower": "-0.02 mm", "upper": "0.05 mm", "distribution": "uniform" }
 ///     "shaft": { "class": "h6" }                                ISO 286, of a diameter; "of": "radius": the value is half of it
 ///     "/bodies/crank/shape/dimensions/length": { "general": "m" }      ISO 2768-1; of an angle, with its shorter "leg"
-///     "eye": "hole", "pin": { "feature": "pin", "of": "radius" }       what the design's process makes of it (tolerances/process.hpp), or
+///     "eye": "hole", "pin": { "feature": "pin", "of": "radius" }       as the design's process makes it (tolerances/process.hpp), or
 ///                                                                      "process": "sla" here
-///     "pin": { ..., "group": "print", "correlation": 0.7 }       varies with others of its group; what a process makes does with what
-///                                                                the print shares
+///     "pin": { ..., "group": "print", "correlation": 0.7 }       varies with others of its group; a number of a process does with
+///                                                                others of its print
 /// Part of tolerance_reader.hpp, which says what entries there are.
 #pragma once
 
@@ -42,7 +42,7 @@ struct Nominal {
 /// All but its name and parameter. Faults go to the node's document.
 void read_entry(const core::files::JsonNode& node, const Nominal& nominal, const ToleranceUnits& units, description::Tolerance& tolerance);
 
-/// Of "*": why such a number has no tolerance of it; empty: it has. Contract: the entry is without faults.
+/// Why such a number has no tolerance of "*"; empty: it has. Contract: the entry is without faults.
 std::string why_no_tolerance(const core::files::JsonNode& node, const Nominal& nominal, const ToleranceUnits& units);
 
 }  // namespace fettle::design::reading

@@ -45,7 +45,7 @@ std::vector<ToleranceEntry> find_tolerances(const core::files::JsonNode& node, c
 
 /// Entries of what "*" says, for each parameter, and variable of the scene, that is a number of its own (nothing that follows from others)
 /// and has none. Nothing without a "*".
-/// @param why_fixed  Of a variable: why it has no deviation, and is left out; empty: it can have one.
+/// @param why_fixed  Why a variable has no deviation, and is left out; empty: it can have one.
 /// @return what is left out: numbers that are no lengths or angles, of size 0, or not covered.
 std::vector<Untoleranced> add_default_tolerances(const core::files::JsonNode& node, const std::vector<core::scene::Variable>& variables,
                                                  const ToleranceUnits& units,

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 Json in_unit(double si, double unit) { return std::isfinite(si) ? Json(si / unit) : Json(); }
 Json in_unit(const Json& si, double unit) { return si.is_number() ? in_unit(si.get<double>(), unit) : Json(); }
 
-// Of a row of `result` and the bounds that it is judged by.
+// A row of `result` with the bounds that it is judged by.
 Json row_json(const std::string& name, const Json& told, const description::Bounds& bounds, double unit) {
     return {{"name", name},
             {"unit", ""},

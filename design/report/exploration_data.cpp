@@ -48,7 +48,7 @@ Json column_json(const Column& column, const std::vector<Json>& results) {
             {"values", packed(values)}};
 }
 
-// Null where it is no text: the page takes what it is given for what it is to be.
+// The text at a key; null where it is no text: the page takes a value for what it is to be.
 Json text_of(const Json& result, const char* key) {
     const Json value = member(result, key);
     return value.is_string() ? value : Json();

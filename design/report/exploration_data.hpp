@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What the report of an exploration says, as the page takes it: one JSON object, beside what report_data.hpp calls format, program,
+/// The data of an exploration's report, as the page takes it: one JSON object, beside the keys of report_data.hpp: format, program,
 /// made_by_other, kind ("explore"), name, folder, description, up, meshes, views, notices, files:
 ///   columns   list of {name, group: "parameter", "objective", "term", "constraint", "violation", unit, better: -1 (less is), 1 (more is)
 ///   or

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The report of an exploration's file (`fettle explore --out FILE.jsonl`): FILE.report.html, to find a design in: what each reaches, which
-/// ones no other one beats, what they look like.
+/// The report of an exploration's file (`fettle explore --out FILE.jsonl`): FILE.report.html, to find a design in: the values that each
+/// reaches, which ones no other one beats, how they look.
 #pragma once
 
 #include <string>

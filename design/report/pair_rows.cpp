@@ -106,7 +106,7 @@ void for_stretches(const core::stepper::Trajectory& trajectory, const Visit& vis
     }
 }
 
-// Of one pair, what both say together.
+// The clearance that both tell of one pair together.
 PairClearance together(const PairClearance& x, const PairClearance& y) {
     PairClearance nearer = y.upper < x.upper ? y : x;
     nearer.lower = std::min(x.lower, y.lower);
@@ -156,7 +156,8 @@ Json worst_place(const Json& coordinates) {
 
 Vector3 vector_of(const Json& json) { return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()}; }
 
-// Of an interference: bounds as an answer tells them, in mm to the power `dimensions`, and what is told beside them. Null: not measured.
+// The bounds of an interference as an answer tells them, in mm to the power `dimensions`, with what is told beside them. Null: not
+// measured.
 Json measured_bounds(const Json& told, int dimensions) {
     if (!told.is_object()) return {};
     const double unit = std::pow(millimetre, dimensions);
@@ -213,7 +214,7 @@ std::vector<ProvenRange> proven_ranges(const Json& rows, std::size_t k) {
     return ranges;
 }
 
-// Of row `k`. Searched to a coarser tolerance than the rows, a curve alone could fall below what is required and proven.
+// The margin's curve of row `k`. Searched to a coarser tolerance than the rows, a curve alone could fall below what is required and proven.
 Json margin_curve(const Json& rows, std::size_t k, const std::vector<core::clearance::MarginInterval>& margin) {
     const std::vector<ProvenRange> ranges = proven_ranges(rows, k);
     double least = bound_or(rows[k]["lower"], std::numeric_limits<double>::infinity());

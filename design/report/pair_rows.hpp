@@ -21,8 +21,8 @@ struct StepRange {
 /// A row {a, b, body_a, body_b: indices, -1: none, motion, steps: [first, last), minimum: null if none is required, lower, upper: null if
 /// not measured, status, finding, time [s], point_a, point_b: null if not measured, depth, volume, touching, poses, note} of each pair of
 /// an answer (docs/interface.md), up to most_pairs. For a clash `time` is when it begins, depth {lower, upper [mm], time [s], point: the
-/// middle of what both share, null if not known} and volume {lower, upper [mm^3]} of what two bodies share at their deepest instant; null
-/// if not measured. For a touching pair `touching` is {area [mm^2], 0: in edges and points, at_least: is that all, or were there too many
+/// middle of what both share, null if not known} and volume {lower, upper [mm^3]} of their common part at their deepest instant; null if
+/// not measured. For a touching pair `touching` is {area [mm^2], 0: in edges and points, at_least: is that all, or were there too many
 /// faces?, allowed}. For a pair over the ranges of joints `poses` are those of all bodies where it is worst (seven numbers of each, as
 /// moving_parts.hpp has them), else null, and the note says where that is.
 /// @param pairs   `pairs` of `fettle clearance`, or of `clearance` of `fettle optimise`.

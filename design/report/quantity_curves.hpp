@@ -11,8 +11,8 @@
 
 namespace fettle::design::report {
 
-/// What has a curve, each once, by the name that the design calls it: first the named, then terms of the objective, then constraints, and
-/// what expressions among these are made of. In whichever scenario it is asked for there.
+/// The quantities that have a curve, each once, by the name that the design calls it: first the named, then terms of the objective, then
+/// constraints, and the parts of expressions among these. A quantity is in whichever scenario it is asked for there.
 std::vector<quantities::NamedQuantity> quantities_with_curves(const std::vector<quantities::NamedQuantity>& named,
                                                               const description::Design& design);
 

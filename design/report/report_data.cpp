@@ -70,7 +70,7 @@ bool is_of_faces(const quantities::ClearanceRange& range) { return !range.faces_
 
 constexpr int shown_scenario = 0;  // whose motion the picture begins with
 
-// Of what steps of the motion an answer's pairs are; none of those whose margin over the motion is not that of the two bodies.
+// The steps of the motion that an answer's pairs are about; none for pairs whose margin over the motion is not that of the two bodies.
 std::vector<StepRange> steps_of(const ReportSource& source, std::size_t pairs) {
     const auto all = count_of(source.motion->trajectory.steps);
     if (source.kind == ReportKind::clearance) return std::vector<StepRange>(pairs, {0, member(source.result, "motion") == true ? all : 0});

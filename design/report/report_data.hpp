@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// What a report says, as the page takes it: one JSON object. Lengths in mm, times in s; arrays of numbers as packed_numbers.hpp has them.
 ///   format          1
-///   program         version that made the results; made_by_other: that of this page, if it is another
+///   program         version that made the results; made_by_other: this page's, if it is another
 ///   command         that made the results; null if not known
 ///   kind            "optimise", "simulate", "clearance"
 ///   name, folder, description (null: the files have none), up: the direction against gravity
@@ -12,7 +12,7 @@
 ///   meshes, views   moving_parts.hpp: "before" (of an optimisation) and "after", then those of other scenarios
 ///   pairs, pair_count: of how many the rows are the worst, margins: pair_rows.hpp
 ///   scenarios       list of {name: null of a design without, view: the name of its view, quantities: quantity_curves.hpp, series:
-///                   step_curves.hpp}: first that of `motion`, whose view is "after"
+///                   step_curves.hpp}: first the one of `motion`, whose view is "after"
 ///   ranges          is a clearance over all positions of the joints?
 ///   requirements, parameters, starts: design_rows.hpp
 ///   limits          texts

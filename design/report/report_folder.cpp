@@ -242,7 +242,7 @@ private:
 
     // The motions and forces of the design's other scenarios, simulated once more; their trajectories stay in the folder.
     Errors take_scenarios(const problem::DesignProblem& problem, const VectorX& values, const std::string& scene_path) {
-        if (source_.tables.steps.empty()) return {};  // what would be simulated is not what was
+        if (source_.tables.steps.empty()) return {};  // a simulation now would not be the one that was
         for (int s = 1; s < problem.scenario_count() && !options_.should_stop(); ++s) {
             const std::string& name = problem.design().scenarios[s].name;
             const Result<Model> model = problem.model_at(values, s);

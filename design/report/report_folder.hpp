@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The report of a folder of results: DIR/report.html, made from what `optimise`, `simulate` or `clearance` wrote there with --out; by the
-/// program that has just done so from the values themselves (AtHand), as far as it has them.
+/// The report of a folder of results: DIR/report.html, made from the files that `optimise`, `simulate` or `clearance` wrote there with
+/// --out; by the program that has just done so from the values themselves (AtHand), as far as it has them.
 ///   result.json        what was answered
 ///   trajectory.json    bodies and motion
 ///   design.final.json, history.jsonl      of an optimisation

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Curves over time from a run's tables: what motors give, what bodies and joints carry, energies.
+/// Curves over time from a run's tables: the efforts of motors, the loads of bodies and joints, energies.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -13,7 +13,7 @@ struct StepTables {
     std::string steps, contacts, drives, joints;
 };
 
-/// What is driven by motors along lengths, whose effort is a force; that of all others is a torque. By the motors' names.
+/// The motors that drive along lengths, whose effort is a force, by name; that of all others is a torque.
 using LinearMotors = std::set<std::string>;
 
 /// List of {title, quantity, unit, note: null or text, time f64 [s], lines: list of {name, values f64}}; forces in N, torques in N mm,

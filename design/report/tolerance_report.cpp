@@ -239,7 +239,7 @@ private:
         return table_of({"Of", "Stated", "Limits", "Distribution", "Sigma", "Shares with"}, rows);
     }
 
-    // What is met: of the samples, else by the linear prediction. Of what nothing is required: all.
+    // The share that meets it: of the samples, else by the linear prediction; all where nothing is required.
     double share_met(const Response& response) const {
         if (!has_bounds(response)) return 2;
         return response.sampled ? tolerances::counted_yield(response.sampled->met, count_of(study_.samples), confidence).found.within
@@ -374,7 +374,7 @@ private:
                          keys);
     }
 
-    // Of the prediction, with one deviation.
+    // The predicted change by one deviation.
     static double change_by(const Response& response, int tolerance, double deviation) {
         VectorX deviations = VectorX::Zero(response.gradient.size());
         deviations[tolerance] = deviation;

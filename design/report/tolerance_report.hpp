@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// The report of `fettle tolerance --report`: one HTML file, without scripts, that needs nothing else. Of each number that the design asks
-/// for: what moves it (a tornado), how it came out in the samples (a histogram, with the prediction and the limits), how it depends on what
-/// moves it most (a scatter), and what the answer says of it. It has the colours and type of the other reports (report_page.hpp).
+/// The report of `fettle tolerance --report`: one HTML file, without scripts, that needs nothing else. It shows for each number that the
+/// design asks for: what moves it (a tornado), how it came out in the samples (a histogram, with the prediction and the limits), how it
+/// depends on the tolerance that moves it most (a scatter), and the answer's words on it. It has the colours and type of the other reports
+/// (report_page.hpp).
 #pragma once
 
 #include <string>

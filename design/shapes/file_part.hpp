@@ -24,9 +24,9 @@ struct PartOptions {
 class FilePart : public description::Shape {
 public:
     /// @param part        A part of the library, a file, or the text of one (part_library.hpp).
-    /// @param dimensions  By name [SI]; those left out are as in the file.
+    /// @param dimensions  By name [SI]; dimensions left out are as in the file.
     /// Errors: those of find_part; `segments` out of its range, or beside `chord` (`where`: "counts/segments"); a dimension that the part
-    /// does not have (unknown_key, "part/dimension"); those of PartFile::drawn.
+    /// does not have (unknown_key, "part/dimension"); errors of PartFile::drawn.
     static Result<std::shared_ptr<const FilePart>> create(const std::string& part, const std::map<std::string, double>& dimensions = {},
                                                           const PartOptions& options = {});
 

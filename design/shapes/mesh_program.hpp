@@ -28,8 +28,8 @@ Result<core::geometry::Mesh> run_program(const MeshProgram& program, const std::
 
 class ProgramPart : public RebuiltShape {
 public:
-    /// Tells the record of what is read (core/base/read_record.hpp) of the program and of the files that its command names; what these read
-    /// in turn nobody knows. Errors: those of check_program.
+    /// Tells the read record (core/base/read_record.hpp) of the program and of the files that its command names; what these read in turn
+    /// nobody knows. Errors: those of check_program.
     static Result<std::shared_ptr<const ProgramPart>> create(const MeshProgram& program,
                                                              std::vector<description::ShapeDimension> dimensions);
 

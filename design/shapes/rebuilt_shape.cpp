@@ -16,7 +16,7 @@ using description::ShapeInstance;
 
 namespace {
 
-// For differences of what is known to `rounding` of a part of that size: where rounding / step and the third derivative, about step^2 /
+// A step for differences of a part of that size, known to `rounding`: there rounding / step and the third derivative, about step^2 /
 // size^2, make equal errors; and no more than a twentieth of the dimension, which has to stay what it is.
 double difference_step(double rounding, double size, double value) {
     const double best = std::cbrt(3 * std::max(rounding, 1e-15 * size) * size * size);

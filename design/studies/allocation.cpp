@@ -46,7 +46,7 @@ std::function<CostAt(double)> constant_cost(double cost) {
     return [cost](double) { return CostAt{cost, 0}; };
 }
 
-// Of limits that are none of the choices: that of the widest choice that is not wider.
+// The cost as it stands of limits that are none of the choices is that of the widest choice that is not wider.
 double cost_as_it_stands(const Tolerance& tolerance) {
     const std::vector<ToleranceChoice>& choices = tolerance.cost.choices;
     if (choices.empty()) return cost_function(tolerance)(1).value;

@@ -4,10 +4,10 @@
 /// Costs are description::ToleranceCost's: by default 1 as a tolerance stands and 1/f of limits f times as wide, so that the sum is the
 /// number of tolerances where nothing changes.
 ///
-/// Solved on a model of each requirement (allocation_model.hpp) from the derivatives of first and second order; what it finds is studied
-/// (tolerance_study.hpp) at the new limits, by the second order there and by samples, or the corners of the worst case, where they are
-/// asked for; the model is corrected by what was found, and solved again, until it changes nothing. Tolerances with grades are chosen one
-/// step at a time, the one that saves most: what is found so need not be the best choice of grades.
+/// Solved on a model of each requirement (allocation_model.hpp) from the derivatives of first and second order; the limits that it finds
+/// are studied (tolerance_study.hpp), by the second order there and by samples, or the corners of the worst case, where they are asked for;
+/// the model is corrected by what was found, and solved again, until it changes nothing. Tolerances with grades are chosen one step at a
+/// time, the one that saves most: what is found so need not be the best choice of grades.
 ///
 /// All of it is computed, none of it proven.
 #pragma once
@@ -61,7 +61,7 @@ struct AllocationReport {
     ToleranceReport study;  ///< at the limits of `tolerances`
 };
 
-/// @param problem  Of the design as made (description/tolerance.hpp), with a constraint or relation that has a bound.
+/// @param problem  The problem of the design as made (description/tolerance.hpp), with a constraint or relation that has a bound.
 /// Throws core::base::MissingLibrary where Ipopt is not there.
 AllocationReport allocate(const problem::DesignProblem& problem, const std::vector<description::Tolerance>& tolerances,
                           const AllocationOptions& options);

@@ -2,7 +2,7 @@
 /// The allocation of tolerances as a problem of its own, on models of the requirements: no simulation here.
 ///
 /// Tolerance j has its limits as they stand, times a factor f_j: limits that hold the nominal value are multiplied, others keep their
-/// middle; a shift stays. Means m(f), covariance C(f) = F C F. Of a requirement with value y0, gradient g and second derivatives H
+/// middle; a shift stays. Means m(f), covariance C(f) = F C F. A requirement has, with value y0, gradient g and second derivatives H
 ///   mean       y0 + g . m + 1/2 m^T H m + 1/2 tr(H C)
 ///   variance   a^T C a + 1/2 tr(H C H C),   a = g + H m                        exact for normal deviations
 /// each corrected by what a study of the tolerances finds (a mean that is off, a standard deviation that is so many times as large).

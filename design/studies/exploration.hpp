@@ -60,7 +60,7 @@ Result<std::vector<ExplorationJob>> jobs_of(const problem::DesignProblem& proble
 /// "failed", but for std::bad_alloc. Throws core::base::Stopped where should_stop ended it.
 nlohmann::ordered_json result_of(const problem::DesignProblem& problem, const ExplorationJob& job,
                                  const std::function<bool()>& should_stop);
-/// Of a job whose workers were lost: "lost". It is tried again when the exploration goes on.
+/// The result of a job whose workers were lost: "lost". It is tried again when the exploration goes on.
 nlohmann::ordered_json lost_result(const ExplorationJob& job, const std::string& reason);
 
 /// "design 3 of 12 is feasible, objective 0.25"

@@ -48,7 +48,7 @@ public:
     bool has(const std::string& key) const { return keys_.count(key) != 0; }
     void append(nlohmann::ordered_json result);
     Errors unwritten() const { return lines_.unwritten(); }
-    /// What it has, with what was appended.
+    /// All that it has, with what was appended.
     const Exploration& found() const { return found_; }
     const std::string& path() const { return path_; }
 

@@ -98,7 +98,7 @@ private:
     void add_reach(int k, double bound) {
         const Parameter& p = design_.parameters[k];
         const problem::Reach reach = problem::reach(problem_, point_, k, bound);
-        constexpr double near = 0.1;  // of the range: what is further away is not what stopped the optimiser here
+        constexpr double near = 0.1;  // of the range: an obstacle further away has not stopped the optimiser here
         if (reach.obstacles.empty() || std::abs(reach.value - point_[k]) > near * (p.upper - p.lower)) return;
         parts_to_blame_ = true;
         lines_.push_back("parameter " + p.name + " can go no further than " + amount(reach.value, p.unit) + ", though its bound is " +

@@ -22,7 +22,7 @@ struct FailedTrial {
 /// @param point      The best design, infeasible.
 /// @param final      Evaluated there.
 /// @param jacobian   of the constraints there; without rows: not known, then 1 covers bounds alone.
-/// @param failures   Of the whole run.  @param trials  How many there were in all.
+/// @param failures   The failures of the whole run.  @param trials  How many there were in all.
 std::vector<std::string> limits_of(const problem::DesignProblem& problem, const VectorX& point, const problem::DesignEvaluation& final,
                                    const MatrixX& jacobian, const std::vector<FailedTrial>& failures, int trials);
 

@@ -19,7 +19,7 @@ enum class LineFileMode {
 /// Owns the open file, which it locks against a second process.
 class LineFile {
 public:
-    /// Makes its folder. @param what  What it is, for messages: "history".
+    /// Makes its folder. @param what  Its name in messages: "history".
     /// Errors: in use by another process (file_unreadable), it or its folder cannot be made or written (file_unwritable).
     static Result<LineFile> open(const std::string& path, LineFileMode mode, const std::string& what);
     ~LineFile();

@@ -31,8 +31,8 @@ struct MadeMechanism {
     std::optional<SampleOutcome> kept;  ///< what the file of samples has of it
 };
 
-/// Errors: what is no design, or has no tolerances; no such sample; a file of samples that is another design's; those of
-/// reading::load_model, of a mechanism that cannot be made.
+/// Errors: a file that is no design, or has no tolerances; no such sample; a file of samples that is another design's; those of
+/// reading::load_model, and of a mechanism that cannot be made.
 Result<MadeMechanism> load_made(const std::string& path, reading::InputOptions options, const MadePick& pick);
 
 }  // namespace fettle::design::studies

@@ -39,7 +39,7 @@ std::string shortfall(const Design& design, const VectorX& p, const optimisers::
     }
     for (const description::Relation& relation : design.relations)
         look_at(relation.name, description::violation(relation, relation.at(p).value), "");
-    constexpr double nearly = 0.01;  // what is proven may be a little less than what was found
+    constexpr double nearly = 0.01;  // what is proven may be a little less than the value found
     return std::abs(most - e.violation) <= nearly * e.violation ? text : "a requirement is not proven to be met";
 }
 
@@ -58,7 +58,7 @@ constexpr double repair_tolerance = 1e-2;  // of the squared change: half a perc
 
 using Compute = std::function<HistoryEntry(const problem::DesignProblem&, const VectorX&, Recorded)>;
 
-// Of one model: from the history, if there is one that has it, else computed. `model` and `compute` must outlive it.
+// Answers for one model: from the history, if there is one that has it, else computed. `model` and `compute` must outlive it.
 std::function<optimisers::Evaluation(const VectorX&)> answered(const problem::DesignProblem& model, const std::string& name,
                                                                const Compute& compute, History* history, Recorded wanted) {
     const auto entry = [&model, &compute, wanted](const VectorX& p) { return compute(model, p, wanted); };
@@ -267,7 +267,7 @@ private:
         return near(a.objective, b.objective, outcome_.objective_start.value_or(0));
     }
 
-    // Whatever the search was told of this design, by a history perhaps: what it measures now is what counts.
+    // The design's measure now is what counts, whatever the search was told of it, by a history perhaps.
     void judge_end() {
         optimisers::OptimiserReport& report = outcome_.report;
         optimisers::Evaluation now = problem::optimiser_evaluation(outcome_.final);

@@ -28,7 +28,7 @@ struct OptimiseOptions {
     std::function<bool()> should_stop;                            ///< optional
     std::function<void(const std::string&)> narrate;              ///< optional: a line per evaluation
     std::function<void(const core::stepper::Progress&)> on_step;  ///< optional
-    History* history = nullptr;                                   ///< optional: answers what it has, and keeps what is computed
+    History* history = nullptr;                                   ///< optional: answers what it has, and keeps newly computed results
     /// Nothing is tried that the history does not have: the run ends there, interrupted, with the best design so far.
     bool replay_only = false;
 };

@@ -33,7 +33,7 @@ struct FileOutcome {
 };
 
 /// A killed run, resumed with the same design and options, ends with the same outcome, bit for bit.
-/// @param problem  Of file.design; to begin on the sides of the seed, both of file_of_seed (starting_sides.hpp).
+/// @param problem  The problem of file.design; to begin on the sides of the seed, both of file_of_seed (starting_sides.hpp).
 /// Errors: the optimiser's name, the history (another design's, in use, not to be written from the start).
 Result<FileOutcome> optimise_file(const reading::DesignFile& file, const problem::DesignProblem& problem, const RunFolder& folder,
                                   OptimiseOptions options);

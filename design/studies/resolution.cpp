@@ -39,7 +39,7 @@ void take_contact(const DesignProblem& from, Design& design) {
     }
 }
 
-// Of each scenario: is there friction whose normal forces and directions are those of a round before, as built?
+// Which scenarios have friction whose normal forces and directions are those of a round before, as built?
 std::vector<bool> lagging_friction(const DesignProblem& problem) {
     const VectorX p = description::values_of(problem.design().parameters);
     std::vector<bool> lagging;

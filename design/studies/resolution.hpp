@@ -96,8 +96,8 @@ bool is_flip(const FinerValue& value);
 /// Terms of the objective, then constraints; none where no run has numbers. It points into the report.
 std::vector<FinerValue> finer_values(const description::Design& design, const problem::DesignEvaluation& found, const FinerReport& report);
 
-/// By what the best objective near by would change with a run's numbers, to first order: by what it changes where the design is, and by
-/// what requirements cost that hold there and are met by more, or less, then.
+/// The change of the best objective near by with a run's numbers, to first order: its change where the design is, and the costs of
+/// requirements that hold there and are met by more, or less, then.
 /// @param multipliers  of the constraints, optimisers::Optimality's; without entries: none holds. NaN: of a run that failed
 double change_of_best(const problem::DesignEvaluation& found, const VectorX& multipliers, const FinerRun& run);
 

@@ -36,7 +36,7 @@ struct FileOfSeed {
     reading::DesignFile file;
     problem::DesignProblem problem;
 };
-/// @param problem  Of file.design.
+/// @param problem  The problem of file.design.
 Result<FileOfSeed> file_of_seed(const reading::DesignFile& file, const problem::DesignProblem& problem, std::uint64_t seed);
 
 }  // namespace fettle::design::studies

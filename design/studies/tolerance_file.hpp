@@ -13,7 +13,7 @@ namespace fettle::design::studies {
 /// Why a design without tolerances cannot be studied.
 Error no_tolerances(const reading::DesignFile& file);
 
-/// Of a file of its samples. @param design  As made, `file.design` or what has become of it.
+/// The header of a file of its samples. @param design  As made, `file.design` or what has become of it.
 SampleFileHeader samples_header(const reading::DesignFile& file, const description::Design& design, std::uint64_t seed);
 
 /// @param file          Read as made (reading::DesignReadOptions::as_made).

@@ -44,7 +44,7 @@ struct ToleranceOptions {
     std::function<void(int done, int of)> on_simulation = {};  ///< optional; called from one thread at a time
 };
 
-/// What one tolerance, by itself, does to one number, or what a group of tolerances shares.
+/// The effect of one tolerance, by itself, on one number, or of what a group of tolerances shares.
 struct Contribution {
     std::string of;          ///< the tolerance, or the group
     int tolerance = 0;       ///< -1: of a group
@@ -53,7 +53,7 @@ struct Contribution {
     double worst = 0;        ///< |dy/dd| times half the width of its limits; of a group 0, as its members have theirs
 };
 
-/// Of the samples that could be simulated.
+/// The response over the samples that could be simulated.
 struct SampledResponse {
     tolerances::SampleMoments moments;
     tolerances::Capability capability;
@@ -118,7 +118,7 @@ struct ToleranceReport {
     std::string reason;  ///< why there is nothing of it: the design as drawn cannot be simulated; empty: there is
 };
 
-/// @param problem  Of the design as made (description/tolerance.hpp).
+/// @param problem  The problem of the design as made (description/tolerance.hpp).
 ToleranceReport study_tolerances(const problem::DesignProblem& problem, const std::vector<description::Tolerance>& tolerances,
                                  const ToleranceOptions& options = {});
 
@@ -145,7 +145,7 @@ struct Tightening {
     std::optional<int> tolerance;  ///< the largest contributor, if tightening it alone is enough; else all of them
     double factor = 0;             ///< by which its width, or all widths, are multiplied
 };
-/// Of the requirements that have less, in their order; linear in the tolerances' widths.
+/// The tightenings of the requirements that have less, in their order; linear in the tolerances' widths.
 std::vector<Tightening> what_to_tighten(const ToleranceReport& report);
 
 /// Tolerances that could be twice as wide: no requirement has more than a share of 1% of its variance from them.

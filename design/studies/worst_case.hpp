@@ -35,7 +35,7 @@ public:
     /// Contract: outlives this.
     explicit WorstCaseSearch(const MadeResponses& design);
 
-    /// @param number  Of the design's. @param side  1: its largest value, -1: its least.
+    /// @param number  One of the design's numbers. @param side  1: its largest value, -1: its least.
     /// Throws optimisers::Interrupted. May be called from several threads at once.
     FoundExtreme extreme(int number, double side, const LocalModel& model);
 

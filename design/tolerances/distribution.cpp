@@ -58,7 +58,7 @@ double truncated_quantile(const Distribution& d, double u) {
     return std::clamp(middle(d) + d.shift + sigma_of(d) * z, d.lower, d.upper);
 }
 
-// Of [-1, 1], peak at 0.
+// The quantile of a triangle on [-1, 1], peak at 0.
 double triangular_quantile(double u) { return u <= 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 * (1 - u)); }
 
 }  // namespace

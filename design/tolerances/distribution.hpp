@@ -38,8 +38,8 @@ std::string fault_of(const Distribution& distribution);
 /// Below it a truncated normal is a uniform distribution (their standard deviations differ by 0.07%), which is to be written as such.
 inline constexpr double least_truncated_sigma_level = 0.1;
 
-/// Closed forms. Of the truncated one, with a, b = (-w - shift) / sigma, (w - shift) / sigma, density phi and probability P of the standard
-/// normal, and Z = P(b) - P(a), from the moments M_k = E[z^k] of z = (x - m - shift) / sigma:
+/// Closed forms. The truncated one has, with a, b = (-w - shift) / sigma, (w - shift) / sigma, density phi and probability P of the
+/// standard normal, and Z = P(b) - P(a), from the moments M_k = E[z^k] of z = (x - m - shift) / sigma:
 ///   M_0 = 1,   M_1 = (phi(a) - phi(b)) / Z,   M_k = (k - 1) M_(k-2) + (a^(k-1) phi(a) - b^(k-1) phi(b)) / Z
 /// Source: Johnson, Kotz, Balakrishnan 1994, Continuous Univariate Distributions 1, section 13.10.1.
 Moments moments_of(const Distribution& distribution);

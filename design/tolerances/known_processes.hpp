@@ -9,7 +9,7 @@
 ///                                                                     0.2 over 100 mm). Forge Labs: 0.25
 ///   sls    0.2 up to 100 mm, 0.2% of larger ones;                     Layer X; Xometry (small holes and gaps tighter than drawn, to be
 ///          holes, slots, gaps -0.15                                   offset by 0.006 inch)
-///   mjf    0.3, 0.2% of what is over 150 mm;                          Makelab (0.3); the rest taken from sls, the same powder
+///   mjf    0.3, 0.2% of sizes over 150 mm;                          Makelab (0.3); the rest taken from sls, the same powder
 ///          holes, slots, gaps -0.15
 ///   cnc    ISO 2768-1 class m, angles too                             what holds where a drawing says nothing; metals are often made to f
 ///   laser  0.13; the line is cut in its middle, the kerf is 0.2:      Big Blue Saw (0.005 inch); Snijlab, Ponoko (kerf about 0.2); Cut

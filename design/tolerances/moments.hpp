@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// The first four moments of a number that varies, and their estimates from a sample.
-/// Those of a dimension follow from its distribution (distribution.hpp), those of a result from its derivatives (propagation.hpp).
+/// A dimension's follow from its distribution (distribution.hpp), a result's from its derivatives (propagation.hpp).
 #pragma once
 
 #include "fettle/core/base/types.hpp"
 
 namespace fettle::design::tolerances {
 
-/// Of a number x with expectation E. Units: those of x, to the power.
+/// Moments of a number x with expectation E. Units: those of x, to the power.
 struct Moments {
     double mean = 0;                ///< E[x]
     double standard_deviation = 0;  ///< sqrt(E[(x - mean)^2])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a process of manufacturing makes of a feature: how far it comes out from what is drawn, by kind and size. Those that fettle knows:
+/// The effect of a process of manufacturing on a feature: how far it comes out from the drawing, by kind and size. Those that fettle knows:
 /// known_processes.hpp; a user's own: design/reading/process_file.hpp.
 ///
 /// A feature of nominal size d (a diameter, a width, a thickness, a length; never a radius) comes out at d + b + e,
@@ -67,14 +67,14 @@ struct ClearanceNeed {
     double minimum = 0;  ///< per side [m]
     std::string source;
     std::vector<SizeBand> bands;  ///< none: half of what a length of the part's size may be off by
-    /// Of a user's process: the known one whose `minimum`, whose `bands` these still are; empty: its own.
+    /// Names the known process whose `minimum`, whose `bands` a user's process still has; empty: its own.
     std::string minimum_of = {}, bands_of = {};
 };
 
 struct Process {
     std::string name;         ///< "fdm"
     std::string description;  ///< "filament"
-    /// Of the variance of e, how much the features of one kind in one print share [1], 0 to 1.
+    /// The share of the variance of e that features of one kind in one print have in common [1], 0 to 1.
     double correlation = 0;
     std::vector<FeatureSpread> features;  ///< at most one of a kind, none of angle
     std::optional<ClearanceNeed> clearance;

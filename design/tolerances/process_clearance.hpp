@@ -26,8 +26,8 @@ Result<double> part_tolerance(const Process& process, double size, const std::st
 /// [m], per side. Errors: as part_tolerance; unsupported: a process that says nothing of clearances.
 Result<double> required_clearance(const Process& process, double size_a, double size_b, const std::string& where);
 
-/// Which figures of the clearance that a user's process asks for are another's: "the smallest gap (0.3 mm) and what faces may be off by are
-/// those of fdm: nothing of a coupon shows them; ...", with what to do. Empty: none.
+/// Names the figures of the clearance that a user's process asks for which are another's: "the smallest gap (0.3 mm) and what faces may be
+/// off by are those of fdm: nothing of a coupon shows them; ...", with what to do. Empty: none.
 std::string borrowed_clearance(const Process& process);
 
 /// The known processes' table for people, millimetres, per side, with the sources.

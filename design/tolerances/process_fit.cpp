@@ -129,7 +129,7 @@ struct PrintMean {
     double size = 0, off = 0;
 };
 
-// Of several prints (process_fit.hpp). @param print  Of each feature, 0 to prints - 1.
+// Fits several prints (process_fit.hpp). @param print  The print of each feature, 0 to prints - 1.
 void fit_prints(const Columns& data, const std::vector<int>& print, double measuring, KindFit& fit) {
     std::vector<PrintMean> means(fit.prints);
     for (int i = 0; i < data.count(); ++i) ++means[print[i]].features;

@@ -2,7 +2,7 @@
 /// Bias and spread of a process (process.hpp) from measured features of a print, kind by kind.
 ///
 /// Feature i of nominal size d_i, measured m_i times, is y_i = mean of its measurements - d_i. Model: y_i = b0 + b1 d_i + e_i, the e_i
-/// independent and normal, of variance s_p^2 + r^2 / m_i: what the process does, and what measuring does.
+/// independent and normal, of variance s_p^2 + r^2 / m_i, by the process and by measuring.
 ///   r        repeatability: pooled standard deviation of the measurements of one feature, over all features of all kinds
 ///   b0, b1   weighted least squares with weights (s_p^2 + r^2 / m) / (s_p^2 + r^2 / m_i), m the harmonic mean of the m_i, s_p by the rule
 ///            of Paule and Mandel; all 1 where every feature was measured as often. Without b1 where fewer than 5 features are measured, or
@@ -11,7 +11,7 @@
 /// Intervals hold the truth in 95 of 100 prints, where m_i are alike: of the bias at the mean size by Student's t, of s by chi-square:
 /// s sqrt(f / chi2(97.5%)) to s sqrt(f / chi2(2.5%)).
 ///
-/// Of one print nothing shows how much the next one differs as a whole: what all its features share is in the bias. Of P prints:
+/// Nothing in one print shows how much the next one differs as a whole: what all its features share is in the bias. P prints have the model
 /// y_pi = b0 + b1 d_i + u_p + e_pi, u_p normal of variance s_b^2, a number of the kind and the print.
 ///   b1       least squares within the prints, each with a constant of its own; f = n - P - 1, or n - P without it; s^2 = sum e_i^2 / f
 ///   b0       mean of the prints' constants at the mean size; its interval by Student's t of P - 1, from how these differ
@@ -62,7 +62,7 @@ struct KindFit {
     std::optional<VarianceComponents> components = {};  ///< of several prints
 };
 
-/// With fewer prints, how much they differ has no upper bound that is of use (of two, 16 times what is found): what is found counts.
+/// With fewer prints, how much they differ has no upper bound that is of use (of two, 16 times the estimate): the estimate counts.
 inline constexpr int least_bounded_prints = 4;
 
 /// One standard deviation as tolerances take it [m]: spread_bound of one print; of several the total's bound, or, of fewer than

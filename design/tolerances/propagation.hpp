@@ -44,14 +44,14 @@ LinearWorstCase linear_worst_case(double nominal, const VectorX& gradient, const
 /// @param hessian  H, symmetric. Contract: square, as many rows as inputs.
 Moments predict_quadratically(double nominal, const VectorX& gradient, const MatrixX& hessian, const std::vector<Moments>& inputs);
 
-/// Third derivatives of y at the inputs' means, as far as moments need them. Of a y with an adjoint they follow from the gradients by which
-/// H is found: (g(d + h e_j) - 2 g(d) + g(d - h e_j)) / h^2 is row j of `twice`, and `along` from two gradients more, at d +- h v.
+/// Third derivatives of y at the inputs' means, as far as moments need them. They follow, for a y with an adjoint, from the gradients by
+/// which H is found: (g(d + h e_j) - 2 g(d) + g(d - h e_j)) / h^2 is row j of `twice`, and `along` from two gradients more, at d +- h v.
 struct ThirdDerivatives {
     MatrixX twice;     ///< T_jjl = d^3 y / dd_j^2 dd_l, row j, column l
     double along = 0;  ///< sum over j, k, l of T_jkl v_j v_k v_l, with v_j = g_j s_j^2
 };
 
-/// The same with what third derivatives add first, which is of the order of what H adds:
+/// The same with the first terms of third derivatives, which are of the order of what H adds:
 ///   variance         + sum over l != j of g_j T_llj s_j^2 s_l^2  + 1/3 sum g_j T_jjj f_j
 ///   fourth cumulant  + 4 sum over j, k, l of T_jkl v_j v_k v_l
 /// For normal inputs whose deviations are of the size s, mean and third moment are then in error by terms in s^4 and s^6, where their own

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// What a number y is asked to have in reserve for the deviations d of what is made, to first order of its derivatives g = dy/dd:
+/// The reserve that a number y needs for the deviations d of the design as made, to first order of its derivatives g = dy/dd:
 ///   at k standard deviations   y + g . m + side k s,   s = sqrt(g^T C g)         m, C: mean and covariance of the deviations
 ///   in the worst case          y + the largest (side 1) or least (side -1) of g . d over lower <= d <= upper
-/// side is 1 for an upper bound and for what is minimised, -1 for a lower bound and for what is maximised. The first is the value that a
-/// normal y exceeds (side 1) with the probability of a standard normal number beyond k: 1350 ppm of k = 3.
+/// side is 1 for an upper bound and a number that is minimised, -1 for a lower bound and one that is maximised. The first is the value that
+/// a normal y exceeds (side 1) with the probability of a standard normal number beyond k: 1350 ppm of k = 3.
 ///
 /// Both are functions of g alone, so that with g = g(p) their derivative in a design parameter p is one derivative of g along a direction:
 ///   d offset/dp = (dg/dp)^T w,   w = d offset/dg = m + side k C g / s,   or the corner of the worst case

@@ -26,7 +26,7 @@ Yield constant_yield(double y, const RequirementLimits& limits) {
     return limits.lower <= y && y <= limits.upper ? Yield{1, 0} : Yield{0, 1};
 }
 
-// Of a standard normal z.
+// The yield of a standard normal z.
 Yield between(double lower, double upper) {
     Yield yield;
     yield.outside = normal_probability(lower) + normal_probability(-upper);

@@ -9,7 +9,7 @@
 
 namespace fettle::design::tolerances {
 
-/// Of a requirement lower <= y <= upper, in the unit of y; a limit that is missing is infinite. Contract: lower <= upper.
+/// The limits of a requirement lower <= y <= upper, in the unit of y; a limit that is missing is infinite. Contract: lower <= upper.
 struct RequirementLimits {
     double lower = -core::base::infinity, upper = core::base::infinity;
 };
@@ -37,10 +37,11 @@ struct CountedYield {
 /// Source: Clopper and Pearson 1934, Biometrika 26(4).
 CountedYield counted_yield(int within, int of, double confidence);
 
-/// Of a normal y. Contract: standard_deviation >= 0; of 0, the mean is within the limits or not.
+/// The yield of a normal y. Contract: standard_deviation >= 0; of 0, the mean is within the limits or not.
 Yield normal_yield(double mean, double standard_deviation, const RequirementLimits& limits);
 
-/// Of a y with four known moments, by the expansion of Cornish and Fisher: y = mean + standard_deviation w(z) with z standard normal,
+/// The yield of a y with four known moments, by the expansion of Cornish and Fisher: y = mean + standard_deviation w(z) with z standard
+/// normal,
 ///   w(z) = z + S (z^2 - 1) / 6 + K (z^3 - 3 z) / 24 - S^2 (2 z^3 - 5 z) / 36,   S = skewness, K = kurtosis - 3
 /// The yield is the probability of the z that w takes to values within the limits, on the interval about 0 on which w rises. No answer
 /// where a limit lies beyond that interval, unless this reaches out to |z| = 8 (less than 1e-15 of all lies beyond). An approximation: the

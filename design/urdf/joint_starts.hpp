@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Where the joints of a robot stand when its scene begins: each within its limits, as near to coordinate 0 as may be, and what mimics
-/// another joint where that has it: coordinate = multiplier * that of the other + offset.
+/// Where the joints of a robot stand when its scene begins: each within its limits, as near to coordinate 0 as may be, and a joint that
+/// mimics another one where that has it: coordinate = multiplier * that of the other + offset.
 #pragma once
 
 #include <string>

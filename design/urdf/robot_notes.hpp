@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What a robot description says beside what a scene uses: kept from import to export, under the key `urdf` of a scene's bodies and joints.
+/// The data of a robot description that a scene does not use: kept from import to export, under the key `urdf` of a scene's bodies and
+/// joints.
 ///     {"name": "hand", ..., "urdf": {"colour": [0.5, 0.5, 0.5, 1], "frames": [{"name": "tool", "joint": "mount", "position": [0, 0,
 ///     40]}]}}
 ///     {"name": "slide", ..., "urdf": {"start": 12.5, "effort": 30, "velocity": 0.2}}

@@ -71,7 +71,7 @@ public:
 private:
     using Read = void (UrdfParser::*)();
 
-    /// Of the elements that have more to tell than that they are there.
+    /// The reader of an element that has more to tell than that it is there.
     static Read reader_of(std::string_view path) {
         static const std::map<std::string_view, Read> readers{{"robot", &UrdfParser::read_robot},
                                                               {"robot/material", &UrdfParser::read_material},

@@ -326,7 +326,7 @@ private:
     std::vector<std::string> bodies_;                                      // per link, the name of what becomes of it
     std::set<std::string> carrying_;                                       // links that have geometry, or something below them
     std::set<std::string> in_scene_;                                       // joints
-    std::map<std::string, std::vector<std::string>> told_;                 // what is left out or changed, and of what
+    std::map<std::string, std::vector<std::string>> told_;                 // what is left out or changed, and where
     core::files::UniqueNames files_{"_", true};
     struct BodyMade {
         Pose pose;                         // of the body's frame in the world

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a URDF file may say: the elements of the format with their attributes, in one table, and what becomes of each: it is read, or it is
+/// The words of a URDF file: the elements of the format with their attributes, in one table, and the fate of each: it is read, or it is
 /// passed over with a warning that names it and says why. What is not in the table is passed over so too. The parser asks this table, and
 /// the tests go through it.
 /// Source: the schema of urdfdom and the pages http://wiki.ros.org/urdf/XML.

@@ -118,7 +118,7 @@ private:
 
     static bool stays(const core::scene::Body& body) { return body.type == core::scene::BodyType::static_body; }
 
-    /// From the world and what stays in it, joint by joint in their order; what no joint reaches is a root of its own.
+    /// Goes from the world and the bodies that stay in it, joint by joint in their order; what no joint reaches is a root of its own.
     void find_tree() {
         std::vector<bool> placed(scene_.bodies.size());
         std::vector<bool> used(scene_.mechanism.joints.size());

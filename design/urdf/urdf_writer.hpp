@@ -14,7 +14,7 @@ namespace fettle::design::urdf {
 
 struct ExportedRobot {
     std::vector<std::pair<std::string, std::string>> files;  ///< STEM.urdf, then STEM.meshes/BODY.stl
-    std::vector<std::string> warnings;                       ///< what URDF cannot say, by name; what was not known
+    std::vector<std::string> warnings;                       ///< things that URDF cannot say, by name; what was not known
 };
 
 /// A tree from the root link "world". Its frames: a link's has the axes of the body's file and stands at the point of the joint that it

@@ -98,8 +98,8 @@ double clock_time() {
     return least;
 }
 
-/// Of one query, by the wall clock (the processor's own costs more to read than a query). Another process can take the processor away in
-/// between: a time that stands out is taken again, and the least counts.
+/// The time of one query, by the wall clock (the processor's own costs more to read than a query). Another process can take the processor
+/// away in between: a time that stands out is taken again, and the least counts.
 template <class Query>
 double query_time(Query&& query, double clock) {
     constexpr double stands_out = 20;  // [us]

@@ -27,7 +27,7 @@ using namespace fettle::core::clearance;
 
 namespace {
 
-// Of the processor, so that other programs count for less; there is one thread.
+// The processor's time, so that other programs count for less; there is one thread.
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 double seconds_since(double start) { return cpu_seconds() - start; }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What does a gradient cost? The flagship slider-crank of examples/slider_crank, the first steps of its turn: forward as for gradients, and
 // the backward sweep, in milliseconds per step, with what the sweep takes per step (assemblies of a Hessian, factorisations, solves). How
-// its time grows with the number of parameters, vertex coordinates, from 1 to 10,000: what is differentiated is all of them at once, and
-// what a parameter adds is the sum over its entries. What a trajectory holds per body and step, and a contact. Before a time counts, the
-// gradient is checked: along one random direction in the vertices by the tangent sweep, to 1e-6.
+// its time grows with the number of parameters, vertex coordinates, from 1 to 10,000: all of them are differentiated at once, and a
+// parameter adds no more than the sum over its entries. The memory that a trajectory holds per body and step, and a contact. Before a time
+// counts, the gradient is checked: along one random direction in the vertices by the tangent sweep, to 1e-6.
 // Times are the least of several; the growth is that of the processor's. Prints JSON. Arguments: steps (40), the folder of the examples.
 #include <sys/resource.h>
 #include <CLI/CLI.hpp>
@@ -46,7 +46,7 @@ model::Model flagship(const std::string& folder) {
     std::exit(1);
 }
 
-// Of the last body's position, and a little of all poses.
+// A seed of the last body's position, and a little of all poses.
 adjoint::TrajectoryGradient seed_of(const model::Model& model, int steps) {
     adjoint::TrajectoryGradient seed = adjoint::zero_trajectory_gradient(steps, count_of(model.bodies));
     std::mt19937_64 random(1);
@@ -61,7 +61,7 @@ struct Entry {
     Eigen::Index place;
 };
 
-// Of the sweep and of the parameters that hang on these entries, each with weight 1.
+// The times of the sweep and of the parameters that hang on these entries, each with weight 1.
 Times sweep_times(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<Entry>& entries, int parameters) {
     const adjoint::TrajectoryGradient seed = seed_of(model, count_of(trajectory.steps));
     Times least;

@@ -105,7 +105,7 @@ Run run(const model::Model& model, int steps, bool for_gradient) {
     return out;
 }
 
-// Of gravity and of what moves, by the last two configurations.
+// The energy of gravity and of motion, by the last two configurations.
 double energy(const model::Model& model, const stepper::Trajectory& t) {
     double sum = 0;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {

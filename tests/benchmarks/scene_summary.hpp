@@ -33,7 +33,7 @@ double reference_ratio(const ReferenceRun* reference, const SceneRow& row);
 
 /// Members of the summary, as JSON text without braces, of rows run with one thread: `against_reference` (the whole program),
 /// `against_reference_above_a_second` (where the reference takes more), `certification` (its time over that of stepping: the largest, of
-/// scenes that are stepped for more than 0.05 s, and that of all together).
+/// scenes that are stepped for more than 0.05 s, and all together).
 std::string summary_json(const std::vector<SceneRow>& rows, const std::vector<ReferenceRun>& references);
 
 /// The same in brief, for people, on stderr.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// How fast, and how soundly, do the paper's scenes run? One JSON row per scene on stdout, then a summary, a table on stderr. Of each scene
-// the whole program is timed, `fettle simulate --threads 1` as a process of its own from its start to the end of the proof (CPU seconds of
-// user and kernel), and compared with the reference program's whole process. Beside it the phases of stepping, in another process, where
-// the run is checked: status, finite poses, repeated runs of the same bits, no intersection by exact predicates at nodes and between,
+// How fast, and how soundly, do the paper's scenes run? One JSON row per scene on stdout, then a summary, a table on stderr. The whole
+// program is timed for each scene, `fettle simulate --threads 1` as a process of its own from its start to the end of the proof (CPU
+// seconds of user and kernel), and compared with the reference program's whole process. Beside it the phases of stepping, in another
+// process, where the run is checked: status, finite poses, repeated runs of the same bits, no intersection by exact predicates at nodes and
+// between,
 // peak memory. Exit code 1 if a check fails, or the program does not end "ok".
 //
 //   scenes_benchmark                              the scenes and steps of docs/reference_seconds.tsv

@@ -113,7 +113,7 @@ TEST_CASE("Andrews' squeezer: the reference values, at the second order of BDF2"
     }
 }
 
-// The order is that of the integrator, so that extrapolation is justified; what it ends at has the solver's error too.
+// The order is that of the integrator, so that extrapolation is justified; the limit has the solver's error too.
 TEST_CASE("Andrews' squeezer: to 1e-6 of the reference values as the time step goes to 0", "[slow]") {
     const auto values = refined(3000, 3);
     for (std::size_t i = 0; i < values.size(); ++i) {

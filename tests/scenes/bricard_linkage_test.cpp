@@ -65,7 +65,7 @@ struct Linkage {
         return t.normalized();
     }
     double turn(int k) const { return (k % 2 == 0 ? theta : phi) - pi / 2; }  // of hinge k, since the start
-    /// Of the six links, the ground the last; from the cube's edges.
+    /// The rotations of the six links, the ground the last; from the cube's edges.
     std::array<Matrix3, 6> rotations() const {
         std::array<Matrix3, 6> out;
         Matrix3 r = Matrix3::Identity();

@@ -90,7 +90,7 @@ struct Pair {
                 {{"teeth", gear.teeth}},
                 facets};
     }
-    /// Of the wheel about its axis [kg m^2], as of a disc of its pitch circle.
+    /// The inertia of the wheel about its axis [kg m^2], as of a disc of its pitch circle.
     double inertia() const { return 1240e-15 * width * pi / 2 * std::pow(pitch_radius(wheel), 4); }
 
     /// @param pinion_type, motors  What holds or drives them.

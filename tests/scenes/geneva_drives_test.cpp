@@ -28,7 +28,7 @@ struct GenevaDrive {
 
     Vector2 pin(double t) const { return {centre_distance - crank() * std::cos(t), -crank() * std::sin(t)}; }
 
-    /// Of the wheel, at the driver's angle t from -pi to pi.
+    /// The wheel's angle, at the driver's angle t from -pi to pi.
     double wheel(double t) const {
         if (std::abs(t) > entry()) return t < 0 ? step() : -step();
         const Vector2 p = pin(t);

@@ -220,7 +220,7 @@ std::string lower_extension(const fs::path& path) {
     return extension;
 }
 
-/// Of files found in a folder. JSON that begins with an array is truth, or the boxes that come with it.
+/// Can a file found in a folder hold queries? JSON that begins with an array is truth, or the boxes that come with it.
 bool may_hold_queries(const fs::path& path) {
     const std::string extension = lower_extension(path);
     if (extension != ".json") return extension == ".csv";

@@ -37,7 +37,7 @@ bool edge_and_triangle_intersect(const Corners& edge, const Corners& triangle) {
     return CGAL::do_intersect(exact_segment(edge), exact_triangle(triangle));
 }
 
-/// Of two elements in one configuration; those that meet at single instants only are find_passage's.
+/// Do two elements intersect in one configuration? Those that meet at single instants only are find_passage's.
 bool elements_intersect(ElementKind kind_a, const Corners& a, ElementKind kind_b, const Corners& b) {
     if (kind_a == ElementKind::triangle && kind_b == ElementKind::triangle) return triangles_intersect(a, b);
     if (kind_a == ElementKind::edge && kind_b == ElementKind::triangle) return edge_and_triangle_intersect(a, b);

@@ -30,7 +30,7 @@ TEST_CASE("a right derivative along a line has a remainder of slope 2, a wrong o
 }
 
 TEST_CASE("a third-order term that takes over is kept out of the range", "[support]") {
-    // Of slope 2 below 1e-4 alone, and crossing 0 there.
+    // The difference has slope 2 below 1e-4 alone, and crosses 0 there.
     const LineCheck check = check_line([](double h) { return h + h * h - 1e4 * h * h * h; }, 1);
     CHECK(check.tells);
     CHECK(check.largest <= 2e-5);

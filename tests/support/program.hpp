@@ -17,9 +17,9 @@ struct Answer {
     int code = -1;
     std::string out;
 
-    /// Of --json. Members that may be missing: `.at()` on what is const, for operator[] is undefined there.
+    /// The answer of --json. Members that may be missing: `.at()` on what is const, for operator[] is undefined there.
     nlohmann::json json() const { return nlohmann::json::parse(out, nullptr, false); }
-    /// Of a clearance report: the pair of two names, in either order; null if it is not there.
+    /// The pair of two names in a clearance report, in either order; null if it is not there.
     nlohmann::json pair(const std::string& a, const std::string& b) const {
         const nlohmann::json report = json();
         for (const nlohmann::json& p : report.at("pairs"))

@@ -20,7 +20,7 @@ core::model::Body sized_body(const Solid& solid) {
     return body;
 }
 
-// Of the two features named, at the instant named, whatever else comes near.
+// The distance of the two features named, at the instant named, whatever else comes near.
 double own_distance(const Case& c, const Witness& w) {
     const auto trajectory = c.trajectory();
     const auto corners = [&](int body, core::clearance::Primitive kind, int index) {
@@ -41,7 +41,7 @@ double own_distance(const Case& c, const Witness& w) {
     return std::sqrt(core::geometry::point_triangle_distance_squared(point[0], face[0], face[1], face[2]));
 }
 
-// Each is what it says, and its derivative is that of its own features' distance.
+// Each witness is as it says, and its derivative is that of its own features' distance.
 void check_witnesses(const Case& c, const PairClearance& pair, const std::vector<Witness>& witnesses) {
     std::mt19937 random(3);
     std::normal_distribution<double> normal;

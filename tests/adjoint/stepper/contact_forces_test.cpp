@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Resultant forces of contact: what the steps report, the whole of what stands still, and derivatives backwards, forwards and by
+// Resultant forces of contact: as the steps report them, the whole of what stands still, and derivatives backwards, forwards and by
 // differences.
 #include "fettle/adjoint/stepper/contact_forces.hpp"
 

@@ -21,7 +21,7 @@ namespace {
 
 const Vector3 z_axis = Vector3::UnitZ();
 
-// Of the last pose of the last body: a sum of all its entries, each with a weight of its own.
+// A sum of all entries of the last pose of the last body, each with a weight of its own.
 double objective(const std::vector<core::kinematics::Pose>& poses) {
     Matrix34 weights;
     weights << 0.3, -0.2, 0.5, 1.1, 0.7, 0.1, -0.4, 0.9, -0.6, 0.2, 0.8, 1.3;

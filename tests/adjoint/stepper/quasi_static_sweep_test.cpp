@@ -198,7 +198,7 @@ TEST_CASE("quasi-static sweeps: what slides freely goes along with everything", 
     std::mt19937_64 random(5);
     const std::vector<TrajectoryGradient> seeds = random_seeds(scene, random);
     const Vector3 shift(0.3, -0.2, 0), turn(0, 0, 0.7);
-    const double conditioned = 1e-7;  // W kappa/m times the unit roundoff, some contacts: what a solve can give along what slides
+    const double conditioned = 1e-7;  // W kappa/m times the unit roundoff, some contacts: what a solve can give along sliding
     ModelTangent all = fettle::adjoint::zero_model_tangent(scene.model, scene.steps), motor = all;
     for (std::size_t i = 0; i < scene.model.bodies.size(); ++i)
         all.bodies[i].pose_start_dot << shift + turn.cross(scene.model.bodies[i].pose_start.position), turn;

@@ -326,7 +326,7 @@ struct Differentiated {
 
     const ModelGradient& gradient(int k) const { return gradients[k]; }
 
-    /// Of the k-th scalar. @param wrong_by  a relative error that is put into the derivative
+    /// Checks the k-th scalar. @param wrong_by  a relative error that is put into the derivative
     tests::support::LineCheck check(int k, const ModelTangent& direction, const tests::support::LineSweep& sweep,
                                     double wrong_by = 0) const {
         const auto change = [&](double s) {
@@ -347,7 +347,8 @@ struct Differentiated {
 constexpr tests::support::LineSweep of_loose_vertices{1e-5, 3}, of_all_else{};
 
 // Scalars and directions of one kind, each at random, until a pair tells: whose second derivative is large enough beside the third. All
-// that are looked at must have the right derivative. Of vertices the first may go each their own way, later ones leave plane faces plane.
+// that are looked at must have the right derivative. The first directions of vertices may go each their own way, later ones leave plane
+// faces plane.
 void check_kind(const Differentiated& at, ParameterKind kind, std::mt19937_64& random) {
     constexpr int loose_directions = 2;
     bool tells = false;
@@ -365,7 +366,7 @@ void check_kind(const Differentiated& at, ParameterKind kind, std::mt19937_64& r
     CHECK(tells);
 }
 
-// The same along the scalars' own gradients; where one tells nothing, along that of what leaves plane faces plane.
+// The same along the scalars' own gradients; where one tells nothing, along that of changes which leave plane faces plane.
 void check_along_gradient(const Differentiated& at) {
     bool tells = false;
     const auto look = [&](int k, const ModelTangent& direction, const tests::support::LineSweep& sweep) {

@@ -48,8 +48,8 @@ enum class ParameterKind { vertices, pose_start, velocity_start, density, gravit
 std::vector<ParameterKind> kinds_of(const SweepScene& scene);
 const char* to_string(ParameterKind kind);
 
-/// A random direction of one kind, scaled so that a unit step changes the scene about as much as it measures. Of friction: all coefficients
-/// alike, and none where there is no friction.
+/// A random direction of one kind, scaled so that a unit step changes the scene about as much as it measures. Friction changes in all
+/// coefficients alike, and in none where there is no friction.
 ModelTangent random_direction(const SweepScene& scene, ParameterKind kind, std::mt19937_64& random);
 
 /// The gradient's own direction in the vertices, largest entry 0.05 m.
@@ -69,7 +69,7 @@ double pairing(const SweepScene& scene, const ModelGradient& gradient, const Mod
 /// J = sum_t,i <weights, P_t,i>; its weights are the seed.
 TrajectoryGradient random_seed(const SweepScene& scene, std::mt19937_64& random);
 double objective(const TrajectoryGradient& weights, const core::stepper::Trajectory& trajectory);
-/// Of J from one trajectory to another, without the rounding of J.
+/// The change of J from one trajectory to another, without the rounding of J.
 double objective_change(const TrajectoryGradient& weights, const core::stepper::Trajectory& from, const core::stepper::Trajectory& to);
 
 /// <weights, P_dot> for a tangent sweep's output.

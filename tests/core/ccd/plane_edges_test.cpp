@@ -49,7 +49,7 @@ struct Distances {
     double all = std::numeric_limits<double>::infinity(), without = all;
 };
 
-// Of all pairs of primitives, and without those of plane edges.
+// The distances of all pairs of primitives, and without those of plane edges.
 Distances distances(const model::Model& model, const std::vector<Pose>& poses) {
     const model::Body &a = model.bodies[0], &b = model.bodies[1];
     const auto at = [&](int body, int v) { return world_position(poses[body], model.bodies[body].mesh.vertices.col(v)); };

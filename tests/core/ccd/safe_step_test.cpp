@@ -182,7 +182,7 @@ TEST_CASE("no pair of edges comes within dmin on the safe part of random paths")
         const SafeStep step = step_of(model, segments);
         REQUIRE(!comes_within(model, segments, step.fraction, dmin, 60));
         stopped += step.fraction < 1;
-        // What stops it is near there: the wire comes within a little more than what is kept, which is at most dmin + dhat / 4 and a tenth.
+        // The obstacle is near there: the wire comes within a little more than what is kept, which is at most dmin + dhat / 4 and a tenth.
         if (step.fraction < 1) REQUIRE(step.limiting_a + step.limiting_b == 1);
     }
     CHECK(stopped > 15);

@@ -179,7 +179,7 @@ std::vector<kinematics::Pose> met_at(const model::Model& model, const stepper::T
     return found.poses;
 }
 
-// Of each body's vertices, at some instants of every step.
+// The farthest of each body's vertices, at some instants of every step.
 std::vector<double> farthest_from_met(const model::Model& model, const stepper::Trajectory& trajectory) {
     std::vector<double> farthest(model.bodies.size(), 0.0);
     for (int t = 0; t < count_of(trajectory.steps); ++t)

@@ -23,7 +23,7 @@ struct RangeCase {
     CertificateReport check() const { return check_certificate(certificate, tree.model, start); }
 };
 
-// Of a random tree whose pair does not clash and has coordinates.
+// A case of a random tree whose pair does not clash and has coordinates.
 RangeCase certified_case(std::mt19937& random, int most_coordinates_of_it) {
     for (;;) {
         RangeCase c{random_tree(random), {}, {}, {}};

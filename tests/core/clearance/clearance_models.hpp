@@ -48,7 +48,7 @@ inline core::clearance::ClearanceOptions over_motion(double tolerance = 1e-6) {
     return options;
 }
 
-/// Of bodies 0 and 1, with a certificate or, empty, without.
+/// Clearances of bodies 0 and 1, with a certificate or, empty, without.
 inline core::clearance::ProvenClearances certified(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
                                                    double minimum, const core::clearance::ClearanceOptions& options, bool with_proof) {
     const std::vector<core::clearance::PairRequest> pairs{{0, 1, minimum}};

@@ -104,7 +104,8 @@ private:
         return x;
     }
 
-    // Of elements that do not intersect. Repeated corners make degenerate triangles, whose edges and corners are all that counts.
+    // The distance of elements that do not intersect. Repeated corners make degenerate triangles, whose edges and corners are all that
+    // counts.
     static Real element_distance(const Corners3& a, const Corners3& b) {
         Real least = std::numeric_limits<Real>::infinity();
         const auto is_triangle = [](const Corners3& t) { return t[1] != t[2]; };

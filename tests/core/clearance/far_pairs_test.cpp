@@ -49,7 +49,7 @@ struct Counts {
     int far = 0, near = 0;
 };
 
-// Of pairs asked for with `far`, against the same without.
+// Compares pairs asked for with `far` with the same without.
 void compare(const Scene& scene, const ClearanceOptions& options, double minimum, double far, Counts& counts) {
     const auto exact =
         certify_clearance(scene.model, scene.trajectory, all_pairs(scene, minimum, std::numeric_limits<double>::infinity()), options);

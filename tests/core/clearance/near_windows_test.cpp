@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the broad phase over time leaves out is far: against the least distance of each pair in each segment, searched by itself; and the
-// least distance of all at once against that of each pair alone.
+// Pairs that the broad phase over time leaves out are far: against the least distance of each pair in each segment, searched by itself; and
+// the least distance of all at once against each pair alone.
 #include "fettle/core/clearance/near_windows.hpp"
 
 #include <catch2/catch.hpp>

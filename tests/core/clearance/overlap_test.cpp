@@ -23,7 +23,7 @@ std::optional<Overlap> overlap_of(const Solid& a, const Solid& b, const core::ki
     return measure({tree_a, solid_a}, {tree_b, solid_b}, pair_segment(path_a, path_b, tree_a.radius(), tree_b.radius()), 0, cells);
 }
 
-// Of what two circles of radius r have in common, `apart` from each other.
+// The area that two circles of radius r have in common, `apart` from each other.
 double lens_area(double r, double apart) {
     const double half = std::acos(apart / (2 * r));
     return 2 * r * r * half - r * apart * std::sin(half);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// 3MF: what programs write, and what nobody should.
+// 3MF as programs write it, and as nobody should.
 #include <zlib.h>
 
 #include <catch2/catch.hpp>

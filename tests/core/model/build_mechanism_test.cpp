@@ -69,7 +69,7 @@ TEST_CASE("bodies that fit their joints are not moved", "[mechanism]") {
 }
 
 TEST_CASE("a bar off its ball joint is moved least", "[mechanism]") {
-    // A ball joint takes the bar's end from (0, 0, -d) to the origin. Of all poses with the end there, the nearest by mass is a stationary
+    // A ball joint takes the bar's end from (0, 0, -d) to the origin. The nearest by mass of all poses with the end there is a stationary
     // one: moving it further along the joint changes the measure of the way at second order only.
     scene::Scene scene = scene_of({bar("bar", 0.5, Vector3(0.02, 0.01, -0.05))}, 0.01);
     scene.mechanism.joints = {joint("ball", JointKind::ball, {"", Vector3::Zero(), z_axis}, {"bar", Vector3::Zero(), z_axis})};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a part's solids ask for before they are drawn: never more than what is drawn, and what multiplies is refused at once.
+// A bound of the facets of a part's solids before they are drawn: never more than what is drawn, and a part that multiplies them is refused
+// at once.
 #include "fettle/core/part_files/facet_bound.hpp"
 
 #include <catch2/catch.hpp>

@@ -30,7 +30,7 @@ bool is_told(const Errors& errors, const std::string& where, const std::string& 
                        [&](const Error& error) { return error.where.ends_with(where) && error.message.find(words) != std::string::npos; });
 }
 
-// The area of a profile, drawn 1 mm thick [mm^2]. Of what has arcs it is that of polygons.
+// The area of a profile, drawn 1 mm thick [mm^2]. Arcs count as polygons.
 double area(const std::string& profile, const std::string& more = "", double chord = 1e-6) {
     const auto file = PartFile::parse(part(more + R"("solid": {"extrude": )" + profile + R"(, "to": 1})"), "a.part.json");
     for (const Error& error : file.errors()) UNSCOPED_INFO(error.where << ": " << error.message);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What every part must stand: a valid solid, and a Jacobian that is that of differences.
+/// The test that every part must stand: a valid solid, and a Jacobian that agrees with differences.
 #pragma once
 
 #include <catch2/catch.hpp>

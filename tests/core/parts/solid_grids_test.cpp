@@ -215,7 +215,7 @@ private:
         return out;
     }
 
-    // Of a square of n cells without the corner `missing`.
+    // Is the quarter in the triangle that a square of n cells is without the corner `missing`?
     static bool is_in_triangle(int i, int j, int q, int n, int missing) {
         // The middle of the quarter, in quarters of a cell.
         const int u = 4 * i + (q == 1 ? 3 : q == 3 ? 1 : 2), v = 4 * j + (q == 2 ? 3 : q == 0 ? 1 : 2), whole = 4 * n;
@@ -254,7 +254,7 @@ void check(unsigned seed, bool prisms, double turn, Tally& tally) {
         ++tally.refused;
         return;
     }
-    // What is made of nothing, or of what touches itself, may be refused.
+    // A solid that is made of nothing, or of one that touches itself, may be refused.
     if (!grid.is_sound) {
         ++tally.not_sound;
         tally.not_sound_refused += part ? 0 : 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Joints in what is written down: pairs that do not collide, tables, what a continued run must share.
+// Records of joints: pairs that do not collide, tables, what a continued run must share.
 #include <algorithm>
 #include <filesystem>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Given mass and inertia: against those of solids, what no body has, and from a file to a motion.
+// Given mass and inertia: against those of solids, values that no body has, and from a file to a motion.
 #include "fettle/core/scene/inertial.hpp"
 
 #include <catch2/catch.hpp>
@@ -16,7 +16,7 @@ namespace {
 
 using namespace scene_files::test_support;
 
-// Of a box with these edges, by the textbook.
+// The inertia of a box with these edges, by the textbook.
 Inertial box_of(const Vector3& edges, double mass, const Vector3& centre) {
     const Vector3 squares = edges.cwiseAbs2();
     const Vector3 moments = mass / 12 * (Vector3::Constant(squares.sum()) - squares);

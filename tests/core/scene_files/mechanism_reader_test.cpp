@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Joints, springs, dampers, motors and loads of scene files: what is read, and what is refused.
+// Joints, springs, dampers, motors and loads of scene files: as they are read, and refused.
 #include "fettle/core/scene_files/mechanism_reader.hpp"
 
 #include <algorithm>

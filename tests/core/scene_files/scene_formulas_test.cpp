@@ -171,7 +171,7 @@ TEST_CASE("faults of formulas and variables have their places") {
                            "a.scene.json", options)
             .errors();
     };
-    // What no design can move may follow from what no design moves.
+    // A number that no design can move may follow from one that no design moves.
     CHECK(has(at("timestep", "\"= x / 100\""), "#/timestep", "no design can move this number, so its formula cannot follow from `x`"));
     CHECK(at("timestep", "\"= x / 100\"", false).empty());
     CHECK(at("timestep", "\"= 2 / 100\"").empty());

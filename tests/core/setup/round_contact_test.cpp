@@ -37,7 +37,7 @@ Model model_of(std::vector<scene::Body> bodies, const BuildOptions& options = {}
     return std::move(model).value();
 }
 
-// Of circumscribed facets, so that the round surfaces have these radii.
+// A pin of circumscribed facets, so that the round surfaces have these radii.
 scene::Body pin(double radius, const Vector3& at = Vector3::Zero()) {
     return body("pin", prism(circle_outline(corners, radius / std::cos(std::numbers::pi / corners)), -1, 1), at);
 }

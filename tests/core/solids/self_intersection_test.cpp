@@ -15,7 +15,7 @@ namespace fettle::core::solids::self_intersection_test {
 
 namespace {
 
-/// Of two triangles alone: those that share a vertex make no fan then, so that they are compared corner by corner.
+/// Do two triangles cross, taken alone? Those that share a vertex make no fan then, so that they are compared corner by corner.
 bool cross(const geometry::Mesh& mesh, int t, int u) {
     geometry::Mesh two;
     two.vertices = mesh.vertices;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One solve: known answers, what is promised of its result, and what it says when it fails. Physics: stepper/*_physics_test.cpp.
+// One solve: known answers, the promises of its result, and what it says when it fails. Physics: stepper/*_physics_test.cpp.
 #include "fettle/core/solver/newton.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the balance of a simulation tells: nothing where all is kept, what forces did where they did it, an error where there is one.
+// The balance of a simulation tells nothing where all is kept, the work of forces where they did it, an error where there is one.
 #include "fettle/core/stepper/balance.hpp"
 
 #include <numbers>

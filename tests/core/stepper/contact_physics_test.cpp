@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bodies in contact without friction, or with it between free bodies: what no force between bodies can change, and what energy does.
+// Bodies in contact without friction, or with it between free bodies: what no force between bodies can change, and how energy behaves.
 #include "fettle/core/clearance/clearance.hpp"
 #include "fettle/tests/core/stepper/physics_models.hpp"
 #include "fettle/tests/support/intersection_oracle.hpp"

@@ -105,7 +105,7 @@ struct SliderCrank {
 
 TEST_CASE("a pendulum's period is that of its length and gravity", "[joints]") {
     constexpr double length = 0.5, amplitude = 0.2, half = 0.01;
-    // Of a bar about its end: I = m (L^2/3 + (2 half)^2/12), lever L/2.
+    // A bar turns about its end: I = m (L^2/3 + (2 half)^2/12), lever L/2.
     const double arm = length / 2, ratio = (length * length / 3 + 4 * half * half / 12) / arm;
     const double k = std::sin(amplitude / 2), period = 4 * std::sqrt(ratio / gravity) * std::comp_ellint_1(k);
     std::vector<double> errors;

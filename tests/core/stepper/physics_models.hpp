@@ -44,7 +44,7 @@ inline Vector3 position(const core::stepper::Simulation& run, int step, int body
 
 inline Matrix3 rotation(const core::stepper::Simulation& run, int step, int body = 0) { return run.trajectory.poses[step][body].rotation; }
 
-/// Of the reference point during step `step` (1, 2, ...): implicit Euler's velocity at its end.
+/// The velocity of the reference point during step `step` (1, 2, ...): implicit Euler's at its end.
 inline Vector3 velocity(const core::stepper::Simulation& run, int step, int body = 0) {
     return (position(run, step, body) - position(run, step - 1, body)) / run.trajectory.timestep;
 }

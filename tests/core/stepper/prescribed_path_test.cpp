@@ -161,7 +161,7 @@ TEST_CASE("A simulation drives scripts through their entries and pushes what is 
         REQUIRE(corner_node < static_cast<std::ptrdiff_t>(step.nodes.size()));
         CHECK((step.nodes[corner_node][0].position - Vector3(1, 0, 0)).norm() < 1e-8);
         CHECK((run.trajectory.poses[1][0].position - Vector3(1, 1, 0)).norm() < 1e-8);
-        // Only what stands on the way moves; what is no longer pushed at the end goes where an implicit step has it, back.
+        // Only a body that stands on the way moves; one that is no longer pushed at the end goes where an implicit step has it, back.
         double moved = 0;
         for (const auto& node : step.nodes) moved = std::max(moved, (node[1].position - place).norm());
         CHECK((place.y() == 0.5 ? moved < 1e-9 : moved > 0.3));

@@ -141,7 +141,7 @@ TEST_CASE("A pin in a bore, as assembled, against the closed form", "[toleranced
     CHECK(worst_of(subject, found, "pin") == Approx(0.02e-3));
     CHECK(worst_of(subject, found, "bore") == Approx(-0.01e-3));
     CHECK(found.bounds < 20000);
-    // Of no influence, proven.
+    // Deviations without influence are proven so.
     const PairClearance other = certified(subject, "plate", "far");
     CHECK(names_of(subject, other.deviations) == std::vector<std::string>{"bore"});
     CHECK(deviations_without_influence(subject, other) == std::vector<std::string>{"pin", "x", "y"});

@@ -99,7 +99,7 @@ RealVertices coupler_at(const Lengths& lengths, Real angle) {
     return out;
 }
 
-// Of two boxes that stand upright in z and overlap there: that of their rectangles.
+// The distance of two boxes that stand upright in z and overlap there is that of their rectangles.
 Real distance_to_post(const RealVertices& box) {
     const Real low_x = 53e-3L, high_x = 63e-3L, low_y = 57e-3L, high_y = 67e-3L;
     Real least = 1;
@@ -174,7 +174,7 @@ TEST_CASE("A four-bar linkage's coupler over the whole turn and all lengths with
 
 TEST_CASE("A loop that does not close for all lengths is undecided, with its reason", "[toleranced]") {
     const tests::support::TemporaryFolder folder;
-    // Of 9.9 mm more on the crank and as much less on coupler and rocker it has no whole turn.
+    // With 9.9 mm more on the crank and as much less on coupler and rocker it has no whole turn.
     const Subject subject = subject_of(folder, R"({"crank": "+-9.9 mm", "coupler": "+-9.9 mm", "rocker": "+-9.9 mm"})");
     const PairClearance found = certify(subject, {{body_named(subject, "coupler"), body_named(subject, "post")}}, {}).front();
     CHECK(found.status == PairStatus::undecided);

@@ -292,7 +292,7 @@ TEST_CASE("clearance --certificate writes a proof that validate accepts, and rej
     folder.write("changed.certificate.json", changed.dump());
     CHECK(run("validate " + folder.file("changed.certificate.json") + " --trajectory " + folder.file("row.trajectory.json")).code == 1);
     CHECK(run("validate " + folder.file("changed.certificate.json")).code == 3);  // no trajectory beside it
-    // Of a trajectory: no second one is written.
+    // No second trajectory is written for a trajectory.
     const Answer again = run("clearance " + folder.file("row.trajectory.json") + " --minimum 0.4mm --pairs spin:pin2 --certificate " +
                              folder.file("again.certificate.json"));
     CHECK(again.code == 0);

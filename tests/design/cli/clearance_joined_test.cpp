@@ -54,7 +54,7 @@ Answer asked(const DesignFolder& folder, const std::string& question) {
 TEST_CASE("clearance: a frame through the wheel that it carries is a clash, whatever is asked") {
     if (!core::parts::can_cut_solids()) FETTLE_SKIP("this build cannot cut solids");
     const DesignFolder folder(design, wheel_scene(leg, disc));
-    // One figure of the depth: what parts them is a move of 26 mm at most, and they share what is 4 mm thick.
+    // One figure of the depth: a move of 26 mm at most parts them, and their common part is 4 mm thick.
     const Answer told = run("clearance " + folder.file("small.scene.json"));
     CAPTURE(told.out);
     CHECK(told.says("at least 3.98 mm deep, 160 mm^3 shared"));

@@ -48,7 +48,7 @@ TEST_CASE("ranges: the two-armed robot's worst combination, by hand") {
     CHECK(coordinate(pair, "left_elbow")["value"].get<double>() == Approx(-std::atan2(6, 40)).margin(2e-2));
     CHECK(coordinate(pair, "left_elbow")["unit"] == "rad");
     CHECK(pair["point_b"].is_array());
-    // Of all bodies that the pair's joints move: the hand where `pose_b` has it, the arm turned by the shoulder alone.
+    // The poses are of all bodies that the pair's joints move: the hand where `pose_b` has it, the arm turned by the shoulder alone.
     const Json& poses = pair["poses"];
     CHECK(poses.size() == 2);
     CHECK(poses["left_hand"] == pair["pose_b"]);
@@ -336,7 +336,7 @@ TEST_CASE("kinematic: where joints are not proven to have bodies there is no bou
     CHECK(contents(junit).find("message=\"no bound is proven: ") != std::string::npos);
     CHECK(contents(junit).find("at most inf") == std::string::npos);
     CHECK(contents(junit).find("at least 0 mm") == std::string::npos);
-    // Of nothing that is proven there is no certificate, nor an earlier one.
+    // Where nothing is proven there is no certificate, nor an earlier one.
     const std::string trajectory = folder.file("fit.trajectory.json");
     REQUIRE(std::filesystem::exists(trajectory));
     const Answer none = run(command + " --pairs post:left_hand --certificate " + proof);

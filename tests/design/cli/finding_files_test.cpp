@@ -28,7 +28,7 @@ using fettle::tests::support::contents;
 using fettle::tests::support::run;
 using fettle::tests::support::TemporaryFolder;
 
-// Of a SARIF result: the file that it is about.
+// The file that a SARIF result is about.
 std::string uri_of(const Json& result) {
     return result.at("locations")[0].at("physicalLocation").at("artifactLocation").at("uri").get<std::string>();
 }

@@ -24,7 +24,7 @@ using fettle::tests::support::Answer;
 using fettle::tests::support::contents;
 using fettle::tests::support::run;
 
-// What an interrupted run from many starts leaves: the best design of what has been tried.
+// An interrupted run from many starts leaves the best design of those that have been tried.
 void check_best_so_far(const std::filesystem::path& out) {
     const Json answer = Json::parse(contents(out / "result.json"));
     CHECK(answer.at("status") == "interrupted");

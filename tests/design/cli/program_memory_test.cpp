@@ -63,7 +63,7 @@ long page_faults() {
     return usage.ru_minflt;
 }
 
-// Of the first use of so much new memory.
+// The page faults of the first use of so much new memory.
 long faults_of_use(std::size_t bytes) {
     const long before = page_faults();
     auto* const block = static_cast<volatile char*>(std::malloc(bytes));

@@ -110,7 +110,7 @@ TEST_CASE("simulate: a sample of the tolerances, as made") {
     CHECK(answer.at("made").at("seed") == 7);
     REQUIRE(answer.at("made").at("deviations").size() == 2);
     CHECK(std::filesystem::exists(folder.file("out/report.html")));
-    // Its mass is that of its deviations, and what the file keeps.
+    // Its mass follows from its deviations, and agrees with the one that the file keeps.
     const auto& by = answer.at("made").at("deviations");
     REQUIRE(by[1].at("of") == "size");
     const double mass = (10 + by[1].at("value").get<double>()) * 1e-4 * (1 + by[0].at("value").get<double>() / 1000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What validate shows and doubts, and what the program says to files and options that it cannot take.
+// The facts and doubts that validate shows, and what the program says to files and options that it cannot take.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -215,7 +215,7 @@ TEST_CASE("validate: a part file is a part") {
     }
 }
 
-// Of a certificate of each kind: what it is about, in text and JSON, and what it is worth without the file that it was made from.
+// A certificate of each kind: its subject, in text and JSON, and its worth without the file that it was made from.
 TEST_CASE("validate: a certificate says over what it is, and of which scene") {
     Folder folder;
     const std::string scene =
@@ -277,7 +277,7 @@ TEST_CASE("validate: a certificate says over what it is, and of which scene") {
         unbound["source"] = "gone.scene.json";  // nor of what is not there
         CHECK(run("validate " + folder.write("bare.certificate.json", unbound.dump()) + path).code == (kind.states_its_domain ? 2 : 0));
     }
-    // What the scene says now is not what was proven.
+    // The scene as it is now is not the one that was proven.
     folder.write("arm.scene.json", fettle::tests::support::replaced(contents(scene), "[-50, 30]", "[-50, 31]"));
     CHECK(run("validate " + folder.file("ranges.certificate.json")).says("stale: the joints of arm.scene.json"));
     CHECK(run("validate " + folder.file("both.certificate.json")).says("stale: the tolerances of arm.design.json"));

@@ -14,7 +14,7 @@ namespace {
 using core::geometry::Mesh;
 using tolerances::FeatureKind;
 
-// Of the union of a label's bars, by a raster of 0.1 mm: bars are whole numbers of these.
+// The area of the union of a label's bars, by a raster of 0.1 mm: bars are whole numbers of these.
 double area_of(const std::string& text, const StrokeFont& font) {
     std::set<std::pair<long, long>> cells;
     constexpr double cell = 1e-4;

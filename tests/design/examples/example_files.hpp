@@ -15,7 +15,7 @@ struct Example {
     design::problem::DesignProblem problem;
     VectorX start;
 
-    /// @param name  Of the folder and of its files. Tests run in the project's folder.
+    /// @param name  The name of the folder and of its files. Tests run in the project's folder.
     static Example read(const std::string& name) {
         auto file = design::reading::read_design("examples/" + name + "/" + name + ".design.json");
         REQUIRE(file);

@@ -86,7 +86,7 @@ const Case loop{"path_loop",
                  {.6, 1}},
                 0.00991193 * 1.00001};
 
-// Of a design's parameters, SI.
+// The values of a design's parameters, SI.
 Values values_of(const Example& example, const VectorX& p) {
     Values out;
     for (size_t k = 0; k < example.design.parameters.size(); ++k) {
@@ -97,7 +97,7 @@ Values values_of(const Example& example, const VectorX& p) {
     return out;
 }
 
-// Of result.json: in the parameters' own units.
+// The values of result.json, from the parameters' own units.
 Values values_of(const Example& example, const nlohmann::json& parameters) {
     VectorX p(example.design.parameters.size());
     for (size_t k = 0; k < example.design.parameters.size(); ++k) {

@@ -22,7 +22,7 @@ struct Drive {
     double time, torque;
 };
 
-// Of the crank: its torque about z, from drives.csv (time, body, fx, fy, fz, tx, ty, tz).
+// The crank's torque about z, from drives.csv (time, body, fx, fy, fz, tx, ty, tz).
 std::vector<Drive> crank_drives(const std::string& path) {
     std::ifstream in(path);
     std::vector<Drive> drives;

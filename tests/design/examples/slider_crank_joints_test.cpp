@@ -22,7 +22,7 @@ using tests::design_support::scene_of_example;
 constexpr double r = 0.0135, l = 0.045, force = 20;
 constexpr int steps = 205;
 
-// Of the turn after the first tenth, in which play is taken up. Torques are means: pins and bores of 64 flats let them ripple by 8%.
+// The turn after the first tenth, in which play is taken up. Torques are means: pins and bores of 64 flats let them ripple by 8%.
 struct Turn {
     double stroke = 0;                  // [m]
     double way_out = 0, back = 0;       // mean torque of the crank's motor while the piston goes out, and most of its way back [N m]
@@ -121,7 +121,7 @@ Json jointed_scene() {
 
 Turn by_joints() { return simulated(jointed_scene(), "joints.csv", "drive", 8); }
 
-// Of f(p), f(p/2), f(p/4): what is left at 0 of a parabola.
+// The value at 0 of the parabola through f(p), f(p/2), f(p/4).
 double at_none(double whole, double half, double quarter) { return (8 * quarter - 6 * half + whole) / 3; }
 
 }  // namespace

@@ -78,7 +78,7 @@ const aiNode* find_node(const aiNode* node, const std::string& name) {
     return nullptr;
 }
 
-/// Of the base colour.
+/// The blue of the base colour.
 float blue(const aiMaterial& material) {
     for (unsigned i = 0; i < material.mNumProperties; ++i) {
         const aiMaterialProperty& property = *material.mProperties[i];

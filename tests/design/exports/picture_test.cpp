@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures: what hides what, which edges are drawn, where things are; PNG decoded by a reader of its own, SVG by an XML reader.
+// Pictures: which parts hide others, which edges are drawn, where things are; PNG decoded by a reader of its own, SVG by an XML reader.
 #include "fettle/design/exports/picture.hpp"
 
 #include <zlib.h>

@@ -22,7 +22,7 @@ using fettle::design::problem::DesignProblem;
 
 using OfOne = std::function<double(double)>;
 
-// Of the first parameter alone.
+// A function of the first parameter alone.
 std::shared_ptr<OfDensities> function(const OfOne& f, const OfOne& slope) {
     return std::make_shared<OfDensities>([f](const VectorX& u) { return f(u[0]); },
                                          [slope](const VectorX& u) { return VectorX::Unit(u.size(), 0) * slope(u[0]); });

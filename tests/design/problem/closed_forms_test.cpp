@@ -289,7 +289,7 @@ TEST_CASE("closed form: a pendulum of small swings, in gravity and length", "[jo
     design.scene.bodies[0].pose.position = -(design.scene.bodies[0].pose.rotation * Vector3(0.01, 0, length));
     const std::string reach = "/joints/0/point_b/2";
     add_parameters(design, {{"gravity", -9.81, "/gravity/2"}, {"length", length, reach}});
-    // Of the direction of the rod's x axis: the swing's angle itself.
+    // The swing's angle itself, from the direction of the rod's x axis.
     const auto tip = std::make_shared<EndPosition>(0, Vector3(1, 0, 0), z_axis),
                foot = std::make_shared<EndPosition>(0, Vector3::Zero(), z_axis);
     const DesignEvaluation at = evaluated(design, {tip, foot});

@@ -77,7 +77,7 @@ TEST_CASE("an expression of quantities and parameters is differentiated by the c
     expected = at.jacobian.row(2) / (2 * std::sqrt(mass * 2e-3)) - at.jacobian.row(3) / width;
     expected(0, 1) += gap / (width * width);
     CHECK(largest(at.jacobian.row(5) - expected) < 1e-12 * largest(expected));
-    // What is proven of the clearance is what is proven of the expression: no more, and not much less.
+    // The proven bounds of the clearance make those of the expression: no more, and not much less.
     const auto &certified = at.constraints[3], &whole = at.constraints[5];
     CHECK(whole.lower <= std::sqrt(mass / 2e-3) - certified.upper / width);
     CHECK(whole.upper >= std::sqrt(mass / 2e-3) - certified.lower / width);

@@ -297,7 +297,7 @@ adjoint::ModelGradient gradient_of(const Model& model, const std::vector<double>
     return g;
 }
 
-// Of a, b and c, numbers between 0.3 and 0.8: something of every operation that is smooth there.
+// A text of a, b and c, numbers between 0.3 and 0.8: something of every operation that is smooth there.
 std::string random_text(std::mt19937_64& random, int depth) {
     const auto pick = [&](int count) { return std::uniform_int_distribution<int>(0, count - 1)(random); };
     if (depth == 0) return std::array<std::string, 4>{"a", "b", "c", "0.7"}[pick(4)];

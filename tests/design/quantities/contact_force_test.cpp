@@ -99,7 +99,7 @@ TEST_CASE("a least force of parts that are apart is, for a search, how far they 
     CHECK(at.continued.size() == 6);
     CHECK(search_jacobian(at)(0, 0) == Approx(stiffness));
     CHECK(search_jacobian(at)(0, 1) == Approx(-stiffness));
-    // What is reported stays what it is.
+    // Reports stay as they are.
     for (const description::Measurement& force : at.constraints) CHECK(force.value == 0);
     CHECK(at.jacobian.isZero(0));
     CHECK(at.violation == Approx(5));

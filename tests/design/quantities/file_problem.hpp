@@ -24,8 +24,8 @@ inline design::problem::DesignProblem problem_of(const std::string& scene, const
     return std::move(problem).value();
 }
 
-/// Of all constraints in all parameters, at the design as written, against central differences of whole simulations. What is about 1 on the
-/// way (a turn) is known to some 1e-15, by which differences of what stays 0 are off.
+/// Checks the derivatives of all constraints in all parameters, at the design as written, against central differences of whole simulations.
+/// A number that is about 1 on the way (a turn) is known to some 1e-15, by which differences of what stays 0 are off.
 inline void check_gradient(const design::problem::DesignProblem& problem, double limit) {
     const VectorX p = design::description::values_of(problem.design().parameters);
     const design::problem::DesignEvaluation at = problem.evaluate(p);

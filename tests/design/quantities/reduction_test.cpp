@@ -15,7 +15,7 @@ constexpr double pi = std::numbers::pi;
 constexpr double h = 0.01;
 constexpr Instants of_steps{h, 1};  // as of a force: the start has no number
 
-// Of so many steps.
+// Samples of f over so many steps.
 std::vector<double> sampled(const std::function<double(double)>& f, int steps, const Instants& instants = of_steps) {
     std::vector<double> y;
     for (int t = instants.first; t <= steps; ++t) y.push_back(f(t * instants.timestep));
@@ -37,7 +37,7 @@ Reduction taken_at(double time) {
 
 double sine(double time) { return std::sin(2 * pi * time); }
 
-// Of a bumpy sequence without symmetries.
+// A bumpy function without symmetries.
 double bumpy(double time) { return std::sin(7 * time) + 0.3 * std::cos(31 * time + 1) - 0.4; }
 
 const std::vector<Over> all{Over::end, Over::sum, Over::mean, Over::largest, Over::least, Over::peak, Over::rms, Over::integral};

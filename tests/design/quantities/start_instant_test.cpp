@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What has a number at the start and what has not: every kind of quantity that instants have numbers of, by every way to make one of them,
-// against the numbers themselves and, of derivatives, against differences of whole simulations.
+// Numbers at the start, where there are any: every kind of quantity that instants have numbers of, by every way to make one of them,
+// against the numbers themselves and, for derivatives, against differences of whole simulations.
 #include <catch2/catch.hpp>
 #include <numbers>
 

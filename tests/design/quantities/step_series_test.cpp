@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What joints, motors and springs carry and store, as quantities of a design: values against what the simulation reports, derivatives
+// The loads and energies of joints, motors and springs as quantities of a design: values against what the simulation reports, derivatives
 // against differences of designs.
 #include "fettle/design/quantities/step_series.hpp"
 
@@ -166,7 +166,7 @@ DesignProblem problem_of(Design design) {
 
 namespace {
 
-// Of the bodies' centres at the end, component by component.
+// The momentum of the bodies' centres at the end, component by component.
 Vector3 momentum_of(const description::Simulated& s) {
     Vector3 sum = Vector3::Zero();
     for (size_t i = 0; i < s.model.bodies.size(); ++i)
@@ -249,7 +249,7 @@ TEST_CASE("energies of Newmark's steps are those that the simulation reports", "
 
 namespace {
 
-// Of all constraints in all parameters, by differences of designs at the start.
+// Checks the derivatives of all constraints in all parameters, by differences of designs at the start.
 void check_derivatives(const DesignProblem& problem, double tolerance) {
     const VectorX start = VectorX::Zero(problem.parameter_count());
     const problem::DesignEvaluation at = problem.evaluate(start);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a report says, against what was computed: meshes and poses read back, curves of tables, certified bands against known distances,
+// The contents of a report, against what was computed: meshes and poses read back, curves of tables, certified bands against known
+// distances,
 // the rows of a design, a page that users' names cannot break out of; and the command, from outside.
 #include "fettle/design/report/report_data.hpp"
 
@@ -226,7 +227,7 @@ TEST_CASE("report: a band is nowhere below what is proven of the same steps") {
     CHECK(raised["least"] == 4.9999999);
     for (const float lower : lower_of(raised)) CHECK(lower >= 4.99999);
     CHECK(lower_of(raised).front() <= 4.9999999);
-    // Of a part of the motion: a row more of the same bodies, 5 + 20 * 0.1 apart when it begins.
+    // A part of the motion has a row more of the same bodies, 5 + 20 * 0.1 apart when it begins.
     Json part = rows;
     part.push_back(rows[0]);
     part.back()["steps"] = {10, 20};
@@ -379,7 +380,7 @@ TEST_CASE("report: simulate and clearance leave one beside their results, and re
     CHECK(judged["margins"].is_null());  // as assembled
     CHECK(Json::parse(contents(fit + "/result.json"))["pairs"][0]["lower"] == Json(cleared.json()["pairs"][0]["lower"]));
 
-    // Of its own motion nothing is taken away but the answer; of another one everything is.
+    // Nothing of its own motion is taken away but the answer; of another one everything is.
     CHECK(run("clearance " + out + "/trajectory.json --no-report --out " + out).code <= 2);
     CHECK_FALSE(std::filesystem::exists(out + "/report.html"));
     for (const char* name : {"/motion.glb", "/steps.csv", "/trajectory.json"}) CHECK(std::filesystem::exists(out + name));

@@ -51,7 +51,7 @@ double volume(const Mesh& mesh) { return core::geometry::solid_moments(mesh.vert
 double inscribed(int n, double radius) { return n / 2.0 * std::sin(2 * std::numbers::pi / n) * radius * radius; }
 double circumscribed(int n, double radius) { return n * std::tan(std::numbers::pi / n) * radius * radius; }
 
-// Of facets within the material.
+// Areas of facets within the material.
 double pin_area(int n, double radius) { return inscribed(n, radius); }
 double bore_area(int n, double radius) { return circumscribed(n, radius); }
 

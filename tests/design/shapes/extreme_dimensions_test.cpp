@@ -18,7 +18,7 @@ using part_campaign::Values;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Of the dimension as it is, or [m].
+// Extreme values of a dimension as it is, or in [m].
 Values extremes(double usual) {
     Values out{0, -0.0, -usual, infinity, -infinity, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::denorm_min()};
     for (const double power : {-300, -150, -30, -15, -12, -9, -6, -3, 3, 5, 6, 8, 9, 12, 15, 30, 150, 300}) {
@@ -28,7 +28,7 @@ Values extremes(double usual) {
     return out;
 }
 
-// What is wrong with what is drawn; empty: nothing.
+// The fault of what is drawn; empty: none.
 std::string fault_at(const PartFile& file, const Values& values) {
     core::parts::Facets coarse;
     coarse.segments = 8;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Parts from other programs: what a command must name, how one is run, what is refused, and that none runs unasked. The program here is a
-/// script of the shell's, which writes a box.
+/// Parts from other programs: what a command must name, how one is run, which are refused, and that none runs unasked. The program here is
+/// a script of the shell's, which writes a box.
 #include "fettle/design/shapes/mesh_program.hpp"
 
 #include <algorithm>

@@ -101,8 +101,8 @@ private:
 };
 
 /// Compares the deviations with samples. The true part is drawn again, five times as finely if that can be, with its vertices on the true
-/// surfaces: that drawing is off by its own deviation at most. @param samples  Of either kind: vertices of the fine mesh, points of the
-/// part's triangles.
+/// surfaces: that drawing is off by its own deviation at most. @param samples  How many of either kind: vertices of the fine mesh, points
+/// of the part's triangles.
 inline std::string deviation_fault(const PartFile& file, const Values& values, const DrawnPart& part, int samples, std::mt19937& random) {
     core::parts::Facets facets;
     facets.lean = core::parts::Lean::through;

@@ -135,7 +135,7 @@ bool same_points(const Matrix3X& x, const Matrix3X& y) {
     return true;
 }
 
-// Of the part alone at these values, and of the part as drawn that is remade there: the same facets? Nothing: neither can be made.
+// A part alone at these values, and the part as drawn that is remade there: have they the same facets? Nothing: neither can be made.
 struct Remade {
     bool is_same = false;
     std::vector<std::string> other_facets;
@@ -205,7 +205,7 @@ TEST_CASE("part library: 200 random valid dimensions of every part: solids, exac
 }
 
 TEST_CASE("part library: volumes in closed form") {
-    // The volume of the mesh is that of the part but for what its facets leave out or add: their area by the chord, at most.
+    // The volume of the mesh is the part's, but for what its facets leave out or add: their area by the chord, at most.
     const auto check = [](const std::string& name, const Counts& counts,
                           const std::function<double(const std::map<std::string, double>&)>& exact) {
         const PartFile file = part(name, counts);
@@ -261,7 +261,7 @@ TEST_CASE("part library: volumes in closed form") {
         return (2 * half * (d["length"] + d["back"]) - d["nose"] * d["nose"]) * d["bar_thickness"] +
                pi * std::pow(d["pin_radius"], 2) * d["pin_length"];
     });
-    // Of a ball of radius r, what is above z = -a.
+    // The part of a ball of radius r above z = -a.
     const auto ball_above = [](double r, double a) { return pi * (r * r * (r + a) - (r * r * r + a * a * a) / 3); };
     check("ball_stud", {}, [&](auto d) {
         const double neck = d["neck_radius"], at = std::sqrt(std::pow(d["ball_radius"], 2) - neck * neck);

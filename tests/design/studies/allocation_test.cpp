@@ -175,7 +175,7 @@ TEST_CASE("allocation of the one-way clutch: its yield by the second order, and 
     const AllocationReport report = allocated(file, options);
     INFO(report.message);
     REQUIRE(report.status == AllocationStatus::held);
-    // Of a linear clutch Lagrange's ratios, t ~ (a / g^2)^(1/3), g in deg/mm.
+    // Lagrange's ratios of a linear clutch, t ~ (a / g^2)^(1/3), g in deg/mm.
     const Vector3 a(0.05, 0.01, 0.0125), g(-11.910473, -23.731700, 11.821227);
     for (int j = 0; j < 3; ++j) {
         const double lagrange = std::cbrt(a[j] / (g[j] * g[j])) / std::cbrt(a[0] / (g[0] * g[0]));

@@ -46,7 +46,7 @@ TEST_CASE("a simulated design, killed and resumed, ends the same, bit for bit", 
     CHECK(contents(folder.path / "killed" / "design.final.json") == contents(folder.path / "whole" / "design.final.json"));
     CHECK(contents(folder.path / "killed" / "trajectory.json") == contents(folder.path / "whole" / "trajectory.json"));
 
-    // What is written is what was found: read again, it has the same numbers.
+    // The file has the design that was found: read again, it has the same numbers.
     const Result<reading::DesignFile> final = reading::read_design((folder.path / "whole" / "design.final.json").string());
     REQUIRE(final);
     const VectorX values = values_of(final->design.parameters);

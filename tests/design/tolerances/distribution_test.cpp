@@ -15,7 +15,7 @@ namespace {
 
 using tests::design_support::gauss_legendre, tests::design_support::GaussRule;
 
-// Of a density that need not have the integral 1, smooth but at the middle of its range.
+// The moments of a density that need not have the integral 1, smooth but at the middle of its range.
 Moments integrated(const std::function<double(double)>& density, double from, double to) {
     static const GaussRule rule = gauss_legendre(60);
     const auto integral = [&](const std::function<double(double)>& f) {

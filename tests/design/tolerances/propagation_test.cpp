@@ -112,7 +112,7 @@ TEST_CASE("propagation: the clutch, of second order, against quadrature") {
     INFO("mean " << found.mean << ", deviation " << found.standard_deviation << ", skewness " << skewness(found) << ", kurtosis "
                  << kurtosis(found));
     CHECK(found.mean == Approx(exact.mean).epsilon(1e-4));
-    // What the third derivatives add is as large as what the second ones do, but for the mean and the skewness.
+    // The third derivatives add as much as the second ones do, but for the mean and the skewness.
     CHECK(found.standard_deviation == Approx(exact.standard_deviation).epsilon(2e-3));
     CHECK(std::abs(skewness(found) - skewness(exact)) < 1e-3);
     CHECK(std::abs(kurtosis(found) - kurtosis(exact)) < 0.02);

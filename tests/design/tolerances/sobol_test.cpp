@@ -38,7 +38,7 @@ MatrixX first_points(const SobolPoints& points, int count) {
     return result;
 }
 
-// Of integral 1 over the cube, with terms in each, two and all coordinates together.
+// A function of integral 1 over the cube, with terms in each, two and all coordinates together.
 double smooth(const VectorX& u) {
     double product = 1, sum = 0;
     for (const double x : u) {

@@ -467,7 +467,7 @@ TEST_CASE("URDF: what mimics starts where the other has it, within the limits of
     const auto apart = imported("<limit lower=\"0\" upper=\"1\"/>", "<limit lower=\"5\" upper=\"6\"/><mimic joint=\"ja\"/>");
     REQUIRE_FALSE(apart.warnings.empty());
     CHECK(contains(apart.warnings[0], "no position of it has it and all that mimic it within their limits"));
-    // What turns with what slides, and what does not move at all.
+    // One joint turns with one that slides, and one does not move at all.
     const auto rack = imported(wide, wide + "<mimic joint=\"ja\" multiplier=\"20\"/>", "prismatic");
     CHECK(scene_json(rack)["joints"][2]["of"] == json({"jb", "ja"}));
     CHECK(scene_json(rack)["joints"][2]["radius"].get<double>() == Approx(50));
