@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/model_gradient.hpp"
+#include "adjoint/model_gradient.hpp"
 
-#include "fettle/core/model/row_choice.hpp"
+#include "core/model/row_choice.hpp"
 
 namespace fettle::adjoint {
 namespace {

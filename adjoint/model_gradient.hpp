@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/base/types.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::adjoint {
 

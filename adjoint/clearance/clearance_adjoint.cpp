@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/clearance/clearance_adjoint.hpp"
+#include "adjoint/clearance/clearance_adjoint.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "fettle/adjoint/clearance/tied_features.hpp"
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/geometry/distance.hpp"
+#include "adjoint/clearance/tied_features.hpp"
+#include "core/base/contract.hpp"
+#include "core/geometry/distance.hpp"
 
 namespace fettle::adjoint::clearance {
 namespace {

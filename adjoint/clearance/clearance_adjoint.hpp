@@ -22,9 +22,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/adjoint/clearance/path_nodes.hpp"
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/clearance/clearance.hpp"
+#include "adjoint/clearance/path_nodes.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/clearance/clearance.hpp"
 
 namespace fettle::adjoint::clearance {
 

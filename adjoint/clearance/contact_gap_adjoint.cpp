@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/clearance/contact_gap_adjoint.hpp"
+#include "adjoint/clearance/contact_gap_adjoint.hpp"
 
 #include <Eigen/Geometry>
 
-#include "fettle/adjoint/contact/pair_bodies.hpp"
+#include "adjoint/contact/pair_bodies.hpp"
 
 namespace fettle::adjoint::clearance {
 

@@ -4,8 +4,8 @@
 ///   d gap = sigma (sum_i w_i n . dx_i - dR),   R the sum of the two reaches, 0 of facets.
 #pragma once
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/clearance/contact_gap.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/clearance/contact_gap.hpp"
 
 namespace fettle::adjoint::clearance {
 

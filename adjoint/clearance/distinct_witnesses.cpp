@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/clearance/distinct_witnesses.hpp"
+#include "adjoint/clearance/distinct_witnesses.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/clearance/local_witnesses.hpp"
+#include "adjoint/clearance/local_witnesses.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/adjoint/clearance/distinct_witnesses.hpp"
-#include "fettle/adjoint/clearance/path_nodes.hpp"
-#include "fettle/adjoint/clearance/range_adjoint.hpp"
-#include "fettle/adjoint/clearance/tied_features.hpp"
-#include "fettle/core/clearance/range_clearance.hpp"
+#include "adjoint/clearance/distinct_witnesses.hpp"
+#include "adjoint/clearance/path_nodes.hpp"
+#include "adjoint/clearance/range_adjoint.hpp"
+#include "adjoint/clearance/tied_features.hpp"
+#include "core/clearance/range_clearance.hpp"
 
 namespace fettle::adjoint::clearance {
 namespace {

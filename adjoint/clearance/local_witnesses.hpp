@@ -16,8 +16,8 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/clearance/joint_ranges.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/clearance/joint_ranges.hpp"
 
 namespace fettle::adjoint::clearance {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/clearance/path_nodes.hpp"
+#include "adjoint/clearance/path_nodes.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/stepper/prescribed_path.hpp"
+#include "core/stepper/prescribed_path.hpp"
 
 namespace fettle::adjoint::clearance {
 namespace {

@@ -14,9 +14,9 @@
 #include <optional>
 #include <string>
 
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::adjoint::clearance {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/clearance/range_adjoint.hpp"
+#include "adjoint/clearance/range_adjoint.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -7,12 +7,12 @@
 #include <cmath>
 #include <set>
 
-#include "fettle/adjoint/clearance/clearance_adjoint.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/kinematics/rotation.hpp"
-#include "fettle/core/kinematics/tangent_system.hpp"
-#include "fettle/core/model/limits.hpp"
-#include "fettle/core/model/row_choice.hpp"
+#include "adjoint/clearance/clearance_adjoint.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/kinematics/rotation.hpp"
+#include "core/kinematics/tangent_system.hpp"
+#include "core/model/limits.hpp"
+#include "core/model/row_choice.hpp"
 
 namespace fettle::adjoint::clearance {
 namespace {

@@ -11,8 +11,8 @@
 
 #include <string>
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/clearance/range_clearance.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/clearance/range_clearance.hpp"
 
 namespace fettle::adjoint::clearance {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/clearance/tied_features.hpp"
+#include "adjoint/clearance/tied_features.hpp"
 
 #include <tuple>
 #include <utility>
 
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/geometry/overlapping_boxes.hpp"
+#include "core/geometry/distance.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
 
 namespace fettle::adjoint::clearance {
 namespace {

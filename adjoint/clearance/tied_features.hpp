@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "fettle/core/clearance/clearance.hpp"
+#include "core/clearance/clearance.hpp"
 
 namespace fettle::adjoint::clearance {
 

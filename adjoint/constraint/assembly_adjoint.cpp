@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/constraint/assembly_adjoint.hpp"
+#include "adjoint/constraint/assembly_adjoint.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/kinematics/mass_matrix.hpp"
-#include "fettle/core/linear/linear_system.hpp"
+#include "core/kinematics/mass_matrix.hpp"
+#include "core/linear/linear_system.hpp"
 
 namespace fettle::adjoint::constraint {
 namespace {

@@ -8,8 +8,8 @@
 /// Coordinates that may not move are where they were written, and get P_bar - H lambda - C^T mu.
 #pragma once
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/constraint/assembly.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/constraint/assembly.hpp"
 
 namespace fettle::adjoint::constraint {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/constraint/row_adjoint.hpp"
+#include "adjoint/constraint/row_adjoint.hpp"
 
-#include "fettle/adjoint/measure/measure_tangent.hpp"
+#include "adjoint/measure/measure_tangent.hpp"
 
 namespace fettle::adjoint::constraint {
 namespace {

@@ -5,9 +5,9 @@
 ///   p_bar -= sum_i (multiplier_i d(dc_i . lambda)/dp + mu_i dc_i/dp).
 #pragma once
 
-#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/energy/step_problem.hpp"
+#include "adjoint/contact/contact_set_adjoint.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/energy/step_problem.hpp"
 
 namespace fettle::adjoint::constraint {
 

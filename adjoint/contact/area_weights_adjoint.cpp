@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/contact/area_weights_adjoint.hpp"
+#include "adjoint/contact/area_weights_adjoint.hpp"
 
 #include <array>
 
-#include "fettle/core/geometry/half_edges.hpp"
+#include "core/geometry/half_edges.hpp"
 
 namespace fettle::adjoint::contact {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "fettle/core/contact/contact_areas.hpp"
+#include "core/contact/contact_areas.hpp"
 
 namespace fettle::adjoint::contact {
 

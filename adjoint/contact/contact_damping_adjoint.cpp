@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/contact/contact_damping_adjoint.hpp"
+#include "adjoint/contact/contact_damping_adjoint.hpp"
 
 #include <Eigen/Geometry>
 
-#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
-#include "fettle/adjoint/contact/pair_bodies.hpp"
+#include "adjoint/contact/contact_pair_adjoint.hpp"
+#include "adjoint/contact/pair_bodies.hpp"
 
 namespace fettle::adjoint::contact {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
-#include "fettle/core/contact/contact_damping.hpp"
+#include "adjoint/contact/contact_set_adjoint.hpp"
+#include "core/contact/contact_damping.hpp"
 
 namespace fettle::adjoint::contact {
 

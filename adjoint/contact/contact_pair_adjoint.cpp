@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
+#include "adjoint/contact/contact_pair_adjoint.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::adjoint::contact {
 

@@ -12,7 +12,7 @@
 
 #include <array>
 
-#include "fettle/core/contact/contact_pair.hpp"
+#include "core/contact/contact_pair.hpp"
 
 namespace fettle::adjoint::contact {
 

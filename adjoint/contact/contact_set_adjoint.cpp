@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
+#include "adjoint/contact/contact_set_adjoint.hpp"
 
 #include <Eigen/Geometry>
 
-#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
-#include "fettle/adjoint/contact/pair_bodies.hpp"
-#include "fettle/core/base/contract.hpp"
+#include "adjoint/contact/contact_pair_adjoint.hpp"
+#include "adjoint/contact/pair_bodies.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::adjoint::contact {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <vector>
 
-#include "fettle/adjoint/contact/area_weights_adjoint.hpp"
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/contact/contact_set.hpp"
+#include "adjoint/contact/area_weights_adjoint.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/contact/contact_set.hpp"
 
 namespace fettle::adjoint::contact {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/contact/friction_adjoint.hpp"
+#include "adjoint/contact/friction_adjoint.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
-#include "fettle/adjoint/contact/pair_bodies.hpp"
-#include "fettle/core/contact/friction.hpp"
+#include "adjoint/contact/contact_pair_adjoint.hpp"
+#include "adjoint/contact/pair_bodies.hpp"
+#include "core/contact/friction.hpp"
 
 namespace fettle::adjoint::contact {
 namespace {

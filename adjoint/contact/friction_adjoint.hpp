@@ -17,7 +17,7 @@
 
 #include <vector>
 
-#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
+#include "adjoint/contact/contact_set_adjoint.hpp"
 
 namespace fettle::adjoint::contact {
 

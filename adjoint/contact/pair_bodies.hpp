@@ -4,9 +4,9 @@
 
 #include <array>
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/geometry/rounded_sides.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/contact/contact_set.hpp"
+#include "core/geometry/rounded_sides.hpp"
 
 namespace fettle::adjoint::contact {
 

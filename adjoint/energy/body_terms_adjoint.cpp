@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/energy/body_terms_adjoint.hpp"
+#include "adjoint/energy/body_terms_adjoint.hpp"
 
-#include "fettle/core/energy/body_terms.hpp"
+#include "core/energy/body_terms.hpp"
 
 namespace fettle::adjoint::energy {
 

@@ -8,7 +8,7 @@
 /// The rates of damping are not differentiated. Torques are the chart's, and the sweeps' own business (adjoint/stepper).
 #pragma once
 
-#include "fettle/adjoint/energy/term_adjoint.hpp"
+#include "adjoint/energy/term_adjoint.hpp"
 
 namespace fettle::adjoint::energy {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/energy/contact_terms_adjoint.hpp"
+#include "adjoint/energy/contact_terms_adjoint.hpp"
 
-#include "fettle/adjoint/contact/contact_damping_adjoint.hpp"
+#include "adjoint/contact/contact_damping_adjoint.hpp"
 
 namespace fettle::adjoint::energy {
 

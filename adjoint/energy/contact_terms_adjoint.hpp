@@ -4,7 +4,7 @@
 /// the work.
 #pragma once
 
-#include "fettle/adjoint/energy/term_adjoint.hpp"
+#include "adjoint/energy/term_adjoint.hpp"
 
 namespace fettle::adjoint::energy {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
+#include "adjoint/energy/incremental_potential_adjoint.hpp"
 
 #include <array>
 
-#include "fettle/adjoint/energy/body_terms_adjoint.hpp"
-#include "fettle/adjoint/energy/contact_terms_adjoint.hpp"
-#include "fettle/adjoint/energy/measure_terms_adjoint.hpp"
+#include "adjoint/energy/body_terms_adjoint.hpp"
+#include "adjoint/energy/contact_terms_adjoint.hpp"
+#include "adjoint/energy/measure_terms_adjoint.hpp"
 
 namespace fettle::adjoint::energy {
 

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "fettle/adjoint/energy/term_adjoint.hpp"
+#include "adjoint/energy/term_adjoint.hpp"
 
 namespace fettle::adjoint::energy {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/energy/measure_terms_adjoint.hpp"
+#include "adjoint/energy/measure_terms_adjoint.hpp"
 
 #include <tuple>
 
-#include "fettle/adjoint/measure/measure_tangent.hpp"
-#include "fettle/core/energy/measure_terms.hpp"
+#include "adjoint/measure/measure_tangent.hpp"
+#include "core/energy/measure_terms.hpp"
 
 namespace fettle::adjoint::energy {
 namespace {

@@ -7,7 +7,7 @@
 /// frames' placement moves m, m_slip and dm . v.
 #pragma once
 
-#include "fettle/adjoint/energy/term_adjoint.hpp"
+#include "adjoint/energy/term_adjoint.hpp"
 
 namespace fettle::adjoint::energy {
 

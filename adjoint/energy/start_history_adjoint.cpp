@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/energy/start_history_adjoint.hpp"
+#include "adjoint/energy/start_history_adjoint.hpp"
 
-#include "fettle/adjoint/energy/measure_terms_adjoint.hpp"
-#include "fettle/adjoint/energy/time_integration_adjoint.hpp"
-#include "fettle/core/energy/measure_terms.hpp"
-#include "fettle/core/energy/start_history.hpp"
-#include "fettle/core/linear/matrices.hpp"
+#include "adjoint/energy/measure_terms_adjoint.hpp"
+#include "adjoint/energy/time_integration_adjoint.hpp"
+#include "core/energy/measure_terms.hpp"
+#include "core/energy/start_history.hpp"
+#include "core/linear/matrices.hpp"
 
 namespace fettle::adjoint::energy {
 namespace {

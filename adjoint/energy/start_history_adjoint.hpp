@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "fettle/adjoint/model_gradient.hpp"
+#include "adjoint/model_gradient.hpp"
 
 namespace fettle::adjoint::energy {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/energy/term_adjoint.hpp"
+#include "adjoint/energy/term_adjoint.hpp"
 
 namespace fettle::adjoint::energy {
 

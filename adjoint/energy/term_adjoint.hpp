@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
-#include "fettle/adjoint/contact/friction_adjoint.hpp"
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/energy/term.hpp"
+#include "adjoint/contact/contact_set_adjoint.hpp"
+#include "adjoint/contact/friction_adjoint.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/base/result.hpp"
+#include "core/energy/term.hpp"
 
 namespace fettle::adjoint::energy {
 

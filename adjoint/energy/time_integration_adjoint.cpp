@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/energy/time_integration_adjoint.hpp"
+#include "adjoint/energy/time_integration_adjoint.hpp"
 
 #include <array>
 
-#include "fettle/adjoint/energy/body_terms_adjoint.hpp"
-#include "fettle/core/energy/damping_moments.hpp"
-#include "fettle/core/kinematics/mass_matrix.hpp"
-#include "fettle/core/kinematics/tangent_system.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "adjoint/energy/body_terms_adjoint.hpp"
+#include "core/energy/damping_moments.hpp"
+#include "core/kinematics/mass_matrix.hpp"
+#include "core/kinematics/tangent_system.hpp"
+#include "core/linear/factorisations.hpp"
 
 namespace fettle::adjoint::energy {
 namespace {

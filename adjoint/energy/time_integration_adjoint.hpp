@@ -15,7 +15,7 @@
 
 #include <vector>
 
-#include "fettle/core/energy/time_integration.hpp"
+#include "core/energy/time_integration.hpp"
 
 namespace fettle::adjoint::energy {
 

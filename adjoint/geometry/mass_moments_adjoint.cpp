@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
+#include "adjoint/geometry/mass_moments_adjoint.hpp"
 
 #include <Eigen/Geometry>
 #include <array>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::adjoint::geometry {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
+#include "core/base/types.hpp"
+#include "core/geometry/mass_moments.hpp"
 
 namespace fettle::adjoint::geometry {
 

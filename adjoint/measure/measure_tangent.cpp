@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/measure/measure_tangent.hpp"
+#include "adjoint/measure/measure_tangent.hpp"
 
 namespace fettle::adjoint::measure {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "fettle/core/measure/measure.hpp"
+#include "core/measure/measure.hpp"
 
 namespace fettle::adjoint::measure {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/model/body_mass_adjoint.hpp"
+#include "adjoint/model/body_mass_adjoint.hpp"
 
 #include <algorithm>
 
-#include "fettle/adjoint/scene/mass_kind_adjoint.hpp"
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/linear/factorisations.hpp"
-#include "fettle/core/model/body_mass.hpp"
+#include "adjoint/scene/mass_kind_adjoint.hpp"
+#include "core/base/contract.hpp"
+#include "core/linear/factorisations.hpp"
+#include "core/model/body_mass.hpp"
 
 namespace fettle::adjoint::model {
 namespace {

@@ -6,8 +6,8 @@
 /// A given mass depends on neither.
 #pragma once
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/base/result.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/base/result.hpp"
 
 namespace fettle::adjoint::model {
 

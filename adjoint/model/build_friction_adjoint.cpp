@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/model/build_friction_adjoint.hpp"
+#include "adjoint/model/build_friction_adjoint.hpp"
 
 #include <cmath>
 

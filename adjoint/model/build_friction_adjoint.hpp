@@ -3,8 +3,8 @@
 /// one of all others (core/scene/scene.hpp). mu = sqrt(mu_a mu_b) of two bodies' own has dmu/dmu_a = sqrt(mu_b/mu_a)/2.
 #pragma once
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/scene/scene.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::adjoint::model {
 

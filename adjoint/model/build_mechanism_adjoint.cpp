@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/model/build_mechanism_adjoint.hpp"
+#include "adjoint/model/build_mechanism_adjoint.hpp"
 
 #include <numbers>
 
-#include "fettle/core/model/row_choice.hpp"
+#include "core/model/row_choice.hpp"
 
 namespace fettle::adjoint::model {
 namespace {

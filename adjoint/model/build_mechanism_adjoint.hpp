@@ -8,8 +8,8 @@
 /// TermScales).
 #pragma once
 
-#include "fettle/adjoint/model/mechanism_start_adjoint.hpp"
-#include "fettle/core/scene/scene.hpp"
+#include "adjoint/model/mechanism_start_adjoint.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::adjoint::model {
 

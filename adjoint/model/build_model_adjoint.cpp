@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/model/build_model_adjoint.hpp"
+#include "adjoint/model/build_model_adjoint.hpp"
 
 #include <algorithm>
 
-#include "fettle/adjoint/model/build_friction_adjoint.hpp"
-#include "fettle/adjoint/model/build_mechanism_adjoint.hpp"
-#include "fettle/adjoint/model/mechanism_start_adjoint.hpp"
-#include "fettle/adjoint/scene/scene_gradient.hpp"
+#include "adjoint/model/build_friction_adjoint.hpp"
+#include "adjoint/model/build_mechanism_adjoint.hpp"
+#include "adjoint/model/mechanism_start_adjoint.hpp"
+#include "adjoint/scene/scene_gradient.hpp"
 
 namespace fettle::adjoint::model {
 namespace {

@@ -4,8 +4,8 @@
 /// of a model with joints through the start's assembly (mechanism_start_adjoint.hpp) to what was written.
 #pragma once
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/scene/scene.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::adjoint::model {
 

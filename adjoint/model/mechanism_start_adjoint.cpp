@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/model/mechanism_start_adjoint.hpp"
+#include "adjoint/model/mechanism_start_adjoint.hpp"
 
-#include "fettle/adjoint/constraint/assembly_adjoint.hpp"
-#include "fettle/adjoint/model/body_mass_adjoint.hpp"
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/kinematics/mass_matrix.hpp"
-#include "fettle/core/linear/linear_system.hpp"
-#include "fettle/core/model/mechanism_start.hpp"
+#include "adjoint/constraint/assembly_adjoint.hpp"
+#include "adjoint/model/body_mass_adjoint.hpp"
+#include "core/base/contract.hpp"
+#include "core/kinematics/mass_matrix.hpp"
+#include "core/linear/linear_system.hpp"
+#include "core/model/mechanism_start.hpp"
 
 namespace fettle::adjoint::model {
 namespace {

@@ -9,7 +9,7 @@
 /// written a little differently is put on the constraints too.
 #pragma once
 
-#include "fettle/adjoint/model_gradient.hpp"
+#include "adjoint/model_gradient.hpp"
 
 namespace fettle::adjoint::model {
 

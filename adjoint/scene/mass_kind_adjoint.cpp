@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/scene/mass_kind_adjoint.hpp"
+#include "adjoint/scene/mass_kind_adjoint.hpp"
 
 #include <Eigen/Geometry>
 
-#include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
+#include "adjoint/geometry/mass_moments_adjoint.hpp"
+#include "core/base/contract.hpp"
+#include "core/geometry/mass_moments.hpp"
 
 namespace fettle::adjoint::scene {
 namespace {

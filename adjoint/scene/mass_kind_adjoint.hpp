@@ -5,7 +5,7 @@
 /// and mass = density * amount.
 #pragma once
 
-#include "fettle/core/scene/mass_kind.hpp"
+#include "core/scene/mass_kind.hpp"
 
 namespace fettle::adjoint::scene {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/scene/scene_gradient.hpp"
+#include "adjoint/scene/scene_gradient.hpp"
 
-#include "fettle/core/scene/place.hpp"
+#include "core/scene/place.hpp"
 
 namespace fettle::adjoint::scene {
 

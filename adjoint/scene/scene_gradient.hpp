@@ -4,7 +4,7 @@
 /// part is defined up to what a rotation cannot do. What is no number is not there, but for names of dimensions and materials.
 #pragma once
 
-#include "fettle/core/scene/scene.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::adjoint::scene {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/stepper/check_differentiable.hpp"
+#include "adjoint/stepper/check_differentiable.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
 
-#include "fettle/adjoint/energy/contact_terms_adjoint.hpp"
-#include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
-#include "fettle/adjoint/model/body_mass_adjoint.hpp"
-#include "fettle/adjoint/stepper/step_linearisation.hpp"
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/stepper/prescribed_path.hpp"
+#include "adjoint/energy/contact_terms_adjoint.hpp"
+#include "adjoint/energy/incremental_potential_adjoint.hpp"
+#include "adjoint/model/body_mass_adjoint.hpp"
+#include "adjoint/stepper/step_linearisation.hpp"
+#include "core/base/contract.hpp"
+#include "core/stepper/prescribed_path.hpp"
 
 namespace fettle::adjoint::stepper {
 namespace {

@@ -3,9 +3,9 @@
 /// (step_linearisation.hpp).
 #pragma once
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/base/result.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::adjoint::stepper {
 

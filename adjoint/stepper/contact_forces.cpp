@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/stepper/contact_forces.hpp"
+#include "adjoint/stepper/contact_forces.hpp"
 
 #include <utility>
 
-#include "fettle/adjoint/contact/contact_damping_adjoint.hpp"
-#include "fettle/adjoint/energy/contact_terms_adjoint.hpp"
-#include "fettle/adjoint/stepper/step_linearisation.hpp"
-#include "fettle/adjoint/stepper/velocities.hpp"
-#include "fettle/core/base/contract.hpp"
+#include "adjoint/contact/contact_damping_adjoint.hpp"
+#include "adjoint/energy/contact_terms_adjoint.hpp"
+#include "adjoint/stepper/step_linearisation.hpp"
+#include "adjoint/stepper/velocities.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::adjoint::stepper {
 namespace {

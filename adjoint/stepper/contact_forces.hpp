@@ -12,8 +12,8 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::adjoint::stepper {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
-#include "fettle/adjoint/constraint/row_adjoint.hpp"
-#include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
-#include "fettle/adjoint/energy/start_history_adjoint.hpp"
-#include "fettle/adjoint/energy/time_integration_adjoint.hpp"
-#include "fettle/adjoint/model/body_mass_adjoint.hpp"
-#include "fettle/adjoint/stepper/check_differentiable.hpp"
-#include "fettle/adjoint/stepper/step_linearisation.hpp"
-#include "fettle/core/base/contract.hpp"
+#include "adjoint/constraint/row_adjoint.hpp"
+#include "adjoint/energy/incremental_potential_adjoint.hpp"
+#include "adjoint/energy/start_history_adjoint.hpp"
+#include "adjoint/energy/time_integration_adjoint.hpp"
+#include "adjoint/model/body_mass_adjoint.hpp"
+#include "adjoint/stepper/check_differentiable.hpp"
+#include "adjoint/stepper/step_linearisation.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::adjoint::stepper {
 namespace {

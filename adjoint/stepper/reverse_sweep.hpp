@@ -21,9 +21,9 @@
 
 #include <vector>
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/base/result.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::adjoint::stepper {
 

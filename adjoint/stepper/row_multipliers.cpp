@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/stepper/row_multipliers.hpp"
+#include "adjoint/stepper/row_multipliers.hpp"
 
-#include "fettle/adjoint/stepper/step_linearisation.hpp"
+#include "adjoint/stepper/step_linearisation.hpp"
 
 namespace fettle::adjoint::stepper {
 

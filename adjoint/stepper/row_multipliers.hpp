@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/base/types.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::adjoint::stepper {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/stepper/seeded_sweep.hpp"
+#include "adjoint/stepper/seeded_sweep.hpp"
 
 #include <algorithm>
 
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
 
 namespace fettle::adjoint::stepper {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/stepper/step_linearisation.hpp"
+#include "adjoint/stepper/step_linearisation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <sstream>
 
-#include "fettle/adjoint/energy/contact_terms_adjoint.hpp"
-#include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
-#include "fettle/core/energy/measure_terms.hpp"
-#include "fettle/core/energy/start_history.hpp"
-#include "fettle/core/kinematics/mass_matrix.hpp"
-#include "fettle/core/model/row_choice.hpp"
-#include "fettle/core/solver/row_system.hpp"
+#include "adjoint/energy/contact_terms_adjoint.hpp"
+#include "adjoint/energy/incremental_potential_adjoint.hpp"
+#include "core/energy/measure_terms.hpp"
+#include "core/energy/start_history.hpp"
+#include "core/kinematics/mass_matrix.hpp"
+#include "core/model/row_choice.hpp"
+#include "core/solver/row_system.hpp"
 
 namespace fettle::adjoint::stepper {
 namespace {

@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/adjoint/energy/term_adjoint.hpp"
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/linear/linear_system.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "adjoint/energy/term_adjoint.hpp"
+#include "core/base/result.hpp"
+#include "core/energy/incremental_potential.hpp"
+#include "core/linear/linear_system.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::adjoint::stepper {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/stepper/velocities.hpp"
+#include "adjoint/stepper/velocities.hpp"
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/energy/start_history.hpp"
+#include "core/base/contract.hpp"
+#include "core/energy/start_history.hpp"
 
 namespace fettle::adjoint::stepper {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::adjoint::stepper {
 

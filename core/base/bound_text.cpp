@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/bound_text.hpp"
+#include "core/base/bound_text.hpp"
 
 #include <algorithm>
 #include <cmath>

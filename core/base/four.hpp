@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "fettle/core/base/wide_instructions.hpp"
+#include "core/base/wide_instructions.hpp"
 
 namespace fettle::core::base {
 

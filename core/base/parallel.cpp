@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 #include <atomic>
 #include <exception>
@@ -14,8 +14,8 @@
 #include <tbb/task_arena.h>
 #endif
 
-#include "fettle/core/base/read_record.hpp"
-#include "fettle/core/base/stop.hpp"
+#include "core/base/read_record.hpp"
+#include "core/base/stop.hpp"
 
 namespace fettle::core::base {
 namespace {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::core::base {
 

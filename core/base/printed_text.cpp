@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/printed_text.hpp"
+#include "core/base/printed_text.hpp"
 
 #include <algorithm>
 #include <array>
 
-#include "fettle/core/base/text.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::core::base {
 

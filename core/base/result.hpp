@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::core::base {
 

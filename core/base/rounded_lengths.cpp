@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/rounded_lengths.hpp"
+#include "core/base/rounded_lengths.hpp"
 
 #include <charconv>
 #include <cmath>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
 
 namespace fettle::core::base {
 

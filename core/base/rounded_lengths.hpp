@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "fettle/core/base/bound_text.hpp"
+#include "core/base/bound_text.hpp"
 
 namespace fettle::core::base {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/shared_library.hpp"
+#include "core/base/shared_library.hpp"
 
 #include <dlfcn.h>
 

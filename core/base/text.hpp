@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "fettle/core/base/units.hpp"
+#include "core/base/units.hpp"
 
 namespace fettle::core::base {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/units.hpp"
+#include "core/base/units.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <system_error>
 
-#include "fettle/core/base/limits.hpp"
+#include "core/base/limits.hpp"
 
 namespace fettle::core::base {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "fettle/core/base/result.hpp"
+#include "core/base/result.hpp"
 
 namespace fettle::core::base {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/version.hpp"
+#include "core/base/version.hpp"
 
 namespace fettle::core::base {
 

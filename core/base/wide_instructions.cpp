@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/wide_instructions.hpp"
+#include "core/base/wide_instructions.hpp"
 
 #include <cstdlib>
 

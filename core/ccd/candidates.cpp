@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/candidates.hpp"
+#include "core/ccd/candidates.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/ccd/pair_motion.hpp"
-#include "fettle/core/ccd/plane_edges.hpp"
-#include "fettle/core/ccd/primitive_search.hpp"
-#include "fettle/core/ccd/swept_pair.hpp"
+#include "core/base/parallel.hpp"
+#include "core/ccd/pair_motion.hpp"
+#include "core/ccd/plane_edges.hpp"
+#include "core/ccd/primitive_search.hpp"
+#include "core/ccd/swept_pair.hpp"
 
 namespace fettle::core::ccd {
 namespace {

@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/ccd/side_pieces.hpp"
-#include "fettle/core/geometry/overlapping_boxes.hpp"
-#include "fettle/core/geometry/primitive_pair.hpp"
-#include "fettle/core/kinematics/path.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/ccd/side_pieces.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
+#include "core/geometry/primitive_pair.hpp"
+#include "core/kinematics/path.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::ccd {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/chord_deviation.hpp"
+#include "core/ccd/chord_deviation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include "fettle/core/base/rounding.hpp"
-#include "fettle/core/kinematics/rotation.hpp"
+#include "core/base/rounding.hpp"
+#include "core/kinematics/rotation.hpp"
 
 namespace fettle::core::ccd {
 

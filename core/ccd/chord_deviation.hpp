@@ -12,9 +12,9 @@
 /// absolute error is at most 2u |a||b| per component, charged as 8u |a||b|. For B3 each evaluated x carries rotated_rounding.
 #pragma once
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/geometry/interval.hpp"
-#include "fettle/core/kinematics/path.hpp"
+#include "core/base/types.hpp"
+#include "core/geometry/interval.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::core::ccd {
 

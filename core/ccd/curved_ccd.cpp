@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/curved_ccd.hpp"
+#include "core/ccd/curved_ccd.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/rounding.hpp"
-#include "fettle/core/base/stop.hpp"
-#include "fettle/core/ccd/chord_deviation.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/rounding.hpp"
+#include "core/base/stop.hpp"
+#include "core/ccd/chord_deviation.hpp"
 
 namespace fettle::core::ccd {
 

@@ -22,9 +22,9 @@
 
 #include <array>
 
-#include "fettle/core/ccd/chord_deviation.hpp"
-#include "fettle/core/ccd/linear_ccd.hpp"
-#include "fettle/core/kinematics/path.hpp"
+#include "core/ccd/chord_deviation.hpp"
+#include "core/ccd/linear_ccd.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::core::ccd {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/four_separations.hpp"
+#include "core/ccd/four_separations.hpp"
 
 #include <cstddef>
 #include <limits>
 
-#include "fettle/core/base/rounding.hpp"
+#include "core/base/rounding.hpp"
 
 namespace fettle::core::ccd {
 namespace {

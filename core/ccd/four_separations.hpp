@@ -6,8 +6,8 @@
 
 #include <array>
 
-#include "fettle/core/base/four.hpp"
-#include "fettle/core/geometry/primitive_pair.hpp"
+#include "core/base/four.hpp"
+#include "core/geometry/primitive_pair.hpp"
 
 namespace fettle::core::ccd {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/linear_ccd.hpp"
+#include "core/ccd/linear_ccd.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/ccd/separating_plane.hpp"
+#include "core/base/contract.hpp"
+#include "core/ccd/separating_plane.hpp"
 
 namespace fettle::core::ccd {
 

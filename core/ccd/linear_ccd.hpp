@@ -28,7 +28,7 @@
 /// at the reported toi > 0 the distance still is dmin + g/2 or more. toi is 0 only if no gap can be proven at t = 0.
 #pragma once
 
-#include "fettle/core/geometry/primitive_pair.hpp"
+#include "core/geometry/primitive_pair.hpp"
 
 namespace fettle::core::ccd {
 

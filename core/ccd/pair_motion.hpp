@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "fettle/core/kinematics/path.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::core::ccd {
 

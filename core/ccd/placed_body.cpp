@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/placed_body.hpp"
+#include "core/ccd/placed_body.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include "fettle/core/base/float_rounding.hpp"
-#include "fettle/core/base/four.hpp"
+#include "core/base/float_rounding.hpp"
+#include "core/base/four.hpp"
 
 namespace fettle::core::ccd {
 namespace {

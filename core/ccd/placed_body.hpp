@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "fettle/core/ccd/four_separations.hpp"
-#include "fettle/core/ccd/placed_box.hpp"
-#include "fettle/core/ccd/swept_pair.hpp"
+#include "core/ccd/four_separations.hpp"
+#include "core/ccd/placed_box.hpp"
+#include "core/ccd/swept_pair.hpp"
 
 namespace fettle::core::ccd {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/placed_tree.hpp"
+#include "core/ccd/placed_tree.hpp"
 
 #include <limits>
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "fettle/core/ccd/placed_body.hpp"
+#include "core/ccd/placed_body.hpp"
 
 namespace fettle::core::ccd {
 

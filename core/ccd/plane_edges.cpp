@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/plane_edges.hpp"
+#include "core/ccd/plane_edges.hpp"
 
-#include "fettle/core/base/rounding.hpp"
+#include "core/base/rounding.hpp"
 
 namespace fettle::core::ccd {
 

@@ -14,7 +14,7 @@
 /// starts.
 #pragma once
 
-#include "fettle/core/model/model.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::ccd {
 

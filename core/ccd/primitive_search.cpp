@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/primitive_search.hpp"
+#include "core/ccd/primitive_search.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "fettle/core/base/float_rounding.hpp"
-#include "fettle/core/base/four.hpp"
-#include "fettle/core/base/stop.hpp"
-#include "fettle/core/ccd/four_separations.hpp"
-#include "fettle/core/ccd/placed_tree.hpp"
+#include "core/base/float_rounding.hpp"
+#include "core/base/four.hpp"
+#include "core/base/stop.hpp"
+#include "core/ccd/four_separations.hpp"
+#include "core/ccd/placed_tree.hpp"
 
 namespace fettle::core::ccd {
 namespace {

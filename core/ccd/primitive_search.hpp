@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "fettle/core/ccd/swept_pair.hpp"
-#include "fettle/core/geometry/primitive_pair.hpp"
+#include "core/ccd/swept_pair.hpp"
+#include "core/geometry/primitive_pair.hpp"
 
 namespace fettle::core::ccd {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/safe_step.hpp"
+#include "core/ccd/safe_step.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/rounding.hpp"
-#include "fettle/core/base/stop.hpp"
-#include "fettle/core/ccd/linear_ccd.hpp"
-#include "fettle/core/ccd/plane_edges.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/rounding.hpp"
+#include "core/base/stop.hpp"
+#include "core/ccd/linear_ccd.hpp"
+#include "core/ccd/plane_edges.hpp"
+#include "core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::ccd {
 namespace {

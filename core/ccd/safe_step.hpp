@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "fettle/core/ccd/candidates.hpp"
-#include "fettle/core/ccd/curved_ccd.hpp"
+#include "core/ccd/candidates.hpp"
+#include "core/ccd/curved_ccd.hpp"
 
 namespace fettle::core::ccd {
 

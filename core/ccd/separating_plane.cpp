@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/separating_plane.hpp"
+#include "core/ccd/separating_plane.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include "fettle/core/base/rounding.hpp"
-#include "fettle/core/geometry/accurate_cross.hpp"
+#include "core/base/rounding.hpp"
+#include "core/geometry/accurate_cross.hpp"
 
 namespace fettle::core::ccd {
 

@@ -6,7 +6,7 @@
 /// square roots and divisions, in a layout that compilers turn into vector instructions (of the same bits).
 #pragma once
 
-#include "fettle/core/geometry/primitive_pair.hpp"
+#include "core/geometry/primitive_pair.hpp"
 
 namespace fettle::core::ccd {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/side_pieces.hpp"
+#include "core/ccd/side_pieces.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "fettle/core/geometry/primitive_pair.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/geometry/primitive_pair.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::ccd {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/ccd/swept_pair.hpp"
+#include "core/ccd/swept_pair.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/ccd/chord_deviation.hpp"
+#include "core/ccd/chord_deviation.hpp"
 
 namespace fettle::core::ccd {
 namespace {

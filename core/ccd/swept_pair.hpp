@@ -11,9 +11,9 @@
 
 #include <array>
 
-#include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/kinematics/path.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/geometry/body_hierarchy.hpp"
+#include "core/kinematics/path.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::ccd {
 

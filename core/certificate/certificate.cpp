@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/certificate.hpp"
+#include "core/certificate/certificate.hpp"
 
 #include <algorithm>
 #include <set>

@@ -46,12 +46,12 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/certificate/ideal_joints.hpp"
-#include "fettle/core/certificate/linkage.hpp"
-#include "fettle/core/certificate/toleranced.hpp"
-#include "fettle/core/files/atomic_file.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "core/certificate/ideal_joints.hpp"
+#include "core/certificate/linkage.hpp"
+#include "core/certificate/toleranced.hpp"
+#include "core/files/atomic_file.hpp"
 
 namespace fettle::core::certificate {
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/certificate_checker.hpp"
+#include "core/certificate/certificate_checker.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/certificate/certified_body.hpp"
-#include "fettle/core/certificate/disjoint_solids.hpp"
-#include "fettle/core/certificate/interval_motion.hpp"
-#include "fettle/core/certificate/joint_prover.hpp"
-#include "fettle/core/certificate/range_prover.hpp"
-#include "fettle/core/certificate/toleranced_prover.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/parallel.hpp"
+#include "core/certificate/certified_body.hpp"
+#include "core/certificate/disjoint_solids.hpp"
+#include "core/certificate/interval_motion.hpp"
+#include "core/certificate/joint_prover.hpp"
+#include "core/certificate/range_prover.hpp"
+#include "core/certificate/toleranced_prover.hpp"
 
 namespace fettle::core::certificate {
 namespace {

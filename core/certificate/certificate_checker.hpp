@@ -45,10 +45,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/model/model.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::certificate {
 

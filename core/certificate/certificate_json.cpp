@@ -5,12 +5,12 @@
 #include <string>
 #include <string_view>
 
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/hash.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/files/json_writer.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/hash.hpp"
+#include "core/files/json_document.hpp"
+#include "core/files/json_keys.hpp"
+#include "core/files/json_writer.hpp"
 
 namespace fettle::core::certificate {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/certified_body.hpp"
+#include "core/certificate/certified_body.hpp"
 
 #include <algorithm>
 #include <set>

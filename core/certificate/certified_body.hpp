@@ -6,10 +6,10 @@
 #include <functional>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/certificate/interval_motion.hpp"
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/base/result.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/certificate/interval_motion.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::core::certificate {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/disjoint_solids.hpp"
+#include "core/certificate/disjoint_solids.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <utility>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/solids/point_in_solid.hpp"
+#include "core/base/limits.hpp"
+#include "core/solids/point_in_solid.hpp"
 
 namespace fettle::core::certificate {
 namespace {

@@ -20,12 +20,12 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/certificate/lid_distance.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/solids/closure.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/certificate/lid_distance.hpp"
+#include "core/geometry/body_hierarchy.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/model/model.hpp"
+#include "core/solids/closure.hpp"
 
 namespace fettle::core::certificate {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/ideal_joints.hpp"
+#include "core/certificate/ideal_joints.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <string>
 #include <string_view>
 
-#include "fettle/core/base/limits.hpp"
+#include "core/base/limits.hpp"
 
 namespace fettle::core::certificate {
 namespace {

@@ -9,11 +9,11 @@
 
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/constraint/row.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/files/json_writer.hpp"
-#include "fettle/core/measure/measure.hpp"
+#include "core/base/result.hpp"
+#include "core/constraint/row.hpp"
+#include "core/files/json_document.hpp"
+#include "core/files/json_writer.hpp"
+#include "core/measure/measure.hpp"
 
 namespace fettle::core::certificate {
 

@@ -25,10 +25,10 @@
 #include <map>
 #include <span>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/geometry/interval.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/base/types.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/geometry/interval.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::certificate {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/joint_prover.hpp"
+#include "core/certificate/joint_prover.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <numeric>
 #include <optional>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/certificate/interval_motion.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/parallel.hpp"
+#include "core/certificate/interval_motion.hpp"
+#include "core/linear/factorisations.hpp"
 
 namespace fettle::core::certificate {
 namespace {

@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/certificate/ideal_joints.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/certificate/ideal_joints.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::certificate {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/lid_distance.hpp"
+#include "core/certificate/lid_distance.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/solids/self_intersection.hpp"
+#include "core/base/limits.hpp"
+#include "core/solids/self_intersection.hpp"
 
 namespace fettle::core::certificate {
 namespace {

@@ -10,10 +10,10 @@
 
 #include <vector>
 
-#include "fettle/core/certificate/interval_motion.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/certificate/interval_motion.hpp"
+#include "core/geometry/body_hierarchy.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::certificate {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/linkage.hpp"
+#include "core/certificate/linkage.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/base/limits.hpp"
+#include "core/base/limits.hpp"
 
 namespace fettle::core::certificate {
 namespace {

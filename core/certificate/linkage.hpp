@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/files/json_writer.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "core/files/json_document.hpp"
+#include "core/files/json_writer.hpp"
 
 namespace fettle::core::certificate {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/loop_slices.hpp"
+#include "core/certificate/loop_slices.hpp"
 
 #include <algorithm>
 #include <cmath>

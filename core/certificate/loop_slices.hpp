@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/certificate/pair_formulas.hpp"
+#include "core/certificate/pair_formulas.hpp"
 
 namespace fettle::core::certificate {
 

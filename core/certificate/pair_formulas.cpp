@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/pair_formulas.hpp"
+#include "core/certificate/pair_formulas.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/expression/tape.hpp"
+#include "core/base/limits.hpp"
+#include "core/expression/tape.hpp"
 
 namespace fettle::core::certificate {
 namespace {

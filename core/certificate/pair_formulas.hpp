@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/certificate/taylor_model.hpp"
-#include "fettle/core/certificate/toleranced.hpp"
-#include "fettle/core/certificate/toleranced_chain.hpp"
-#include "fettle/core/certificate/toleranced_loop.hpp"
+#include "core/certificate/taylor_model.hpp"
+#include "core/certificate/toleranced.hpp"
+#include "core/certificate/toleranced_chain.hpp"
+#include "core/certificate/toleranced_loop.hpp"
 
 namespace fettle::core::certificate {
 

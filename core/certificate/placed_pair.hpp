@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "fettle/core/certificate/pair_formulas.hpp"
+#include "core/certificate/pair_formulas.hpp"
 
 namespace fettle::core::certificate {
 

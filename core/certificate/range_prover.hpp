@@ -22,9 +22,9 @@
 #include <span>
 #include <utility>
 
-#include "fettle/core/certificate/certified_body.hpp"
-#include "fettle/core/certificate/linkage.hpp"
-#include "fettle/core/kinematics/path.hpp"
+#include "core/certificate/certified_body.hpp"
+#include "core/certificate/linkage.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::core::certificate {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/taylor_model.hpp"
+#include "core/certificate/taylor_model.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "fettle/core/parts/jet.hpp"
+#include "core/parts/jet.hpp"
 
 namespace fettle::core::certificate {
 namespace {

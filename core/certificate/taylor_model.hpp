@@ -13,8 +13,8 @@
 #include <array>
 #include <cmath>
 
-#include "fettle/core/geometry/interval.hpp"
-#include "fettle/core/geometry/range.hpp"
+#include "core/geometry/interval.hpp"
+#include "core/geometry/range.hpp"
 
 namespace fettle::core::certificate {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/toleranced.hpp"
+#include "core/certificate/toleranced.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <span>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/expression/tape.hpp"
-#include "fettle/core/geometry/range.hpp"
+#include "core/base/limits.hpp"
+#include "core/expression/tape.hpp"
+#include "core/geometry/range.hpp"
 
 namespace fettle::core::certificate {
 namespace {

@@ -18,10 +18,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/certificate/linkage.hpp"
-#include "fettle/core/certificate/taylor_model.hpp"
-#include "fettle/core/expression/operation.hpp"
+#include "core/base/result.hpp"
+#include "core/certificate/linkage.hpp"
+#include "core/certificate/taylor_model.hpp"
+#include "core/expression/operation.hpp"
 
 namespace fettle::core::certificate {
 

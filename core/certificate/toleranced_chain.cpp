@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/toleranced_chain.hpp"
+#include "core/certificate/toleranced_chain.hpp"
 
 namespace fettle::core::certificate {
 

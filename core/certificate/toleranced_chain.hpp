@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/certificate/taylor_model.hpp"
+#include "core/certificate/taylor_model.hpp"
 
 namespace fettle::core::certificate {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "fettle/core/certificate/toleranced.hpp"
+#include "core/certificate/toleranced.hpp"
 
 namespace fettle::core::certificate {
 namespace {

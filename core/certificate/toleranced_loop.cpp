@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/toleranced_loop.hpp"
+#include "core/certificate/toleranced_loop.hpp"
 
 #include <Eigen/LU>
 

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/certificate/toleranced_chain.hpp"
+#include "core/certificate/toleranced_chain.hpp"
 
 namespace fettle::core::certificate {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/toleranced_prover.hpp"
+#include "core/certificate/toleranced_prover.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/limits.hpp"
+#include "core/base/limits.hpp"
 
 namespace fettle::core::certificate {
 namespace {

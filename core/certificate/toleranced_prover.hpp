@@ -24,11 +24,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/certificate/certified_body.hpp"
-#include "fettle/core/certificate/loop_slices.hpp"
-#include "fettle/core/certificate/placed_pair.hpp"
-#include "fettle/core/certificate/toleranced.hpp"
-#include "fettle/core/kinematics/path.hpp"
+#include "core/certificate/certified_body.hpp"
+#include "core/certificate/loop_slices.hpp"
+#include "core/certificate/placed_pair.hpp"
+#include "core/certificate/toleranced.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::core::certificate {
 

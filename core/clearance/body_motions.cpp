@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/body_motions.hpp"
+#include "core/clearance/body_motions.hpp"
 
 #include <algorithm>
 #include <unordered_map>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
+#include "core/base/parallel.hpp"
+#include "core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::clearance {
 

@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/clearance/pair_details.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/clearance/pair_details.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::clearance {
 

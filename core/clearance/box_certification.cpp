@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/box_certification.hpp"
+#include "core/clearance/box_certification.hpp"
 
 #include <algorithm>
 #include <mutex>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/clearance/pair_certification.hpp"
+#include "core/base/parallel.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/clearance/pair_certification.hpp"
 
 namespace fettle::core::clearance {
 
@@ -71,9 +71,9 @@ double BoxCertification::make_claim(double slack, PairClearance& out) const {
     return room;
 }
 
-void BoxCertification::finish(std::size_t pair, double charge, PairClearance& out) const {
+void BoxCertification::finish(std::size_t pair, double charge, PairClearance& out, const stepper::Trajectory* place) const {
     if (!out.intersecting && out.lower > 0) {
-        certificate::PairStart at{start_, -1, 0, out.a, out.b};
+        certificate::PairStart at{place != nullptr ? *place : start_, -1, 0, out.a, out.b};
         at.charge = charge;
         out.solids = certificate::solids_of(*shapes_[out.a].solid, *shapes_[out.b].solid, at, out.lower);
         if (out.solids == Solids::overlap) out.lower = out.upper = 0;

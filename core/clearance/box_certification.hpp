@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/clearance/body_motions.hpp"
-#include "fettle/core/clearance/box_search.hpp"
-#include "fettle/core/clearance/certificate_builder.hpp"
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/clearance/body_motions.hpp"
+#include "core/clearance/box_search.hpp"
+#include "core/clearance/certificate_builder.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::clearance {
 
@@ -59,7 +59,9 @@ protected:
     /// Surfaces that never meet leave one thing to ask, whose answer is the same everywhere in the box: are the solids apart? Then the
     /// verdict.
     /// @param charge  How far the bodies at hand may be off from those of the box [m]
-    void finish(std::size_t pair, double charge, PairClearance& out) const;
+    /// @param place   a place in the box, as a path that stands there; null: the start, which is in it
+    void finish(std::size_t pair, double charge, PairClearance& out, const stepper::Trajectory* place = nullptr) const;
+    const stepper::Trajectory& start() const { return start_; }
 
     const model::Model& model_;
 

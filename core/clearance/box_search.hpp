@@ -24,11 +24,11 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/clearance/element_pair.hpp"
-#include "fettle/core/clearance/piece_tree.hpp"
-#include "fettle/core/clearance/search_front.hpp"
-#include "fettle/core/clearance/stop_rule.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/clearance/element_pair.hpp"
+#include "core/clearance/piece_tree.hpp"
+#include "core/clearance/search_front.hpp"
+#include "core/clearance/stop_rule.hpp"
 
 namespace fettle::core::clearance {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/certificate_builder.hpp"
+#include "core/clearance/certificate_builder.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
+#include "core/base/contract.hpp"
+#include "core/geometry/distance.hpp"
+#include "core/records/trajectory_io.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/certificate/certified_body.hpp"
-#include "fettle/core/clearance/pair_details.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/certificate/certified_body.hpp"
+#include "core/clearance/pair_details.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::clearance {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/clearance.hpp"
+#include "core/clearance/clearance.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <optional>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/clearance/body_motions.hpp"
-#include "fettle/core/clearance/certificate_builder.hpp"
-#include "fettle/core/clearance/far_pairs.hpp"
-#include "fettle/core/clearance/near_windows.hpp"
-#include "fettle/core/clearance/pair_certification.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/parallel.hpp"
+#include "core/clearance/body_motions.hpp"
+#include "core/clearance/certificate_builder.hpp"
+#include "core/clearance/far_pairs.hpp"
+#include "core/clearance/near_windows.hpp"
+#include "core/clearance/pair_certification.hpp"
 
 namespace fettle::core::clearance {
 namespace {

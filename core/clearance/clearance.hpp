@@ -6,9 +6,9 @@
 
 #include <vector>
 
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::clearance {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/contact_gap.hpp"
+#include "core/clearance/contact_gap.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/contact/contact_set.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/contact/contact_set.hpp"
 
 namespace fettle::core::clearance {
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/contact/contact_pair.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/contact/contact_pair.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::clearance {
 

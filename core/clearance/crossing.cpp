@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/crossing.hpp"
+#include "core/clearance/crossing.hpp"
 
 #include <algorithm>
 #include <memory>

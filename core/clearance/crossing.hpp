@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "fettle/core/clearance/pair_details.hpp"
+#include "core/clearance/pair_details.hpp"
 
 namespace fettle::core::clearance {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/driven_ranges.hpp"
+#include "core/clearance/driven_ranges.hpp"
 
 #include <algorithm>
 #include <set>
 #include <string>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/model/limits.hpp"
-#include "fettle/core/scene/curve.hpp"
+#include "core/base/text.hpp"
+#include "core/model/limits.hpp"
+#include "core/scene/curve.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -6,8 +6,8 @@
 /// starts, and is named.
 #pragma once
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/clearance/looped_ranges.hpp"
+#include "core/base/result.hpp"
+#include "core/clearance/looped_ranges.hpp"
 
 namespace fettle::core::clearance {
 

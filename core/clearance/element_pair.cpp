@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/element_pair.hpp"
+#include "core/clearance/element_pair.hpp"
 
 #include <Eigen/Geometry>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "fettle/core/geometry/distance.hpp"
+#include "core/geometry/distance.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -3,8 +3,8 @@
 /// Triangles that intersect, or that an edge pierces, are at distance 0 (up to rounding), which no pair of primitives shows.
 #pragma once
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/certificate/certificate.hpp"
+#include "core/base/types.hpp"
+#include "core/certificate/certificate.hpp"
 
 namespace fettle::core::clearance {
 

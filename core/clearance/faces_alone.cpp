@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/faces_alone.hpp"
+#include "core/clearance/faces_alone.hpp"
 
 #include <memory>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::core::clearance {
 

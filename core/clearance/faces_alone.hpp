@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/geometry/named_faces.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/geometry/named_faces.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::clearance {
 

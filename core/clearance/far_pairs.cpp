@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/far_pairs.hpp"
+#include "core/clearance/far_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <tuple>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/clearance/near_windows.hpp"
-#include "fettle/core/clearance/pair_certification.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/parallel.hpp"
+#include "core/clearance/near_windows.hpp"
+#include "core/clearance/pair_certification.hpp"
 
 namespace fettle::core::clearance {
 namespace {

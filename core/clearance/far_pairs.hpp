@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/clearance/body_motions.hpp"
-#include "fettle/core/clearance/pair_clearance.hpp"
+#include "core/clearance/body_motions.hpp"
+#include "core/clearance/pair_clearance.hpp"
 
 namespace fettle::core::clearance {
 

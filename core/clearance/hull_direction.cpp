@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/hull_direction.hpp"
+#include "core/clearance/hull_direction.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <utility>
 
-#include "fettle/core/clearance/simplex.hpp"
+#include "core/clearance/simplex.hpp"
 
 namespace fettle::core::clearance {
 namespace {

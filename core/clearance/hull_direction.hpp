@@ -10,8 +10,8 @@
 
 #include <array>
 
-#include "fettle/core/clearance/piece_tree.hpp"
-#include "fettle/core/clearance/relative_chain.hpp"
+#include "core/clearance/piece_tree.hpp"
+#include "core/clearance/relative_chain.hpp"
 
 namespace fettle::core::clearance {
 

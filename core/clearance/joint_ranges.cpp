@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/joint_ranges.hpp"
+#include "core/clearance/joint_ranges.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <numbers>
 #include <optional>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/constraint/whole_turns.hpp"
-#include "fettle/core/model/limits.hpp"
-#include "fettle/core/model/row_choice.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/text.hpp"
+#include "core/constraint/whole_turns.hpp"
+#include "core/model/limits.hpp"
+#include "core/model/row_choice.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -55,7 +55,7 @@ struct Variable {
 
 class RangeBuilder {
 public:
-    explicit RangeBuilder(const model::Model& model) : model_(model) {
+    RangeBuilder(const model::Model& model, std::optional<double> reach) : model_(model), reach_(reach) {
         for (const model::Body& body : model.bodies) poses_.push_back(body.pose_start);
         frames_ = placed(model.mechanism.set.frames, poses_);
     }
@@ -279,7 +279,9 @@ private:
             if (!is_turn) apply_limits(each, out);
             if (before != std::array{out.low, out.high}) followers.push_back("`" + each.joint->name + "`");
         }
-        if (std::isfinite(out.low)) {
+        const bool has_limits = std::isfinite(out.low) && std::isfinite(out.high);
+        out_.has_limits.push_back(has_limits);
+        if (has_limits) {
             tell_narrowed(variables_[free], own, followers, out);
             // Limits are closed: what starts at one, to within rounding, starts within it (model/limits.hpp).
             out.low = std::min(out.low, out.start);
@@ -288,6 +290,13 @@ private:
         }
         const std::string& name = out.joints.front().joint;
         const std::optional<double> half = slides != nullptr ? std::nullopt : half_period(out.joints);
+        if (reach_ && !half) {
+            const double rate = slides == nullptr ? 0 : slides->is.scale * (slides->is_angle ? slide_of_screw(*slides->joint) : 1);
+            const double either_way = rate != 0 ? *reach_ / std::abs(rate) : pi * covered;
+            out.low = out.start - either_way;
+            out.high = out.start + either_way;
+            return out;
+        }
         if (slides != nullptr)
             fail(ErrorCode::missing_key, slides->joint->name,
                  "has no limits: say \"limits\": [least, greatest], or everything is possible");
@@ -328,6 +337,7 @@ private:
     }
 
     const model::Model& model_;
+    const std::optional<double> reach_;
     std::vector<kinematics::Pose> poses_;
     std::vector<measure::PlacedFrame> frames_;
     std::vector<const Joint*> joints_;
@@ -339,6 +349,8 @@ private:
 
 }  // namespace
 
-base::Result<JointRanges> joint_ranges(const model::Model& model) { return RangeBuilder(model).build(); }
+base::Result<JointRanges> joint_ranges(const model::Model& model, std::optional<double> reach) {
+    return RangeBuilder(model, reach).build();
+}
 
 }  // namespace fettle::core::clearance

@@ -10,18 +10,20 @@
 /// Motors, springs and loads say where joints are, not where they can be: they have no effect here.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/certificate/linkage.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/base/result.hpp"
+#include "core/certificate/linkage.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::clearance {
 
 struct JointRanges {
     certificate::Linkage linkage;
     std::vector<std::string> held;  ///< bodies that could move, and stay where they start
+    std::vector<bool> has_limits;   ///< [coordinate]: of its own, or of a joint that gears couple it to
     std::vector<int> joint_of;      ///< [body]: what its screws are of, a place in the mechanism's joints; -1: it has no screws
     /// Ranges that the limits of a joint's followers narrow, a sentence each: "the range of `drive` is 0 to 20 deg: `keep` narrows it from
     /// 0 to 60 deg"; and those of which they leave less than a hundredth, so that hardly anything is looked at.
@@ -30,6 +32,8 @@ struct JointRanges {
 
 /// Errors, each naming its joints: balls and planar joints (unsupported), loops (with the joints that close them), a coordinate without
 /// limits, a jointed body whose own coordinates are prescribed, no joint at all.
-base::Result<JointRanges> joint_ranges(const model::Model& model);
+/// @param reach  how far slides and screws without limits go from their start either way [m]; gears that come back after no whole number of
+///               turns then turn once. Nothing: these are errors.
+base::Result<JointRanges> joint_ranges(const model::Model& model, std::optional<double> reach = std::nullopt);
 
 }  // namespace fettle::core::clearance

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/jointed_clearance.hpp"
+#include "core/clearance/jointed_clearance.hpp"
 
 #include <algorithm>
 #include <map>
 #include <set>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/certificate/joint_prover.hpp"
+#include "core/base/limits.hpp"
+#include "core/certificate/joint_prover.hpp"
 
 namespace fettle::core::clearance {
 namespace {

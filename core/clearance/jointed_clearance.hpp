@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/certificate/ideal_joints.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/stepper/jointed_motion.hpp"
+#include "core/certificate/ideal_joints.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/stepper/jointed_motion.hpp"
 
 namespace fettle::core::clearance {
 

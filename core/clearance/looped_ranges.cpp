@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/looped_ranges.hpp"
+#include "core/clearance/looped_ranges.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "fettle/core/base/text.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/clearance/joint_ranges.hpp"
-#include "fettle/core/scene/curve.hpp"
+#include "core/base/result.hpp"
+#include "core/clearance/joint_ranges.hpp"
+#include "core/scene/curve.hpp"
 
 namespace fettle::core::clearance {
 

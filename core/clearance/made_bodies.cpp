@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/made_bodies.hpp"
+#include "core/clearance/made_bodies.hpp"
 
-#include "fettle/core/expression/tape.hpp"
-#include "fettle/core/kinematics/rotation.hpp"
+#include "core/expression/tape.hpp"
+#include "core/kinematics/rotation.hpp"
 
 namespace fettle::core::clearance {
 namespace {

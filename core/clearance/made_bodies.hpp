@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "fettle/core/certificate/toleranced.hpp"
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/kinematics/path.hpp"
+#include "core/certificate/toleranced.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::core::clearance {
 

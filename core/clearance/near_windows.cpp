@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/near_windows.hpp"
+#include "core/clearance/near_windows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include <tuple>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/clearance/swept_boxes.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/parallel.hpp"
+#include "core/clearance/swept_boxes.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "fettle/core/clearance/body_motions.hpp"
+#include "core/clearance/body_motions.hpp"
 
 namespace fettle::core::clearance {
 

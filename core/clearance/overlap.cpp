@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/overlap.hpp"
+#include "core/clearance/overlap.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -9,13 +9,13 @@
 #include <queue>
 #include <vector>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/rounding.hpp"
-#include "fettle/core/clearance/pair_search.hpp"
-#include "fettle/core/clearance/touching.hpp"
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/parts/common_part.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/rounding.hpp"
+#include "core/clearance/pair_search.hpp"
+#include "core/clearance/touching.hpp"
+#include "core/geometry/distance.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/parts/common_part.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -13,10 +13,10 @@
 
 #include <optional>
 
-#include "fettle/core/certificate/disjoint_solids.hpp"
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/clearance/piece_tree.hpp"
-#include "fettle/core/clearance/segment_bound.hpp"
+#include "core/certificate/disjoint_solids.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/clearance/piece_tree.hpp"
+#include "core/clearance/segment_bound.hpp"
 
 namespace fettle::core::clearance {
 

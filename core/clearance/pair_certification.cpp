@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/pair_certification.hpp"
+#include "core/clearance/pair_certification.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <vector>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/clearance/crossing.hpp"
-#include "fettle/core/clearance/overlap.hpp"
-#include "fettle/core/clearance/segment_proof.hpp"
-#include "fettle/core/clearance/touching.hpp"
+#include "core/base/limits.hpp"
+#include "core/clearance/crossing.hpp"
+#include "core/clearance/overlap.hpp"
+#include "core/clearance/segment_proof.hpp"
+#include "core/clearance/touching.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -10,8 +10,8 @@
 #include <optional>
 #include <string>
 
-#include "fettle/core/clearance/certificate_builder.hpp"
-#include "fettle/core/clearance/pair_details.hpp"
+#include "core/clearance/certificate_builder.hpp"
+#include "core/clearance/pair_details.hpp"
 
 namespace fettle::core::clearance {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/certificate/certificate.hpp"
+#include "core/base/types.hpp"
+#include "core/certificate/certificate.hpp"
 
 namespace fettle::core::clearance {
 

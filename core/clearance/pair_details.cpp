@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/pair_details.hpp"
+#include "core/clearance/pair_details.hpp"
 
 #include <algorithm>
 #include <cmath>

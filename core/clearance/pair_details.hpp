@@ -5,10 +5,10 @@
 
 #include <vector>
 
-#include "fettle/core/certificate/disjoint_solids.hpp"
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/clearance/pair_search.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/certificate/disjoint_solids.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/clearance/pair_search.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::clearance {
 

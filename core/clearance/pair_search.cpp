@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/pair_search.hpp"
+#include "core/clearance/pair_search.hpp"
 
 #include <Eigen/Geometry>
 
@@ -10,13 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/rounding.hpp"
-#include "fettle/core/clearance/hull_direction.hpp"
-#include "fettle/core/clearance/piece_bound.hpp"
-#include "fettle/core/clearance/relative_spans.hpp"
-#include "fettle/core/clearance/search_front.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/rounding.hpp"
+#include "core/clearance/hull_direction.hpp"
+#include "core/clearance/piece_bound.hpp"
+#include "core/clearance/relative_spans.hpp"
+#include "core/clearance/search_front.hpp"
 
 namespace fettle::core::clearance {
 namespace {

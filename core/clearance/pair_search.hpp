@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fettle/core/clearance/search_result.hpp"
+#include "core/clearance/search_result.hpp"
 
 namespace fettle::core::clearance {
 

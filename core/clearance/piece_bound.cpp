@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/piece_bound.hpp"
+#include "core/clearance/piece_bound.hpp"
 
 #include <Eigen/Geometry>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/rounding.hpp"
+#include "core/base/rounding.hpp"
 
 namespace fettle::core::clearance {
 namespace {

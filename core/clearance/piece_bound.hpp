@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "fettle/core/clearance/segment_bound.hpp"
+#include "core/clearance/segment_bound.hpp"
 
 namespace fettle::core::clearance {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/piece_tree.hpp"
+#include "core/clearance/piece_tree.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "fettle/core/clearance/element_pair.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
+#include "core/clearance/element_pair.hpp"
+#include "core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::clearance {
 

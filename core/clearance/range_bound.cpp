@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/range_bound.hpp"
+#include "core/clearance/range_bound.hpp"
 
 #include <Eigen/Geometry>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/rounding.hpp"
-#include "fettle/core/clearance/segment_bound.hpp"
-#include "fettle/core/kinematics/rotation.hpp"
+#include "core/base/rounding.hpp"
+#include "core/clearance/segment_bound.hpp"
+#include "core/kinematics/rotation.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -23,10 +23,10 @@
 #include <array>
 #include <vector>
 
-#include "fettle/core/certificate/linkage.hpp"
-#include "fettle/core/clearance/element_pair.hpp"
-#include "fettle/core/clearance/piece_tree.hpp"
-#include "fettle/core/kinematics/path.hpp"
+#include "core/certificate/linkage.hpp"
+#include "core/clearance/element_pair.hpp"
+#include "core/clearance/piece_tree.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::core::clearance {
 

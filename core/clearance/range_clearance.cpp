@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/range_clearance.hpp"
+#include "core/clearance/range_clearance.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/clearance/body_motions.hpp"
-#include "fettle/core/clearance/box_certification.hpp"
-#include "fettle/core/clearance/pair_certification.hpp"
-#include "fettle/core/clearance/range_search.hpp"
-#include "fettle/core/clearance/shared_ball.hpp"
-#include "fettle/core/clearance/touching.hpp"
-#include "fettle/core/clearance/witness_instant.hpp"
+#include "core/base/parallel.hpp"
+#include "core/clearance/body_motions.hpp"
+#include "core/clearance/box_certification.hpp"
+#include "core/clearance/pair_certification.hpp"
+#include "core/clearance/range_search.hpp"
+#include "core/clearance/shared_ball.hpp"
+#include "core/clearance/touching.hpp"
+#include "core/clearance/witness_instant.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -47,6 +47,14 @@ std::vector<CoordinateBox> parts_of(const CoordinateBox& ranges, int coordinates
     }
     return parts;
 }
+
+Coordinates clamped(Coordinates at, const ScrewedPair& pair) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(pair.count); ++k)
+        at[k] = std::clamp(at[k], pair.ranges.low[k], pair.ranges.high[k]);
+    return at;
+}
+
+bool is_in(const Coordinates& at, const ScrewedPair& pair) { return clamped(at, pair) == at; }
 
 class RangeCertification : public BoxCertification {
 public:
@@ -97,7 +105,12 @@ private:
         if (found.nearest.element_a >= 0) take_nearest(pair, found, out);
         if (out.is_clash() && options().measure_overlap) out.overlap = overlap_in_world(pair, a, b, found.nearest.at);
         if (is_recorded()) write_record(pair, found, search, out, record(index));
-        finish(index, 0, out);
+        if (is_in(pair.start, pair)) return finish(index, 0, out);
+        stepper::Trajectory beside = start();
+        const Coordinates nearest = clamped(pair.start, pair);
+        beside.poses.front()[out.a] = pose_of(pair.body_a, nearest);
+        beside.poses.front()[out.b] = pose_of(pair.body_b, nearest);
+        finish(index, 0, out, &beside);
     }
 
     static std::optional<Overlap> overlap_in_world(const ScrewedPair& pair, const SolidBody& a, const SolidBody& b, const Coordinates& at) {
@@ -138,6 +151,19 @@ private:
 std::vector<PairClearance> certify_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
                                           const ClearanceOptions& options) {
     return RangeCertification(model, ranges, pairs, options, nullptr).run();
+}
+
+RangeClearances::RangeClearances(const model::Model& model, JointRanges ranges, std::vector<PairRequest> pairs, ClearanceOptions options)
+    : ranges_(std::move(ranges)),
+      pairs_(std::move(pairs)),
+      options_(std::move(options)),
+      certification_(std::make_unique<RangeCertification>(model, ranges_, pairs_, options_, nullptr)) {}
+
+RangeClearances::~RangeClearances() = default;
+
+std::vector<PairClearance> RangeClearances::over(std::vector<PairRequest> pairs) {
+    pairs_ = std::move(pairs);
+    return certification_->run();
 }
 
 ProvenClearances certify_ranges_with_proof(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,

@@ -5,18 +5,41 @@
 /// docs/method/clearance.md#ranges-of-joints.
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "fettle/core/clearance/joint_ranges.hpp"
-#include "fettle/core/clearance/pair_clearance.hpp"
+#include "core/clearance/joint_ranges.hpp"
+#include "core/clearance/pair_clearance.hpp"
 
 namespace fettle::core::clearance {
+
+class BoxCertification;
 
 /// Bounds for each pair asked for, in their order; judged as over a path, by the same function. The witness attains `upper`, in the world,
 /// with what moves both bodies at its start; its step is -1. PairRequest::far has no effect, and nothing is reported about overlap, touch,
 /// times, nodes and margins: these are of a path.
 std::vector<PairClearance> certify_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
                                           const ClearanceOptions& options);
+
+/// The same over one part of the ranges after another: what is made of the bodies' meshes is made once.
+class RangeClearances {
+public:
+    /// @param pairs  All that will be asked for. Contract: the model stays where it is.
+    RangeClearances(const model::Model& model, JointRanges ranges, std::vector<PairRequest> pairs, ClearanceOptions options);
+    ~RangeClearances();
+    RangeClearances(const RangeClearances&) = delete;
+    RangeClearances& operator=(const RangeClearances&) = delete;
+
+    JointRanges& ranges() { return ranges_; }  ///< their low and high may be changed, beyond the start as well
+    ClearanceOptions& options() { return options_; }
+    std::vector<PairClearance> over(std::vector<PairRequest> pairs);
+
+private:
+    JointRanges ranges_;
+    std::vector<PairRequest> pairs_;
+    ClearanceOptions options_;
+    std::unique_ptr<BoxCertification> certification_;
+};
 
 /// The same with its certificate, which leaves out what could not be measured.
 ProvenClearances certify_ranges_with_proof(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/range_search.hpp"
+#include "core/clearance/range_search.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/clearance/pair_search.hpp"
-#include "fettle/core/clearance/piece_bound.hpp"
-#include "fettle/core/clearance/search_front.hpp"
+#include "core/clearance/pair_search.hpp"
+#include "core/clearance/piece_bound.hpp"
+#include "core/clearance/search_front.hpp"
 
 namespace fettle::core::clearance {
 namespace {
@@ -103,8 +103,10 @@ public:
 
     void run() {
         const Coordinates middle = middle_of(pair_.ranges);
-        Coordinates best = pair_.start;
-        double least = distance(pair_.start);
+        Coordinates best = pair_.start;  // or, where the box has no part in it, the nearest that it has
+        for (std::size_t k = 0; k < static_cast<std::size_t>(pair_.count); ++k)
+            best[k] = std::clamp(best[k], pair_.ranges.low[k], pair_.ranges.high[k]);
+        double least = distance(best);
         const auto look = [&](const Coordinates& at) {
             const double d = distance(at);
             if (!(d < least)) return false;

@@ -3,9 +3,9 @@
 /// range_bound.hpp.
 #pragma once
 
-#include "fettle/core/clearance/box_search.hpp"
-#include "fettle/core/clearance/range_bound.hpp"
-#include "fettle/core/clearance/search_result.hpp"
+#include "core/clearance/box_search.hpp"
+#include "core/clearance/range_bound.hpp"
+#include "core/clearance/search_result.hpp"
 
 namespace fettle::core::clearance {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/relative_chain.hpp"
+#include "core/clearance/relative_chain.hpp"
 
 #include <algorithm>
 #include <array>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/four.hpp"
-#include "fettle/core/base/rounding.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/four.hpp"
+#include "core/base/rounding.hpp"
 
 namespace fettle::core::clearance {
 namespace {

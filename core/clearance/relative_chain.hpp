@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "fettle/core/clearance/segment_bound.hpp"
+#include "core/clearance/segment_bound.hpp"
 
 namespace fettle::core::clearance {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/relative_spans.hpp"
+#include "core/clearance/relative_spans.hpp"
 
 #include <Eigen/Geometry>
 
@@ -9,8 +9,8 @@
 #include <limits>
 #include <utility>
 
-#include "fettle/core/base/four.hpp"
-#include "fettle/core/base/rounding.hpp"
+#include "core/base/four.hpp"
+#include "core/base/rounding.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -37,9 +37,9 @@
 #include <span>
 #include <vector>
 
-#include "fettle/core/clearance/piece_bound.hpp"
-#include "fettle/core/clearance/relative_chain.hpp"
-#include "fettle/core/clearance/segment_bound.hpp"
+#include "core/clearance/piece_bound.hpp"
+#include "core/clearance/relative_chain.hpp"
+#include "core/clearance/segment_bound.hpp"
 
 namespace fettle::core::clearance {
 

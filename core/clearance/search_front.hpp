@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/clearance/search_result.hpp"
+#include "core/base/limits.hpp"
+#include "core/clearance/search_result.hpp"
 
 namespace fettle::core::clearance {
 

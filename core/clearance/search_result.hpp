@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/clearance/segment_bound.hpp"
-#include "fettle/core/clearance/stop_rule.hpp"
-#include "fettle/core/clearance/witness_instant.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/clearance/segment_bound.hpp"
+#include "core/clearance/stop_rule.hpp"
+#include "core/clearance/witness_instant.hpp"
 
 namespace fettle::core::clearance {
 

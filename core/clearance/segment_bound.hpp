@@ -41,8 +41,8 @@
 #include <limits>
 #include <memory>
 
-#include "fettle/core/clearance/piece_tree.hpp"
-#include "fettle/core/kinematics/path.hpp"
+#include "core/clearance/piece_tree.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::core::clearance {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/segment_proof.hpp"
+#include "core/clearance/segment_proof.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,11 @@
 #include <map>
 #include <optional>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/certificate/interval_motion.hpp"
-#include "fettle/core/clearance/hull_direction.hpp"
-#include "fettle/core/clearance/piece_bound.hpp"
-#include "fettle/core/clearance/witness_instant.hpp"
+#include "core/base/parallel.hpp"
+#include "core/certificate/interval_motion.hpp"
+#include "core/clearance/hull_direction.hpp"
+#include "core/clearance/piece_bound.hpp"
+#include "core/clearance/witness_instant.hpp"
 
 namespace fettle::core::clearance {
 namespace {

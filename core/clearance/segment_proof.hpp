@@ -10,8 +10,8 @@
 #include <functional>
 #include <vector>
 
-#include "fettle/core/certificate/certified_body.hpp"
-#include "fettle/core/clearance/pair_details.hpp"
+#include "core/certificate/certified_body.hpp"
+#include "core/clearance/pair_details.hpp"
 
 namespace fettle::core::clearance {
 

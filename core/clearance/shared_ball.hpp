@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fettle/core/clearance/overlap.hpp"
+#include "core/clearance/overlap.hpp"
 
 namespace fettle::core::clearance {
 

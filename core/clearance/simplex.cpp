@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/simplex.hpp"
+#include "core/clearance/simplex.hpp"
 
 #include <Eigen/Geometry>
 
-#include "fettle/core/geometry/distance.hpp"
+#include "core/geometry/distance.hpp"
 
 namespace fettle::core::clearance {
 

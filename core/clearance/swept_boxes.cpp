@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/swept_boxes.hpp"
+#include "core/clearance/swept_boxes.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/four.hpp"
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/rounding.hpp"
+#include "core/base/four.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/rounding.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
-#include "fettle/core/clearance/body_motions.hpp"
-#include "fettle/core/geometry/box_sweep.hpp"
+#include "core/clearance/body_motions.hpp"
+#include "core/geometry/box_sweep.hpp"
 
 namespace fettle::core::clearance {
 

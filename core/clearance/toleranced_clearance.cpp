@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/toleranced_clearance.hpp"
+#include "core/clearance/toleranced_clearance.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/clearance/box_certification.hpp"
-#include "fettle/core/clearance/pair_certification.hpp"
-#include "fettle/core/clearance/shared_ball.hpp"
-#include "fettle/core/clearance/toleranced_search.hpp"
-#include "fettle/core/clearance/touching.hpp"
-#include "fettle/core/clearance/witness_instant.hpp"
+#include "core/base/text.hpp"
+#include "core/clearance/box_certification.hpp"
+#include "core/clearance/pair_certification.hpp"
+#include "core/clearance/shared_ball.hpp"
+#include "core/clearance/toleranced_search.hpp"
+#include "core/clearance/touching.hpp"
+#include "core/clearance/witness_instant.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -7,9 +7,9 @@
 
 #include <vector>
 
-#include "fettle/core/certificate/toleranced.hpp"
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/certificate/toleranced.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::clearance {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/toleranced_direction.hpp"
+#include "core/clearance/toleranced_direction.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/clearance/segment_bound.hpp"
-#include "fettle/core/clearance/simplex.hpp"
+#include "core/clearance/segment_bound.hpp"
+#include "core/clearance/simplex.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <span>
 
-#include "fettle/core/certificate/toleranced_prover.hpp"
-#include "fettle/core/clearance/element_pair.hpp"
+#include "core/certificate/toleranced_prover.hpp"
+#include "core/clearance/element_pair.hpp"
 
 namespace fettle::core::clearance {
 

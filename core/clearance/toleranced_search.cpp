@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/toleranced_search.hpp"
+#include "core/clearance/toleranced_search.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/clearance/pair_search.hpp"
-#include "fettle/core/clearance/piece_bound.hpp"
-#include "fettle/core/clearance/search_front.hpp"
-#include "fettle/core/clearance/toleranced_direction.hpp"
+#include "core/clearance/pair_search.hpp"
+#include "core/clearance/piece_bound.hpp"
+#include "core/clearance/search_front.hpp"
+#include "core/clearance/toleranced_direction.hpp"
 
 namespace fettle::core::clearance {
 namespace {

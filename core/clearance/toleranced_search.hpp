@@ -12,9 +12,9 @@
 ///   bend_k = 1/2 sum over i of (rho_k mu_i + rho_i mu_k).
 #pragma once
 
-#include "fettle/core/certificate/toleranced_prover.hpp"
-#include "fettle/core/clearance/box_search.hpp"
-#include "fettle/core/clearance/made_bodies.hpp"
+#include "core/certificate/toleranced_prover.hpp"
+#include "core/clearance/box_search.hpp"
+#include "core/clearance/made_bodies.hpp"
 
 namespace fettle::core::clearance {
 

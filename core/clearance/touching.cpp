@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/touching.hpp"
+#include "core/clearance/touching.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/certificate/disjoint_solids.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/solids/self_intersection.hpp"
-#include "fettle/core/solids/shells.hpp"
+#include "core/certificate/disjoint_solids.hpp"
+#include "core/geometry/body_hierarchy.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/solids/self_intersection.hpp"
+#include "core/solids/shells.hpp"
 
 namespace fettle::core::clearance {
 namespace {

@@ -12,8 +12,8 @@
 
 #include <optional>
 
-#include "fettle/core/clearance/pair_details.hpp"
-#include "fettle/core/clearance/pair_search.hpp"
+#include "core/clearance/pair_details.hpp"
+#include "core/clearance/pair_search.hpp"
 
 namespace fettle::core::clearance {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/true_bounds.hpp"
+#include "core/clearance/true_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::clearance {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/witness_instant.hpp"
+#include "core/clearance/witness_instant.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <limits>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::core::clearance {
 namespace {

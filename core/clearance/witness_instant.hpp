@@ -2,10 +2,10 @@
 /// Where along a segment two elements are closest, to rounding: makes the witness of a certificate exact in time. Proves nothing.
 #pragma once
 
-#include "fettle/core/clearance/element_pair.hpp"
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/clearance/piece_tree.hpp"
-#include "fettle/core/clearance/segment_bound.hpp"
+#include "core/clearance/element_pair.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/clearance/piece_tree.hpp"
+#include "core/clearance/segment_bound.hpp"
 
 namespace fettle::core::clearance {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/constraint/assembly.hpp"
+#include "core/constraint/assembly.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/kinematics/mass_matrix.hpp"
-#include "fettle/core/linear/linear_system.hpp"
+#include "core/kinematics/mass_matrix.hpp"
+#include "core/linear/linear_system.hpp"
 
 namespace fettle::core::constraint {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <vector>
 
-#include "fettle/core/constraint/dependent_rows.hpp"
-#include "fettle/core/constraint/row.hpp"
-#include "fettle/core/linear/free_dofs.hpp"
+#include "core/constraint/dependent_rows.hpp"
+#include "core/constraint/row.hpp"
+#include "core/linear/free_dofs.hpp"
 
 namespace fettle::core::constraint {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/constraint/branch.hpp"
+#include "core/constraint/branch.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/kinematics/rotation.hpp"
+#include "core/kinematics/rotation.hpp"
 
 namespace fettle::core::constraint {
 namespace {

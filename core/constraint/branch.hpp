@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/linear/free_dofs.hpp"
-#include "fettle/core/measure/measure.hpp"
+#include "core/linear/free_dofs.hpp"
+#include "core/measure/measure.hpp"
 
 namespace fettle::core::constraint {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/constraint/dependent_rows.hpp"
+#include "core/constraint/dependent_rows.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "fettle/core/linear/dependent_columns.hpp"
+#include "core/linear/dependent_columns.hpp"
 
 namespace fettle::core::constraint {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "fettle/core/constraint/row.hpp"
-#include "fettle/core/linear/free_dofs.hpp"
+#include "core/constraint/row.hpp"
+#include "core/linear/free_dofs.hpp"
 
 namespace fettle::core::constraint {
 

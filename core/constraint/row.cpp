@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/constraint/row.hpp"
+#include "core/constraint/row.hpp"
 
 #include <algorithm>
 

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "fettle/core/linear/matrices.hpp"
-#include "fettle/core/measure/measure.hpp"
-#include "fettle/core/scene/curve.hpp"
+#include "core/linear/matrices.hpp"
+#include "core/measure/measure.hpp"
+#include "core/scene/curve.hpp"
 
 namespace fettle::core::constraint {
 

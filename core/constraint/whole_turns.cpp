@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/constraint/whole_turns.hpp"
+#include "core/constraint/whole_turns.hpp"
 
 #include <algorithm>
 #include <cmath>

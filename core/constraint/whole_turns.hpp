@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/constraint/row.hpp"
+#include "core/constraint/row.hpp"
 
 namespace fettle::core::constraint {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/closest_feature.hpp"
+#include "core/contact/closest_feature.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/contact_areas.hpp"
+#include "core/contact/contact_areas.hpp"
 
 #include <cmath>
 #include <map>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/contact/near_search.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
+#include "core/base/contract.hpp"
+#include "core/contact/near_search.hpp"
+#include "core/geometry/half_edges.hpp"
 
 namespace fettle::core::contact {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "fettle/core/ccd/candidates.hpp"
-#include "fettle/core/kinematics/path.hpp"
+#include "core/ccd/candidates.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::core::contact {
 

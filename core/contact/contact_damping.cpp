@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/contact_damping.hpp"
+#include "core/contact/contact_damping.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace fettle::core::contact {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/contact_pair.hpp"
+#include "core/contact/contact_pair.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/base/four.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/base/four.hpp"
+#include "core/linear/factorisations.hpp"
 
 namespace fettle::core::contact {
 namespace {

@@ -13,12 +13,12 @@
 #include <array>
 #include <cmath>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/contact/barrier.hpp"
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/geometry/primitive_pair.hpp"
-#include "fettle/core/kinematics/tangent_system.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/base/types.hpp"
+#include "core/contact/barrier.hpp"
+#include "core/geometry/distance.hpp"
+#include "core/geometry/primitive_pair.hpp"
+#include "core/kinematics/tangent_system.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::contact {
 

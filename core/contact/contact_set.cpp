@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/contact_set.hpp"
+#include "core/contact/contact_set.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include <memory>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/contact/near_search.hpp"
-#include "fettle/core/contact/round_contacts.hpp"
-#include "fettle/core/linear/matrices.hpp"
+#include "core/base/parallel.hpp"
+#include "core/contact/near_search.hpp"
+#include "core/contact/round_contacts.hpp"
+#include "core/linear/matrices.hpp"
 
 namespace fettle::core::contact {
 namespace {

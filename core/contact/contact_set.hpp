@@ -7,11 +7,11 @@
 #include <functional>
 #include <vector>
 
-#include "fettle/core/ccd/candidates.hpp"
-#include "fettle/core/contact/barrier.hpp"
-#include "fettle/core/contact/contact_pair.hpp"
-#include "fettle/core/contact/counted_contacts.hpp"
-#include "fettle/core/kinematics/tangent_system.hpp"
+#include "core/ccd/candidates.hpp"
+#include "core/contact/barrier.hpp"
+#include "core/contact/contact_pair.hpp"
+#include "core/contact/counted_contacts.hpp"
+#include "core/kinematics/tangent_system.hpp"
 
 namespace fettle::core::contact {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/counted_contacts.hpp"
+#include "core/contact/counted_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
-#include "fettle/core/contact/closest_feature.hpp"
+#include "core/contact/closest_feature.hpp"
 
 namespace fettle::core::contact {
 namespace {

@@ -14,9 +14,9 @@
 
 #include <vector>
 
-#include "fettle/core/contact/contact_pair.hpp"
-#include "fettle/core/geometry/flat_features.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/contact/contact_pair.hpp"
+#include "core/geometry/flat_features.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::contact {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/friction.hpp"
+#include "core/contact/friction.hpp"
 
 #include <cmath>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace fettle::core::contact {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "fettle/core/contact/contact_set.hpp"
+#include "core/contact/contact_set.hpp"
 
 namespace fettle::core::contact {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/near_search.hpp"
+#include "core/contact/near_search.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <new>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/ccd/plane_edges.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
+#include "core/base/parallel.hpp"
+#include "core/ccd/plane_edges.hpp"
+#include "core/geometry/body_hierarchy.hpp"
 
 namespace fettle::core::contact {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "fettle/core/ccd/candidates.hpp"
-#include "fettle/core/contact/counted_contacts.hpp"
+#include "core/ccd/candidates.hpp"
+#include "core/contact/counted_contacts.hpp"
 
 namespace fettle::core::contact {
 

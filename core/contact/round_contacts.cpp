@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/round_contacts.hpp"
+#include "core/contact/round_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "fettle/core/contact/closest_feature.hpp"
-#include "fettle/core/geometry/round_surfaces.hpp"
+#include "core/contact/closest_feature.hpp"
+#include "core/geometry/round_surfaces.hpp"
 
 namespace fettle::core::contact {
 namespace {

@@ -19,7 +19,7 @@
 
 #include <vector>
 
-#include "fettle/core/contact/near_search.hpp"
+#include "core/contact/near_search.hpp"
 
 namespace fettle::core::contact {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/energy/body_terms.hpp"
+#include "core/energy/body_terms.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/kinematics/mass_matrix.hpp"
-#include "fettle/core/model/choose_proximal_weight.hpp"
+#include "core/kinematics/mass_matrix.hpp"
+#include "core/model/choose_proximal_weight.hpp"
 
 namespace fettle::core::energy {
 namespace {

@@ -12,8 +12,8 @@
 
 #include <vector>
 
-#include "fettle/core/energy/damping_moments.hpp"
-#include "fettle/core/energy/term.hpp"
+#include "core/energy/damping_moments.hpp"
+#include "core/energy/term.hpp"
 
 namespace fettle::core::energy {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/energy/contact_terms.hpp"
+#include "core/energy/contact_terms.hpp"
 
 #include <algorithm>
 #include <cmath>

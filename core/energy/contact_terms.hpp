@@ -4,7 +4,7 @@
 /// puts between bodies; the barrier its energy too. docs/method/contact.md.
 #pragma once
 
-#include "fettle/core/energy/term.hpp"
+#include "core/energy/term.hpp"
 
 namespace fettle::core::energy {
 

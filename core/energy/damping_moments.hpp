@@ -5,7 +5,7 @@
 /// rest the second moments about it. As a term of the incremental potential: body_terms.hpp. docs/method/energy.md#integrators.
 #pragma once
 
-#include "fettle/core/model/model.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::energy {
 

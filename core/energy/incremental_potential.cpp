@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/energy/incremental_potential.hpp"
+#include "core/energy/incremental_potential.hpp"
 
 #include <Eigen/Cholesky>
 #include <array>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/energy/body_terms.hpp"
-#include "fettle/core/energy/contact_terms.hpp"
-#include "fettle/core/energy/measure_terms.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/base/parallel.hpp"
+#include "core/energy/body_terms.hpp"
+#include "core/energy/contact_terms.hpp"
+#include "core/energy/measure_terms.hpp"
+#include "core/linear/factorisations.hpp"
 
 namespace fettle::core::energy {
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "fettle/core/energy/term.hpp"
+#include "core/energy/term.hpp"
 
 namespace fettle::core::energy {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/energy/measure_terms.hpp"
+#include "core/energy/measure_terms.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/linear/factorisations.hpp"
 
 namespace fettle::core::energy {
 

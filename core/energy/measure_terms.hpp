@@ -10,8 +10,8 @@
 /// each times the integrator's weight (time_integration.hpp).
 #pragma once
 
-#include "fettle/core/energy/step_problem.hpp"
-#include "fettle/core/energy/term.hpp"
+#include "core/energy/step_problem.hpp"
+#include "core/energy/term.hpp"
 
 namespace fettle::core::energy {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/energy/start_history.hpp"
+#include "core/energy/start_history.hpp"
 
-#include "fettle/core/energy/measure_terms.hpp"
+#include "core/energy/measure_terms.hpp"
 
 namespace fettle::core::energy {
 

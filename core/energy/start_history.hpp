@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "fettle/core/energy/step_problem.hpp"
+#include "core/energy/step_problem.hpp"
 
 namespace fettle::core::energy {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/energy/step_problem.hpp"
+#include "core/energy/step_problem.hpp"
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/parallel.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/parallel.hpp"
 
 namespace fettle::core::energy {
 

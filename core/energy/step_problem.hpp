@@ -6,12 +6,12 @@
 
 #include <vector>
 
-#include "fettle/core/contact/barrier.hpp"
-#include "fettle/core/contact/contact_damping.hpp"
-#include "fettle/core/contact/friction.hpp"
-#include "fettle/core/energy/time_integration.hpp"
-#include "fettle/core/kinematics/path.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/contact/barrier.hpp"
+#include "core/contact/contact_damping.hpp"
+#include "core/contact/friction.hpp"
+#include "core/energy/time_integration.hpp"
+#include "core/kinematics/path.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::energy {
 

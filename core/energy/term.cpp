@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/energy/term.hpp"
+#include "core/energy/term.hpp"
 
 #include <algorithm>
 #include <utility>

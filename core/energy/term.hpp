@@ -10,10 +10,10 @@
 
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/energy/step_problem.hpp"
-#include "fettle/core/kinematics/tangent_system.hpp"
+#include "core/base/types.hpp"
+#include "core/contact/contact_set.hpp"
+#include "core/energy/step_problem.hpp"
+#include "core/kinematics/tangent_system.hpp"
 
 namespace fettle::core::energy {
 

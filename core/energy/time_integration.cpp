@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/energy/time_integration.hpp"
+#include "core/energy/time_integration.hpp"
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/energy/damping_moments.hpp"
-#include "fettle/core/kinematics/mass_matrix.hpp"
-#include "fettle/core/kinematics/path.hpp"
-#include "fettle/core/kinematics/tangent_system.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/parallel.hpp"
+#include "core/energy/damping_moments.hpp"
+#include "core/kinematics/mass_matrix.hpp"
+#include "core/kinematics/path.hpp"
+#include "core/kinematics/tangent_system.hpp"
+#include "core/linear/factorisations.hpp"
 
 namespace fettle::core::energy {
 namespace {

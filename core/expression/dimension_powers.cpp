@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/expression/dimension_powers.hpp"
+#include "core/expression/dimension_powers.hpp"
 
 #include <algorithm>
 #include <cmath>

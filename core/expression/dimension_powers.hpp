@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/base/units.hpp"
+#include "core/base/types.hpp"
+#include "core/base/units.hpp"
 
 namespace fettle::core::expression {
 

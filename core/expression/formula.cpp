@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/expression/formula.hpp"
+#include "core/expression/formula.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::core::expression {
 namespace {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/expression/dimension_powers.hpp"
-#include "fettle/core/expression/operation.hpp"
-#include "fettle/core/expression/tape.hpp"
+#include "core/base/types.hpp"
+#include "core/expression/dimension_powers.hpp"
+#include "core/expression/operation.hpp"
+#include "core/expression/tape.hpp"
 
 namespace fettle::core::expression {
 

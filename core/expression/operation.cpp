@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/expression/operation.hpp"
+#include "core/expression/operation.hpp"
 
 #include <iterator>
 #include <limits>

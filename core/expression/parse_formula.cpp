@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/expression/parse_formula.hpp"
+#include "core/expression/parse_formula.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -9,8 +9,8 @@
 #include <set>
 #include <tuple>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/files/nearest_word.hpp"
+#include "core/base/limits.hpp"
+#include "core/files/nearest_word.hpp"
 
 namespace fettle::core::expression {
 namespace {

@@ -24,9 +24,9 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/expression/formula.hpp"
+#include "core/base/result.hpp"
+#include "core/base/units.hpp"
+#include "core/expression/formula.hpp"
 
 namespace fettle::core::expression {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/expression/tape.hpp"
+#include "core/expression/tape.hpp"
 
 #include <limits>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::core::expression {
 namespace {

@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/expression/operation.hpp"
+#include "core/base/types.hpp"
+#include "core/expression/operation.hpp"
 
 namespace fettle::core::expression {
 

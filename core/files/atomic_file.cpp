@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/atomic_file.hpp"
+#include "core/files/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -16,7 +16,7 @@
 #include <thread>
 #include <utility>
 
-#include "fettle/core/base/mixed_bits.hpp"
+#include "core/base/mixed_bits.hpp"
 
 namespace fettle::core::files {
 

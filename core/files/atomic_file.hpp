@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
+#include "core/base/result.hpp"
 
 namespace fettle::core::files {
 

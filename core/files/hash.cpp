@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/hash.hpp"
+#include "core/files/hash.hpp"
 
 namespace fettle::core::files {
 

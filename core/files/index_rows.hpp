@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
+#include "core/files/json_document.hpp"
 
 namespace fettle::core::files {
 

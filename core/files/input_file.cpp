@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/input_file.hpp"
+#include "core/files/input_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -10,10 +10,10 @@
 #include <system_error>
 #include <utility>
 
-#include "fettle/core/base/read_record.hpp"
-#include "fettle/core/base/stop.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/hash.hpp"
+#include "core/base/read_record.hpp"
+#include "core/base/stop.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/hash.hpp"
 
 namespace fettle::core::files {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
+#include "core/base/result.hpp"
 
 namespace fettle::core::files {
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/json_document.hpp"
+#include "core/files/json_document.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/core/files/json_text.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/files/warning_groups.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/text.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_dump.hpp"
+#include "core/files/json_text.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/files/warning_groups.hpp"
 
 namespace fettle::core::files {
 

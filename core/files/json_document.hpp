@@ -22,9 +22,9 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/base/units.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "core/base/units.hpp"
 
 namespace fettle::core::files {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/json_keys.hpp"
+#include "core/files/json_keys.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <string>
 
-#include "fettle/core/files/input_file.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/files/nearest_word.hpp"
+#include "core/files/input_file.hpp"
+#include "core/files/json_document.hpp"
+#include "core/files/nearest_word.hpp"
 
 namespace fettle::core::files {
 namespace {

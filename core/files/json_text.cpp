@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/json_text.hpp"
+#include "core/files/json_text.hpp"
 
 namespace fettle::core::files {
 

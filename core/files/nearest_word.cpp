@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/nearest_word.hpp"
+#include "core/files/nearest_word.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/text_lines.hpp"
+#include "core/files/text_lines.hpp"
 
 #include <algorithm>
 #include <charconv>

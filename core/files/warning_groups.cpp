@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/warning_groups.hpp"
+#include "core/files/warning_groups.hpp"
 
 #include <algorithm>
 #include <charconv>

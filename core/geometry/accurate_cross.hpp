@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::core::geometry {
 

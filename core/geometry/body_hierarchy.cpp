@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/body_hierarchy.hpp"
+#include "core/geometry/body_hierarchy.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/float_rounding.hpp"
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/float_rounding.hpp"
+#include "core/base/parallel.hpp"
+#include "core/geometry/half_edges.hpp"
 
 namespace fettle::core::geometry {
 namespace {

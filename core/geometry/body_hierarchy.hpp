@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/geometry/flat_features.hpp"
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/base/types.hpp"
+#include "core/geometry/flat_features.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::core::geometry {
 

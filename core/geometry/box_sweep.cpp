@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/box_sweep.hpp"
+#include "core/geometry/box_sweep.hpp"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-#include "fettle/core/base/four.hpp"
+#include "core/base/four.hpp"
 
 namespace fettle::core::geometry {
 namespace {

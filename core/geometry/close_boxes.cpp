@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/close_boxes.hpp"
+#include "core/geometry/close_boxes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace fettle::core::geometry {
 namespace {

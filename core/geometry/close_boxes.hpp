@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fettle/core/geometry/overlapping_boxes.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
 
 namespace fettle::core::geometry {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // And of mesh.hpp: edges, points and shells from triangles.
-#include "fettle/core/geometry/connectivity.hpp"
+#include "core/geometry/connectivity.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/mixed_bits.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/mixed_bits.hpp"
+#include "core/geometry/half_edges.hpp"
 
 namespace fettle::core::geometry {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::core::geometry {
 

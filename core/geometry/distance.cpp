@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/distance.hpp"
+#include "core/geometry/distance.hpp"
 
-#include "fettle/core/base/rounding.hpp"
-#include "fettle/core/geometry/accurate_cross.hpp"
+#include "core/base/rounding.hpp"
+#include "core/geometry/accurate_cross.hpp"
 
 namespace fettle::core::geometry {
 namespace {

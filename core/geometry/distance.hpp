@@ -31,7 +31,7 @@
 
 #include <array>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::core::geometry {
 

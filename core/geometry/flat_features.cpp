@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/flat_features.hpp"
+#include "core/geometry/flat_features.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
-#include "fettle/core/base/rounding.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
+#include "core/base/rounding.hpp"
+#include "core/geometry/half_edges.hpp"
 
 namespace fettle::core::geometry {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/half_edges.hpp"
+#include "core/geometry/half_edges.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::core::geometry {
 

@@ -13,7 +13,7 @@
 #include <array>
 #include <cmath>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::core::geometry {
 

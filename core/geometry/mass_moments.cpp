@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/mass_moments.hpp"
+#include "core/geometry/mass_moments.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/geometry/half_edges.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::core::geometry {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/geometry/mesh.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <unordered_map>
 
-#include "fettle/core/base/mixed_bits.hpp"
-#include "fettle/core/base/parallel.hpp"
+#include "core/base/mixed_bits.hpp"
+#include "core/base/parallel.hpp"
 
 namespace fettle::core::geometry {
 namespace {

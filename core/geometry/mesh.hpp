@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::core::geometry {
 

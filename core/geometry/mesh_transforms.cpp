@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/mesh_transforms.hpp"
+#include "core/geometry/mesh_transforms.hpp"
 
 #include <algorithm>
 #include <utility>

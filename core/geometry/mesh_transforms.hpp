@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::core::geometry {
 

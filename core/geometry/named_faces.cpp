@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/named_faces.hpp"
+#include "core/geometry/named_faces.hpp"
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::core::geometry {
 

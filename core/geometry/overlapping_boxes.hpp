@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/geometry/box_sweep.hpp"
+#include "core/base/types.hpp"
+#include "core/geometry/box_sweep.hpp"
 
 namespace fettle::core::geometry {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/predicates.hpp"
+#include "core/geometry/predicates.hpp"
 
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/rounding.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/rounding.hpp"
 
 namespace fettle::core::geometry {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::core::geometry {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/range.hpp"
+#include "core/geometry/range.hpp"
 
 #include <algorithm>
 #include <cmath>

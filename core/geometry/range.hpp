@@ -9,7 +9,7 @@
 ///    jumps there by itself (atan2).
 #pragma once
 
-#include "fettle/core/geometry/interval.hpp"
+#include "core/geometry/interval.hpp"
 
 namespace fettle::core::geometry {
 

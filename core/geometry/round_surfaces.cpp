@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/round_surfaces.hpp"
+#include "core/geometry/round_surfaces.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,9 +9,9 @@
 #include <array>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/geometry/rounded_sides.hpp"
+#include "core/base/types.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/geometry/rounded_sides.hpp"
 
 namespace fettle::core::geometry {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/geometry/rounded_sides.hpp"
+#include "core/geometry/rounded_sides.hpp"
 
 namespace fettle::core::geometry {
 namespace {

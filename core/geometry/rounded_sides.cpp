@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/rounded_sides.hpp"
+#include "core/geometry/rounded_sides.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
-#include "fettle/core/geometry/flat_features.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
+#include "core/geometry/flat_features.hpp"
+#include "core/geometry/half_edges.hpp"
 
 namespace fettle::core::geometry {
 namespace {

@@ -14,8 +14,8 @@
 #include <array>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/base/types.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::core::geometry {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/kinematics/mass_matrix.hpp"
+#include "core/kinematics/mass_matrix.hpp"
 
 namespace fettle::core::kinematics {
 

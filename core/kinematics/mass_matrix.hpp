@@ -3,7 +3,7 @@
 /// docs/method/energy.md#integrators.
 #pragma once
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::core::kinematics {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/kinematics/rotation.hpp"
+#include "core/base/types.hpp"
+#include "core/kinematics/rotation.hpp"
 
 namespace fettle::core::kinematics {
 

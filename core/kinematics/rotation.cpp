@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/kinematics/rotation.hpp"
+#include "core/kinematics/rotation.hpp"
 
 #include <cmath>
 #include <cstddef>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::core::kinematics {
 

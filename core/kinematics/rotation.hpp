@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::core::kinematics {
 

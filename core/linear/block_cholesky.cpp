@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/linear/block_cholesky.hpp"
+#include "core/linear/block_cholesky.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -10,8 +10,8 @@
 #include <functional>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/parallel.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/parallel.hpp"
 
 namespace fettle::core::linear {
 namespace {

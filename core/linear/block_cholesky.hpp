@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/kinematics/tangent_system.hpp"
-#include "fettle/core/linear/free_dofs.hpp"
+#include "core/kinematics/tangent_system.hpp"
+#include "core/linear/free_dofs.hpp"
 
 namespace fettle::core::linear {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/linear/dependent_columns.hpp"
+#include "core/linear/dependent_columns.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseQR>
@@ -10,7 +10,7 @@
 #ifdef FETTLE_SUITESPARSE
 #include <SuiteSparseQR_C.h>
 
-#include "fettle/core/linear/library_threads.hpp"
+#include "core/linear/library_threads.hpp"
 #endif
 
 namespace fettle::core::linear {

@@ -8,7 +8,7 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::core::linear {
 

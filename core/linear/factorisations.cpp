@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/linear/factorisations.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <memory>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::core::linear {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/linear/free_dofs.hpp"
+#include "core/linear/free_dofs.hpp"
 
 namespace fettle::core::linear {
 

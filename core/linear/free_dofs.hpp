@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::core::linear {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/linear/indefinite_factor.hpp"
+#include "core/linear/indefinite_factor.hpp"
 
 #include <Eigen/SparseLU>
 #include <array>
@@ -7,13 +7,13 @@
 #include <optional>
 #include <variant>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/base/contract.hpp"
+#include "core/linear/factorisations.hpp"
 
 #ifdef FETTLE_SUITESPARSE
 #include <umfpack.h>
 
-#include "fettle/core/linear/library_threads.hpp"
+#include "core/linear/library_threads.hpp"
 #endif
 
 namespace fettle::core::linear {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/linear/library_threads.hpp"
+#include "core/linear/library_threads.hpp"
 
 #include <dlfcn.h>
 

@@ -3,7 +3,7 @@
 /// the bits of an answer are not to depend on how many there are.
 #pragma once
 
-#include "fettle/core/base/shared_library.hpp"
+#include "core/base/shared_library.hpp"
 
 namespace fettle::core::linear {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/linear/linear_system.hpp"
+#include "core/linear/linear_system.hpp"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/linear/block_cholesky.hpp"
-#include "fettle/core/linear/indefinite_factor.hpp"
-#include "fettle/core/linear/quasi_definite_factor.hpp"
-#include "fettle/core/linear/supernodal_cholesky.hpp"
+#include "core/base/contract.hpp"
+#include "core/linear/block_cholesky.hpp"
+#include "core/linear/indefinite_factor.hpp"
+#include "core/linear/quasi_definite_factor.hpp"
+#include "core/linear/supernodal_cholesky.hpp"
 
 namespace fettle::core::linear {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/linear/matrices.hpp"
+#include "core/linear/matrices.hpp"
 
 #include <algorithm>
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "fettle/core/kinematics/tangent_system.hpp"
+#include "core/kinematics/tangent_system.hpp"
 
 namespace fettle::core::linear {
 

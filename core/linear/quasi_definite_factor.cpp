@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/linear/quasi_definite_factor.hpp"
+#include "core/linear/quasi_definite_factor.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::core::linear {
 namespace {

@@ -10,8 +10,8 @@
 
 #include <memory>
 
-#include "fettle/core/linear/free_dofs.hpp"
-#include "fettle/core/linear/matrices.hpp"
+#include "core/linear/free_dofs.hpp"
+#include "core/linear/matrices.hpp"
 
 namespace fettle::core::linear {
 

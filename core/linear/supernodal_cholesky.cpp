@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/linear/supernodal_cholesky.hpp"
+#include "core/linear/supernodal_cholesky.hpp"
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 #ifdef FETTLE_SUITESPARSE
 
@@ -12,7 +12,7 @@
 #include <new>
 #include <optional>
 
-#include "fettle/core/linear/library_threads.hpp"
+#include "core/linear/library_threads.hpp"
 
 namespace fettle::core::linear {
 namespace {

@@ -9,8 +9,8 @@
 #include <memory>
 #include <vector>
 
-#include "fettle/core/linear/free_dofs.hpp"
-#include "fettle/core/linear/matrices.hpp"
+#include "core/linear/free_dofs.hpp"
+#include "core/linear/matrices.hpp"
 
 namespace fettle::core::linear {
 

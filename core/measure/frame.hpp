@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "fettle/core/kinematics/path.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::core::measure {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/measure/measure.hpp"
+#include "core/measure/measure.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -15,8 +15,8 @@
 #include <array>
 #include <vector>
 
-#include "fettle/core/kinematics/tangent_system.hpp"
-#include "fettle/core/measure/frame.hpp"
+#include "core/kinematics/tangent_system.hpp"
+#include "core/measure/frame.hpp"
 
 namespace fettle::core::measure {
 

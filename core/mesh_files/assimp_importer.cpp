@@ -21,8 +21,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/mesh_files/import_format.hpp"
-#include "fettle/core/mesh_files/most_placed.hpp"
+#include "core/mesh_files/import_format.hpp"
+#include "core/mesh_files/most_placed.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {

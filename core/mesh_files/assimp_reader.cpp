@@ -9,13 +9,13 @@
 #include <string>
 #include <system_error>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/input_file.hpp"
-#include "fettle/core/files/text_lines.hpp"
-#include "fettle/core/mesh_files/import_format.hpp"
-#include "fettle/core/mesh_files/import_process.hpp"
-#include "fettle/core/mesh_files/raw_mesh.hpp"
-#include "fettle/core/mesh_files/xml_reader.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/input_file.hpp"
+#include "core/files/text_lines.hpp"
+#include "core/mesh_files/import_format.hpp"
+#include "core/mesh_files/import_process.hpp"
+#include "core/mesh_files/raw_mesh.hpp"
+#include "core/mesh_files/xml_reader.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/mesh_files/find_mesh_file.hpp"
+#include "core/mesh_files/find_mesh_file.hpp"
 
 #include <filesystem>
 

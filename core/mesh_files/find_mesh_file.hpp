@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
+#include "core/base/result.hpp"
 
 namespace fettle::core::mesh_files {
 

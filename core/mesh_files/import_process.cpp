@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/mesh_files/import_process.hpp"
+#include "core/mesh_files/import_process.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -18,8 +18,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/embedded_file.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/embedded_file.hpp"
 
 FETTLE_EMBEDDED_FILE(fettle_mesh_importer, FETTLE_MESH_IMPORTER)
 

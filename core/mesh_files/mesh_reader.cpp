@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,12 +11,12 @@
 #include <sstream>
 #include <string_view>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/geometry/connectivity.hpp"
-#include "fettle/core/mesh_files/raw_mesh.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/text.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/geometry/connectivity.hpp"
+#include "core/mesh_files/raw_mesh.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {

@@ -26,8 +26,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/base/result.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::core::mesh_files {
 

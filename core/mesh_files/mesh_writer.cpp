@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // STL and OBJ; 3MF is threemf_writer.cpp.
-#include "fettle/core/mesh_files/mesh_writer.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstdio>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/mesh_files/millimetres.hpp"
+#include "core/base/text.hpp"
+#include "core/mesh_files/millimetres.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {

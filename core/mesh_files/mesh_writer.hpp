@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::core::mesh_files {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/mesh_files/millimetres.hpp"
+#include "core/mesh_files/millimetres.hpp"
 
 #include <array>
 #include <charconv>

@@ -4,8 +4,8 @@
 // By hand: assimp, as Debian has it, keeps float32 coordinates and does not say in which line a fault is.
 #include <string>
 
-#include "fettle/core/files/text_lines.hpp"
-#include "fettle/core/mesh_files/raw_mesh.hpp"
+#include "core/files/text_lines.hpp"
+#include "core/mesh_files/raw_mesh.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {

@@ -12,9 +12,9 @@
 #include <optional>
 #include <string>
 
-#include "fettle/core/files/text_lines.hpp"
-#include "fettle/core/mesh_files/millimetres.hpp"
-#include "fettle/core/mesh_files/raw_mesh.hpp"
+#include "core/files/text_lines.hpp"
+#include "core/mesh_files/millimetres.hpp"
+#include "core/mesh_files/raw_mesh.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/mesh_files/raw_mesh.hpp"
+#include "core/geometry/predicates.hpp"
+#include "core/mesh_files/raw_mesh.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {

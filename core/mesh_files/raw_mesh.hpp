@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/base/result.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::core::mesh_files {
 

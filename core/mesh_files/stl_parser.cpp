@@ -9,8 +9,8 @@
 #include <cstring>
 #include <string>
 
-#include "fettle/core/files/text_lines.hpp"
-#include "fettle/core/mesh_files/raw_mesh.hpp"
+#include "core/files/text_lines.hpp"
+#include "core/mesh_files/raw_mesh.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {

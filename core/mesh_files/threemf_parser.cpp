@@ -8,12 +8,12 @@
 #include <optional>
 #include <set>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/text_lines.hpp"
-#include "fettle/core/mesh_files/most_placed.hpp"
-#include "fettle/core/mesh_files/raw_mesh.hpp"
-#include "fettle/core/mesh_files/xml_reader.hpp"
-#include "fettle/core/mesh_files/zip_archive.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/text_lines.hpp"
+#include "core/mesh_files/most_placed.hpp"
+#include "core/mesh_files/raw_mesh.hpp"
+#include "core/mesh_files/xml_reader.hpp"
+#include "core/mesh_files/zip_archive.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {

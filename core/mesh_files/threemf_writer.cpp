@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/mesh_files/mesh_writer.hpp"
-#include "fettle/core/mesh_files/millimetres.hpp"
-#include "fettle/core/mesh_files/zip_archive.hpp"
+#include "core/base/text.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
+#include "core/mesh_files/millimetres.hpp"
+#include "core/mesh_files/zip_archive.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/mesh_files/xml_reader.hpp"
+#include "core/mesh_files/xml_reader.hpp"
 
 #include <expat.h>
 

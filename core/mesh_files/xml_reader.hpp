@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
 
 struct XML_ParserStruct;
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // libzip's functions are loaded where they are first called (core/base/shared_library.hpp): it brings a library of encryption with it.
-#include "fettle/core/mesh_files/zip_archive.hpp"
+#include "core/mesh_files/zip_archive.hpp"
 
 #include <zip.h>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/shared_library.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/shared_library.hpp"
 
 namespace fettle::core::mesh_files {
 namespace {

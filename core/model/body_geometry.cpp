@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/body_geometry.hpp"
+#include "core/model/body_geometry.hpp"
 
 #include <cmath>
 #include <limits>
 #include <memory>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
+#include "core/base/parallel.hpp"
+#include "core/geometry/body_hierarchy.hpp"
+#include "core/geometry/half_edges.hpp"
 
 namespace fettle::core::model {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fettle/core/model/model.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::model {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/body_mass.hpp"
+#include "core/model/body_mass.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/linear/factorisations.hpp"
 
 namespace fettle::core::model {
 std::optional<Vector3> BodyMeasure::centre() const {

@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/scene/mass_kind.hpp"
+#include "core/model/model.hpp"
+#include "core/scene/mass_kind.hpp"
 
 namespace fettle::core::model {
 

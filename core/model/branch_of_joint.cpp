@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/branch_of_joint.hpp"
+#include "core/model/branch_of_joint.hpp"
 
 #include <algorithm>
 #include <optional>

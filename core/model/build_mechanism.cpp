@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/build_mechanism.hpp"
+#include "core/model/build_mechanism.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,10 @@
 #include <string>
 #include <string_view>
 
-#include "fettle/core/model/branch_of_joint.hpp"
-#include "fettle/core/model/choose_kappa.hpp"
-#include "fettle/core/model/limits.hpp"
-#include "fettle/core/model/mechanism_start.hpp"
+#include "core/model/branch_of_joint.hpp"
+#include "core/model/choose_kappa.hpp"
+#include "core/model/limits.hpp"
+#include "core/model/mechanism_start.hpp"
 
 namespace fettle::core::model {
 namespace {

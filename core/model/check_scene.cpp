@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/check_scene.hpp"
+#include "core/model/check_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +9,13 @@
 #include <tuple>
 #include <utility>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/model/ignored_pairs.hpp"
-#include "fettle/core/scene/step_count.hpp"
-#include "fettle/core/solids/mesh_judgement.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/model/ignored_pairs.hpp"
+#include "core/scene/step_count.hpp"
+#include "core/solids/mesh_judgement.hpp"
+#include "core/solids/mesh_validity.hpp"
 
 namespace fettle::core::model {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/body_mass.hpp"
+#include "core/base/result.hpp"
+#include "core/model/body_mass.hpp"
 
 namespace fettle::core::model {
 

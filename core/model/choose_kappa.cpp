@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/choose_kappa.hpp"
+#include "core/model/choose_kappa.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
-#include "fettle/core/measure/measure.hpp"
+#include "core/measure/measure.hpp"
 
 namespace fettle::core::model {
 namespace {

@@ -2,7 +2,7 @@
 /// The default of the barrier's stiffness.
 #pragma once
 
-#include "fettle/core/model/model.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::model {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/choose_proximal_weight.hpp"
+#include "core/model/choose_proximal_weight.hpp"
 
 #include <algorithm>
 #include <limits>

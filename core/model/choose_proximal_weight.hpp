@@ -2,7 +2,7 @@
 /// How firmly a quasi-static step holds what nothing else does. docs/method/energy.md#quasi-static-steps.
 #pragma once
 
-#include "fettle/core/model/model.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::model {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/ignored_pairs.hpp"
+#include "core/model/ignored_pairs.hpp"
 
 #include <algorithm>
 #include <string>
 #include <string_view>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/nearest_word.hpp"
+#include "core/base/text.hpp"
+#include "core/files/nearest_word.hpp"
 
 namespace fettle::core::model {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/scene/scene.hpp"
+#include "core/base/result.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::core::model {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/joint_fit.hpp"
+#include "core/model/joint_fit.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "fettle/core/base/limits.hpp"
+#include "core/base/limits.hpp"
 
 namespace fettle::core::model {
 namespace {

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/measure/frame.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/parts/common_part.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/measure/frame.hpp"
+#include "core/model/model.hpp"
+#include "core/parts/common_part.hpp"
 
 namespace fettle::core::model {
 

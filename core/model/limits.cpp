@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/limits.hpp"
+#include "core/model/limits.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/text.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::core::model {
 namespace {

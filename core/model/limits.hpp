@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/model/model.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::model {
 

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/constraint/branch.hpp"
-#include "fettle/core/constraint/row.hpp"
-#include "fettle/core/measure/measure.hpp"
-#include "fettle/core/scene/mechanism.hpp"
+#include "core/constraint/branch.hpp"
+#include "core/constraint/row.hpp"
+#include "core/measure/measure.hpp"
+#include "core/scene/mechanism.hpp"
 
 namespace fettle::core::model {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/mechanism_start.hpp"
+#include "core/model/mechanism_start.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <set>
 #include <sstream>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/constraint/assembly.hpp"
-#include "fettle/core/constraint/whole_turns.hpp"
-#include "fettle/core/kinematics/path.hpp"
-#include "fettle/core/model/branch_of_joint.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/constraint/assembly.hpp"
+#include "core/constraint/whole_turns.hpp"
+#include "core/kinematics/path.hpp"
+#include "core/model/branch_of_joint.hpp"
 
 namespace fettle::core::model {
 namespace {

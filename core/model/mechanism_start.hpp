@@ -3,9 +3,9 @@
 /// docs/method/joints.md#assembly-the-start.
 #pragma once
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/constraint/assembly.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/base/result.hpp"
+#include "core/constraint/assembly.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::model {
 

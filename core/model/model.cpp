@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/model.hpp"
+#include "core/model/model.hpp"
 
 #include <algorithm>
 

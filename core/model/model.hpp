@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/geometry/flat_features.hpp"
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/geometry/round_surfaces.hpp"
-#include "fettle/core/kinematics/path.hpp"
-#include "fettle/core/linear/free_dofs.hpp"
-#include "fettle/core/model/mechanism.hpp"
-#include "fettle/core/scene/scene.hpp"
+#include "core/geometry/body_hierarchy.hpp"
+#include "core/geometry/flat_features.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/geometry/round_surfaces.hpp"
+#include "core/kinematics/path.hpp"
+#include "core/linear/free_dofs.hpp"
+#include "core/model/mechanism.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::core::model {
 

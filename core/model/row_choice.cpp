@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/row_choice.hpp"
+#include "core/model/row_choice.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "fettle/core/constraint/dependent_rows.hpp"
-#include "fettle/core/kinematics/mass_matrix.hpp"
+#include "core/constraint/dependent_rows.hpp"
+#include "core/kinematics/mass_matrix.hpp"
 
 namespace fettle::core::model {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/start_check.hpp"
+#include "core/model/start_check.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,18 +11,18 @@
 #include <optional>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/stop.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/geometry/overlapping_boxes.hpp"
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/model/joint_fit.hpp"
-#include "fettle/core/solids/closure.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/core/solids/point_in_solid.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/stop.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/geometry/body_hierarchy.hpp"
+#include "core/geometry/distance.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
+#include "core/geometry/predicates.hpp"
+#include "core/model/joint_fit.hpp"
+#include "core/solids/closure.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "core/solids/point_in_solid.hpp"
 
 namespace fettle::core::model {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/base/result.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::model {
 

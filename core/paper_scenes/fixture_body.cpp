@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/paper_scenes/fixture_body.hpp"
+#include "core/paper_scenes/fixture_body.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,18 +7,18 @@
 #include <iterator>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/files/index_rows.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/mesh_transforms.hpp"
-#include "fettle/core/mesh_files/find_mesh_file.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/paper_scenes/fixture_state.hpp"
-#include "fettle/core/scene/angles.hpp"
-#include "fettle/core/scene/mass_kind.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/core/solids/shells.hpp"
+#include "core/base/parallel.hpp"
+#include "core/files/index_rows.hpp"
+#include "core/geometry/half_edges.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/geometry/mesh_transforms.hpp"
+#include "core/mesh_files/find_mesh_file.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/paper_scenes/fixture_state.hpp"
+#include "core/scene/angles.hpp"
+#include "core/scene/mass_kind.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "core/solids/shells.hpp"
 
 namespace fettle::core::paper_scenes {
 namespace {

@@ -12,8 +12,8 @@
 #include <tuple>
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/read_options.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/read_options.hpp"
 
 namespace fettle::core::paper_scenes {
 

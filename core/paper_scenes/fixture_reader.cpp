@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/paper_scenes/fixture_reader.hpp"
+#include "core/paper_scenes/fixture_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
-#include "fettle/core/paper_scenes/fixture_body.hpp"
-#include "fettle/core/paper_scenes/fixture_state.hpp"
+#include "core/paper_scenes/fixture_body.hpp"
+#include "core/paper_scenes/fixture_state.hpp"
 
 namespace fettle::core::paper_scenes {
 namespace {

@@ -4,8 +4,8 @@
 /// why: README.md beside this file.
 #pragma once
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/read_options.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/read_options.hpp"
 
 namespace fettle::core::paper_scenes {
 

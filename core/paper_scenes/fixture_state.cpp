@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/paper_scenes/fixture_state.hpp"
+#include "core/paper_scenes/fixture_state.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/linear/factorisations.hpp"
-#include "fettle/core/scene/mass_kind.hpp"
+#include "core/linear/factorisations.hpp"
+#include "core/scene/mass_kind.hpp"
 
 namespace fettle::core::paper_scenes {
 namespace {

@@ -3,8 +3,8 @@
 /// start, c its centre of mass and R0 the principal axes of its inertia there (eigenvalues ascending, determinant +1).
 #pragma once
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/scene.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::core::paper_scenes {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/part_files/curve_reader.hpp"
+#include "core/part_files/curve_reader.hpp"
 
 #include <array>
 #include <cstdint>

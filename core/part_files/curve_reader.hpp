@@ -8,8 +8,8 @@
 #include <functional>
 #include <string>
 
-#include "fettle/core/part_files/part_numbers.hpp"
-#include "fettle/core/parts/curve.hpp"
+#include "core/part_files/part_numbers.hpp"
+#include "core/parts/curve.hpp"
 
 namespace fettle::core::part_files {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/part_files/facet_bound.hpp"
+#include "core/part_files/facet_bound.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/parts/curve_geometry.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
+#include "core/parts/curve_geometry.hpp"
 
 namespace fettle::core::part_files {
 namespace {

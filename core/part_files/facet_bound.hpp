@@ -11,7 +11,7 @@
 
 #include <functional>
 
-#include "fettle/core/part_files/solid_reader.hpp"
+#include "core/part_files/solid_reader.hpp"
 
 namespace fettle::core::part_files {
 

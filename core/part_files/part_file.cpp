@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/part_files/part_file.hpp"
+#include "core/part_files/part_file.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/part_files/facet_bound.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_keys.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/part_files/facet_bound.hpp"
 
 namespace fettle::core::part_files {
 

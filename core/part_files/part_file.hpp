@@ -25,10 +25,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/part_files/part_relation.hpp"
-#include "fettle/core/parts/drawn_part.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/units.hpp"
+#include "core/part_files/part_relation.hpp"
+#include "core/parts/drawn_part.hpp"
 
 namespace fettle::core::part_files {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/part_files/part_numbers.hpp"
+#include "core/part_files/part_numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/limits.hpp"
+#include "core/base/limits.hpp"
 
 namespace fettle::core::part_files {
 

@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/expression/parse_formula.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/parts/drawing.hpp"
-#include "fettle/core/parts/profile.hpp"
-#include "fettle/core/parts/solid.hpp"
+#include "core/expression/parse_formula.hpp"
+#include "core/files/json_document.hpp"
+#include "core/parts/drawing.hpp"
+#include "core/parts/profile.hpp"
+#include "core/parts/solid.hpp"
 
 namespace fettle::core::part_files {
 

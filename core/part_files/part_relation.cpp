@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/part_files/part_relation.hpp"
+#include "core/part_files/part_relation.hpp"
 
 #include <string_view>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
 
 namespace fettle::core::part_files {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/part_files/part_numbers.hpp"
+#include "core/part_files/part_numbers.hpp"
 
 namespace fettle::core::part_files {
 

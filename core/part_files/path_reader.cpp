@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/part_files/path_reader.hpp"
+#include "core/part_files/path_reader.hpp"
 
 #include <numbers>
 #include <optional>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/part_files/curve_reader.hpp"
+#include "core/base/limits.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/part_files/curve_reader.hpp"
 
 namespace fettle::core::part_files {
 namespace {

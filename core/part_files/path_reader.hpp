@@ -16,8 +16,8 @@
 #include <functional>
 #include <string>
 
-#include "fettle/core/part_files/part_numbers.hpp"
-#include "fettle/core/parts/path.hpp"
+#include "core/part_files/part_numbers.hpp"
+#include "core/parts/path.hpp"
 
 namespace fettle::core::part_files {
 

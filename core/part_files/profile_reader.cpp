@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/part_files/profile_reader.hpp"
+#include "core/part_files/profile_reader.hpp"
 
 #include <memory>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/part_files/curve_reader.hpp"
-#include "fettle/core/part_files/path_reader.hpp"
-#include "fettle/core/parts/profile_booleans.hpp"
-#include "fettle/core/parts/undercut.hpp"
+#include "core/base/limits.hpp"
+#include "core/part_files/curve_reader.hpp"
+#include "core/part_files/path_reader.hpp"
+#include "core/parts/profile_booleans.hpp"
+#include "core/parts/undercut.hpp"
 
 namespace fettle::core::part_files {
 

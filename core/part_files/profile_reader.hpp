@@ -22,8 +22,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/part_files/shape_reader.hpp"
-#include "fettle/core/parts/path.hpp"
+#include "core/part_files/shape_reader.hpp"
+#include "core/parts/path.hpp"
 
 namespace fettle::core::part_files {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/part_files/shape_reader.hpp"
+#include "core/part_files/shape_reader.hpp"
 
 namespace fettle::core::part_files {
 

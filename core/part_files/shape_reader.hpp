@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/part_files/part_numbers.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/part_files/part_numbers.hpp"
 
 namespace fettle::core::part_files {
 

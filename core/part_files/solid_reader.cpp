@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/part_files/solid_reader.hpp"
+#include "core/part_files/solid_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/parts/helix.hpp"
-#include "fettle/core/parts/revolve.hpp"
-#include "fettle/core/parts/solid_booleans.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/text.hpp"
+#include "core/parts/helix.hpp"
+#include "core/parts/revolve.hpp"
+#include "core/parts/solid_booleans.hpp"
 
 namespace fettle::core::part_files {
 

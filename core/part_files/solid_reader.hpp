@@ -20,8 +20,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/part_files/profile_reader.hpp"
-#include "fettle/core/parts/extrude.hpp"
+#include "core/part_files/profile_reader.hpp"
+#include "core/parts/extrude.hpp"
 
 namespace fettle::core::part_files {
 

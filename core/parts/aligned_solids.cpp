@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/aligned_solids.hpp"
+#include "core/parts/aligned_solids.hpp"
 
 #include <algorithm>
 #include <cmath>

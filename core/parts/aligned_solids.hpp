@@ -3,7 +3,7 @@
 /// are, exactly. 1 mm + 8 x 1 mm is not 9 x 1 mm in floating point; a cut that is exact would keep the sliver in between.
 #pragma once
 
-#include "fettle/core/parts/solid.hpp"
+#include "core/parts/solid.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/arrangement.hpp"
+#include "core/parts/arrangement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <numbers>
 #include <utility>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/curve_meetings.hpp"
-#include "fettle/core/parts/fault_words.hpp"
-#include "fettle/core/parts/sampled_loops.hpp"
+#include "core/base/units.hpp"
+#include "core/parts/curve_meetings.hpp"
+#include "core/parts/fault_words.hpp"
+#include "core/parts/sampled_loops.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/parts/curve_geometry.hpp"
-#include "fettle/core/parts/path.hpp"
+#include "core/base/result.hpp"
+#include "core/parts/curve_geometry.hpp"
+#include "core/parts/path.hpp"
 
 namespace fettle::core::parts {
 

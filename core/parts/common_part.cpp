@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/common_part.hpp"
+#include "core/parts/common_part.hpp"
 
 #include <Eigen/Geometry>
 #include <numeric>
 
-#include "fettle/core/solids/mesh_validity.hpp"
+#include "core/solids/mesh_validity.hpp"
 
 namespace fettle::core::parts {
 namespace {

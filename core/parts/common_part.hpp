@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/parts/solid_cut.hpp"
+#include "core/base/result.hpp"
+#include "core/parts/solid_cut.hpp"
 
 namespace fettle::core::parts {
 

@@ -11,10 +11,10 @@
 #include <variant>
 #include <vector>
 
-#include "fettle/core/geometry/range.hpp"
-#include "fettle/core/parts/facets.hpp"
-#include "fettle/core/parts/jet.hpp"
-#include "fettle/core/parts/point.hpp"
+#include "core/geometry/range.hpp"
+#include "core/parts/facets.hpp"
+#include "core/parts/jet.hpp"
+#include "core/parts/point.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/curve_geometry.hpp"
+#include "core/parts/curve_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/parts/law_chords.hpp"
+#include "core/base/contract.hpp"
+#include "core/parts/law_chords.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "fettle/core/parts/curve.hpp"
+#include "core/parts/curve.hpp"
 
 namespace fettle::core::parts {
 

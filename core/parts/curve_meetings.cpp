@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/curve_meetings.hpp"
+#include "core/parts/curve_meetings.hpp"
 
 #include <algorithm>
 #include <cmath>

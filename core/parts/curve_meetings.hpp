@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "fettle/core/parts/curve_geometry.hpp"
+#include "core/parts/curve_geometry.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/cut_situation.hpp"
+#include "core/parts/cut_situation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/geometry/overlapping_boxes.hpp"
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/solids/point_in_solid.hpp"
+#include "core/geometry/distance.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
+#include "core/geometry/predicates.hpp"
+#include "core/solids/point_in_solid.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/parts/solid_cut.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/parts/solid_cut.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/drawing.hpp"
+#include "core/parts/drawing.hpp"
 
 #include <string>
 #include <utility>

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/expression/tape.hpp"
-#include "fettle/core/parts/facets.hpp"
+#include "core/expression/tape.hpp"
+#include "core/parts/facets.hpp"
 
 namespace fettle::core::parts {
 

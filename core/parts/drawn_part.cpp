@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/drawn_part.hpp"
+#include "core/parts/drawn_part.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <utility>
 
-#include "fettle/core/parts/fault_words.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
+#include "core/parts/fault_words.hpp"
+#include "core/solids/mesh_validity.hpp"
 
 namespace fettle::core::parts {
 namespace {

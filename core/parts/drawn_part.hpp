@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/parts/solid.hpp"
+#include "core/base/result.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/parts/solid.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/extrude.hpp"
+#include "core/parts/extrude.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/arrangement.hpp"
-#include "fettle/core/parts/fault_words.hpp"
-#include "fettle/core/parts/levels.hpp"
-#include "fettle/core/parts/solid_builder.hpp"
+#include "core/base/units.hpp"
+#include "core/parts/arrangement.hpp"
+#include "core/parts/fault_words.hpp"
+#include "core/parts/levels.hpp"
+#include "core/parts/solid_builder.hpp"
 
 namespace fettle::core::parts {
 namespace {

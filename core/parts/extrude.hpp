@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "fettle/core/parts/layer.hpp"
-#include "fettle/core/parts/solid.hpp"
+#include "core/parts/layer.hpp"
+#include "core/parts/solid.hpp"
 
 namespace fettle::core::parts {
 

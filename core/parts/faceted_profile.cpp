@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/faceted_profile.hpp"
+#include "core/parts/faceted_profile.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/fault_words.hpp"
+#include "core/base/units.hpp"
+#include "core/parts/fault_words.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/parts/curve_geometry.hpp"
-#include "fettle/core/parts/drawing.hpp"
-#include "fettle/core/parts/profile.hpp"
-#include "fettle/core/parts/surface.hpp"
-#include "fettle/core/parts/triangulation.hpp"
+#include "core/base/result.hpp"
+#include "core/parts/curve_geometry.hpp"
+#include "core/parts/drawing.hpp"
+#include "core/parts/profile.hpp"
+#include "core/parts/surface.hpp"
+#include "core/parts/triangulation.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/facets.hpp"
+#include "core/parts/facets.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/parts/point.hpp"
+#include "core/parts/point.hpp"
 
 namespace fettle::core::parts {
 Lean opposite(Lean lean) {

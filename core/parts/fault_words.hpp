@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/facets.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "core/base/units.hpp"
+#include "core/parts/facets.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/flat_faces.hpp"
+#include "core/parts/flat_faces.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/helix.hpp"
+#include "core/parts/helix.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/fault_words.hpp"
-#include "fettle/core/parts/turned_sections.hpp"
+#include "core/base/units.hpp"
+#include "core/parts/fault_words.hpp"
+#include "core/parts/turned_sections.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -3,8 +3,8 @@
 /// threads from their cross section, twisted: one mesh, without a Boolean.
 #pragma once
 
-#include "fettle/core/parts/profile.hpp"
-#include "fettle/core/parts/solid.hpp"
+#include "core/parts/profile.hpp"
+#include "core/parts/solid.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/inset.hpp"
+#include "core/parts/inset.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/curve_geometry.hpp"
-#include "fettle/core/parts/curve_meetings.hpp"
-#include "fettle/core/parts/fault_words.hpp"
+#include "core/base/units.hpp"
+#include "core/parts/curve_geometry.hpp"
+#include "core/parts/curve_meetings.hpp"
+#include "core/parts/fault_words.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -3,8 +3,8 @@
 /// profile_booleans.hpp, rounds them and lets curves vanish).
 #pragma once
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/parts/profile.hpp"
+#include "core/base/result.hpp"
+#include "core/parts/profile.hpp"
 
 namespace fettle::core::parts {
 

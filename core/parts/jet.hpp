@@ -7,8 +7,8 @@
 #include <cmath>
 #include <type_traits>
 
-#include "fettle/core/expression/operation.hpp"
-#include "fettle/core/expression/tape.hpp"
+#include "core/expression/operation.hpp"
+#include "core/expression/tape.hpp"
 
 namespace fettle::core::parts {
 

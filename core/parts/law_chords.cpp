@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/law_chords.hpp"
+#include "core/parts/law_chords.hpp"
 
 #include <algorithm>
 #include <cmath>

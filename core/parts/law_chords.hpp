@@ -8,7 +8,7 @@
 /// Source: the remainder of linear interpolation; its kernel is at most h / 4 and has the integral h^2 / 8 at most.
 #pragma once
 
-#include "fettle/core/parts/curve.hpp"
+#include "core/parts/curve.hpp"
 
 namespace fettle::core::parts {
 

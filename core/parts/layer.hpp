@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "fettle/core/parts/profile.hpp"
+#include "core/parts/profile.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/levels.hpp"
+#include "core/parts/levels.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/fault_words.hpp"
-#include "fettle/core/parts/inset.hpp"
+#include "core/base/units.hpp"
+#include "core/parts/fault_words.hpp"
+#include "core/parts/inset.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/parts/faceted_profile.hpp"
-#include "fettle/core/parts/layer.hpp"
+#include "core/parts/faceted_profile.hpp"
+#include "core/parts/layer.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/merged_faces.hpp"
+#include "core/parts/merged_faces.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -8,8 +8,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/parts/triangulation.hpp"
+#include "core/geometry/predicates.hpp"
+#include "core/parts/triangulation.hpp"
 
 namespace fettle::core::parts {
 namespace {

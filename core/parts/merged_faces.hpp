@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/parts/solid_cut.hpp"
+#include "core/base/types.hpp"
+#include "core/parts/solid_cut.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/path.hpp"
+#include "core/parts/path.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/curve_geometry.hpp"
-#include "fettle/core/parts/curve_meetings.hpp"
-#include "fettle/core/parts/fault_words.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/units.hpp"
+#include "core/parts/curve_geometry.hpp"
+#include "core/parts/curve_meetings.hpp"
+#include "core/parts/fault_words.hpp"
 
 namespace fettle::core::parts {
 namespace {

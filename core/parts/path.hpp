@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/parts/curve.hpp"
+#include "core/base/result.hpp"
+#include "core/parts/curve.hpp"
 
 namespace fettle::core::parts {
 

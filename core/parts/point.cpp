@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/point.hpp"
+#include "core/parts/point.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -5,8 +5,8 @@
 
 #include <numbers>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/expression/tape.hpp"
+#include "core/base/types.hpp"
+#include "core/expression/tape.hpp"
 
 namespace fettle::core::parts {
 

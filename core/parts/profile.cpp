@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/profile.hpp"
+#include "core/parts/profile.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/curve_geometry.hpp"
-#include "fettle/core/parts/curve_meetings.hpp"
-#include "fettle/core/parts/fault_words.hpp"
-#include "fettle/core/parts/sampled_loops.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/units.hpp"
+#include "core/parts/curve_geometry.hpp"
+#include "core/parts/curve_meetings.hpp"
+#include "core/parts/fault_words.hpp"
+#include "core/parts/sampled_loops.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/parts/path.hpp"
+#include "core/base/result.hpp"
+#include "core/parts/path.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/profile_booleans.hpp"
+#include "core/parts/profile_booleans.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/arrangement.hpp"
-#include "fettle/core/parts/sampled_loops.hpp"
+#include "core/base/units.hpp"
+#include "core/parts/arrangement.hpp"
+#include "core/parts/sampled_loops.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -6,7 +6,7 @@
 /// Curves within 1e-9 of the figure's size of each other count as touching: pieces that coincide are one.
 #pragma once
 
-#include "fettle/core/parts/profile.hpp"
+#include "core/parts/profile.hpp"
 
 namespace fettle::core::parts {
 

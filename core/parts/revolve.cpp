@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/revolve.hpp"
+#include "core/parts/revolve.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/faceted_profile.hpp"
-#include "fettle/core/parts/fault_words.hpp"
-#include "fettle/core/parts/solid_builder.hpp"
+#include "core/base/units.hpp"
+#include "core/parts/faceted_profile.hpp"
+#include "core/parts/fault_words.hpp"
+#include "core/parts/solid_builder.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -2,8 +2,8 @@
 /// Solids from profiles that are turned about an axis.
 #pragma once
 
-#include "fettle/core/parts/profile.hpp"
-#include "fettle/core/parts/solid.hpp"
+#include "core/parts/profile.hpp"
+#include "core/parts/solid.hpp"
 
 namespace fettle::core::parts {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "fettle/core/parts/curve_geometry.hpp"
-#include "fettle/core/parts/path.hpp"
+#include "core/parts/curve_geometry.hpp"
+#include "core/parts/path.hpp"
 
 namespace fettle::core::parts {
 

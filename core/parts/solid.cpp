@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/solid.hpp"
+#include "core/parts/solid.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::core::parts {
 namespace {

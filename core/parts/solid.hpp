@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/parts/drawing.hpp"
-#include "fettle/core/parts/surface.hpp"
+#include "core/base/result.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/parts/drawing.hpp"
+#include "core/parts/surface.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/solid_booleans.hpp"
+#include "core/parts/solid_booleans.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 
-#include "fettle/core/parts/aligned_solids.hpp"
-#include "fettle/core/parts/cut_situation.hpp"
-#include "fettle/core/parts/merged_faces.hpp"
-#include "fettle/core/parts/solid_cut.hpp"
+#include "core/parts/aligned_solids.hpp"
+#include "core/parts/cut_situation.hpp"
+#include "core/parts/merged_faces.hpp"
+#include "core/parts/solid_cut.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -14,7 +14,7 @@
 
 #include <vector>
 
-#include "fettle/core/parts/solid.hpp"
+#include "core/parts/solid.hpp"
 
 namespace fettle::core::parts {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "fettle/core/parts/solid.hpp"
+#include "core/parts/solid.hpp"
 
 namespace fettle::core::parts {
 

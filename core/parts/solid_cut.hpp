@@ -6,10 +6,10 @@
 #include <array>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/parts/arrangement.hpp"
-#include "fettle/core/parts/flat_faces.hpp"
+#include "core/base/result.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/parts/arrangement.hpp"
+#include "core/parts/flat_faces.hpp"
 
 namespace fettle::core::parts {
 

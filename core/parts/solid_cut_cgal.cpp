@@ -12,9 +12,9 @@
 #include <optional>
 #include <utility>
 
-#include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/parts/fault_words.hpp"
-#include "fettle/core/parts/solid_cut.hpp"
+#include "core/geometry/half_edges.hpp"
+#include "core/parts/fault_words.hpp"
+#include "core/parts/solid_cut.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where there is no CGAL.
-#include "fettle/core/parts/solid_cut.hpp"
+#include "core/parts/solid_cut.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/surface.hpp"
+#include "core/parts/surface.hpp"
 
 namespace fettle::core::parts {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/parts/point.hpp"
+#include "core/parts/point.hpp"
 
 namespace fettle::core::parts {
 

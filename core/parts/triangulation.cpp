@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/triangulation.hpp"
+#include "core/parts/triangulation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/geometry/predicates.hpp"
+#include "core/base/contract.hpp"
+#include "core/geometry/predicates.hpp"
 
 namespace fettle::core::parts {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/turned_sections.hpp"
+#include "core/parts/turned_sections.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "fettle/core/parts/faceted_profile.hpp"
-#include "fettle/core/parts/solid_builder.hpp"
+#include "core/parts/faceted_profile.hpp"
+#include "core/parts/solid_builder.hpp"
 
 namespace fettle::core::parts {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/undercut.hpp"
+#include "core/parts/undercut.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/parts/curve_geometry.hpp"
+#include "core/base/units.hpp"
+#include "core/parts/curve_geometry.hpp"
 
 namespace fettle::core::parts {
 namespace {

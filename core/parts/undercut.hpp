@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/parts/profile.hpp"
+#include "core/base/result.hpp"
+#include "core/parts/profile.hpp"
 
 namespace fettle::core::parts {
 

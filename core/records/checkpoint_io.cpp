@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/checkpoint_io.hpp"
+#include "core/records/checkpoint_io.hpp"
 
 #include <cmath>
 #include <string>
 #include <utility>
 
-#include "fettle/core/files/hash.hpp"
+#include "core/files/hash.hpp"
 
 namespace fettle::core::records {
 namespace {

@@ -7,11 +7,11 @@
 
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/files/json_writer.hpp"
-#include "fettle/core/records/scene_parts.hpp"
-#include "fettle/core/stepper/simulation.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/files/json_document.hpp"
+#include "core/files/json_writer.hpp"
+#include "core/records/scene_parts.hpp"
+#include "core/stepper/simulation.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::records {
 

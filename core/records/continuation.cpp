@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/continuation.hpp"
+#include "core/records/continuation.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/energy/start_history.hpp"
-#include "fettle/core/records/geometry_hash.hpp"
+#include "core/energy/start_history.hpp"
+#include "core/records/geometry_hash.hpp"
 
 namespace fettle::core::records {
 namespace {

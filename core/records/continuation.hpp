@@ -2,8 +2,8 @@
 /// Going on with a stored simulation.
 #pragma once
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/records/stored_trajectory.hpp"
+#include "core/base/result.hpp"
+#include "core/records/stored_trajectory.hpp"
 
 namespace fettle::core::records {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/geometry_hash.hpp"
+#include "core/records/geometry_hash.hpp"
 
-#include "fettle/core/files/hash.hpp"
+#include "core/files/hash.hpp"
 
 namespace fettle::core::records {
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "fettle/core/model/model.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::records {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "fettle/core/files/hash.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/files/hash.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::records {
 

@@ -3,12 +3,12 @@
 #include <array>
 #include <cmath>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/files/text_lines.hpp"
-#include "fettle/core/records/poses_table.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/files/json_document.hpp"
+#include "core/files/text_lines.hpp"
+#include "core/records/poses_table.hpp"
 
 namespace fettle::core::records {
 namespace {

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/poses_file.hpp"
+#include "core/records/poses_file.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/files/json_writer.hpp"
-#include "fettle/core/records/poses_table.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_document.hpp"
+#include "core/files/json_keys.hpp"
+#include "core/files/json_writer.hpp"
+#include "core/records/poses_table.hpp"
 
 namespace fettle::core::records {
 namespace {

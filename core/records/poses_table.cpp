@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/poses_table.hpp"
+#include "core/records/poses_table.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fettle/core/files/nearest_word.hpp"
+#include "core/files/nearest_word.hpp"
 
 namespace fettle::core::records {
 namespace {

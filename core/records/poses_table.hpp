@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/base/result.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::records {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/scene_parts.hpp"
+#include "core/records/scene_parts.hpp"
 
 #include <cstdint>
 
-#include "fettle/core/files/hash.hpp"
+#include "core/files/hash.hpp"
 
 namespace fettle::core::records {
 namespace {

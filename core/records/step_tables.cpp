@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/step_tables.hpp"
+#include "core/records/step_tables.hpp"
 
 #include <charconv>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/text.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::core::records {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/stepper/simulation.hpp"
+#include "core/stepper/simulation.hpp"
 
 namespace fettle::core::records {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/records/scene_parts.hpp"
-#include "fettle/core/stepper/simulation.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/model/model.hpp"
+#include "core/records/scene_parts.hpp"
+#include "core/stepper/simulation.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::records {
 

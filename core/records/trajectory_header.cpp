@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/trajectory_header.hpp"
+#include "core/records/trajectory_header.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/hash.hpp"
-#include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/records/geometry_hash.hpp"
-#include "fettle/core/records/trajectory_format.hpp"
+#include "core/base/text.hpp"
+#include "core/files/hash.hpp"
+#include "core/files/json_keys.hpp"
+#include "core/records/geometry_hash.hpp"
+#include "core/records/trajectory_format.hpp"
 
 namespace fettle::core::records {
 namespace {

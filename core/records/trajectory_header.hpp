@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/records/stored_trajectory.hpp"
+#include "core/files/json_document.hpp"
+#include "core/records/stored_trajectory.hpp"
 
 namespace fettle::core::records {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/trajectory_io.hpp"
+#include "core/records/trajectory_io.hpp"
 
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/records/trajectory_format.hpp"
-#include "fettle/core/records/trajectory_lines.hpp"
-#include "fettle/core/records/trajectory_reader.hpp"
+#include "core/base/contract.hpp"
+#include "core/files/json_keys.hpp"
+#include "core/records/trajectory_format.hpp"
+#include "core/records/trajectory_lines.hpp"
+#include "core/records/trajectory_reader.hpp"
 
 namespace fettle::core::records {
 

@@ -35,14 +35,14 @@
 #include <filesystem>
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/records/geometry_hash.hpp"
-#include "fettle/core/records/path_hash.hpp"
-#include "fettle/core/records/stored_trajectory.hpp"
-#include "fettle/core/stepper/simulation.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/base/result.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/model/model.hpp"
+#include "core/records/geometry_hash.hpp"
+#include "core/records/path_hash.hpp"
+#include "core/records/stored_trajectory.hpp"
+#include "core/stepper/simulation.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::records {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/trajectory_lines.hpp"
+#include "core/records/trajectory_lines.hpp"
 
 #include <string_view>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/files/hash.hpp"
-#include "fettle/core/files/json_writer.hpp"
-#include "fettle/core/records/checkpoint_io.hpp"
-#include "fettle/core/records/geometry_hash.hpp"
-#include "fettle/core/records/trajectory_format.hpp"
+#include "core/base/contract.hpp"
+#include "core/files/hash.hpp"
+#include "core/files/json_writer.hpp"
+#include "core/records/checkpoint_io.hpp"
+#include "core/records/geometry_hash.hpp"
+#include "core/records/trajectory_format.hpp"
 
 namespace fettle::core::records {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <string>
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/records/path_hash.hpp"
-#include "fettle/core/stepper/simulation.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/model/model.hpp"
+#include "core/records/path_hash.hpp"
+#include "core/stepper/simulation.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::records {
 

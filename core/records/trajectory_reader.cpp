@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/trajectory_reader.hpp"
+#include "core/records/trajectory_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "fettle/core/base/rounding.hpp"
-#include "fettle/core/files/hash.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/model/body_geometry.hpp"
-#include "fettle/core/records/checkpoint_io.hpp"
-#include "fettle/core/records/geometry_hash.hpp"
-#include "fettle/core/records/path_hash.hpp"
-#include "fettle/core/records/trajectory_format.hpp"
-#include "fettle/core/records/trajectory_header.hpp"
+#include "core/base/rounding.hpp"
+#include "core/files/hash.hpp"
+#include "core/files/json_document.hpp"
+#include "core/model/body_geometry.hpp"
+#include "core/records/checkpoint_io.hpp"
+#include "core/records/geometry_hash.hpp"
+#include "core/records/path_hash.hpp"
+#include "core/records/trajectory_format.hpp"
+#include "core/records/trajectory_header.hpp"
 
 namespace fettle::core::records {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/records/stored_trajectory.hpp"
+#include "core/base/result.hpp"
+#include "core/records/stored_trajectory.hpp"
 
 namespace fettle::core::records {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/angles.hpp"
+#include "core/scene/angles.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/kinematics/tangent_system.hpp"
+#include "core/kinematics/tangent_system.hpp"
 
 namespace fettle::core::scene {
 namespace {

@@ -2,7 +2,7 @@
 /// Rotations as scene files write them: three angles, or a rotation vector.
 #pragma once
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::core::scene {
 

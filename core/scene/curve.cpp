@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/curve.hpp"
+#include "core/scene/curve.hpp"
 
 #include <algorithm>
 #include <cmath>

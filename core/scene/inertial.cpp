@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/inertial.hpp"
+#include "core/scene/inertial.hpp"
 
 #include <cmath>
 #include <sstream>
 
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/linear/factorisations.hpp"
 
 namespace fettle::core::scene {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::core::scene {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/scene/mechanism.hpp"
+#include "core/scene/mechanism.hpp"
 
 namespace fettle::core::scene {
 

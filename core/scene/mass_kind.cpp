@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/mass_kind.hpp"
+#include "core/scene/mass_kind.hpp"
 
 #include <cmath>
 
-#include "fettle/core/geometry/mass_moments.hpp"
+#include "core/geometry/mass_moments.hpp"
 
 namespace fettle::core::scene {
 

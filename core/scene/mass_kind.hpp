@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "fettle/core/scene/scene.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::core::scene {
 

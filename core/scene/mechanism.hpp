@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/scene/curve.hpp"
+#include "core/base/types.hpp"
+#include "core/scene/curve.hpp"
 
 namespace fettle::core::scene {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/place.hpp"
+#include "core/scene/place.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <variant>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/scene/joint_kind.hpp"
+#include "core/base/contract.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/scene/joint_kind.hpp"
 
 namespace fettle::core::scene {
 namespace {

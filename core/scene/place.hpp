@@ -16,8 +16,8 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/scene/scene.hpp"
+#include "core/base/units.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::core::scene {
 

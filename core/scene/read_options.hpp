@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/expression/formula.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/scene.hpp"
+#include "core/base/result.hpp"
+#include "core/base/units.hpp"
+#include "core/expression/formula.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::core::scene {
 

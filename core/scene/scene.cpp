@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/scene.hpp"
+#include "core/scene/scene.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/parallel.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/parallel.hpp"
 
 namespace fettle::core::scene {
 namespace {

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/expression/formula.hpp"
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/kinematics/path.hpp"
-#include "fettle/core/scene/angles.hpp"
-#include "fettle/core/scene/inertial.hpp"
-#include "fettle/core/scene/mechanism.hpp"
+#include "core/expression/formula.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/kinematics/path.hpp"
+#include "core/scene/angles.hpp"
+#include "core/scene/inertial.hpp"
+#include "core/scene/mechanism.hpp"
 
 namespace fettle::core::scene {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/step_count.hpp"
+#include "core/scene/step_count.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/units.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/units.hpp"
 
 namespace fettle::core::scene {
 

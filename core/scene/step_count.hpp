@@ -2,7 +2,7 @@
 /// How many time steps a duration takes: the one rule, for simulations, scripts, designs and the command line.
 #pragma once
 
-#include "fettle/core/base/result.hpp"
+#include "core/base/result.hpp"
 
 namespace fettle::core::scene {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene_files/mechanism_reader.hpp"
+#include "core/scene_files/mechanism_reader.hpp"
 
 #include <algorithm>
 #include <set>
 #include <string>
 #include <string_view>
 
-#include "fettle/core/scene/angles.hpp"
-#include "fettle/core/scene/joint_kind.hpp"
+#include "core/scene/angles.hpp"
+#include "core/scene/joint_kind.hpp"
 
 namespace fettle::core::scene_files {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/scene.hpp"
-#include "fettle/core/scene_files/scene_formulas.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/scene.hpp"
+#include "core/scene_files/scene_formulas.hpp"
 
 namespace fettle::core::scene_files {
 

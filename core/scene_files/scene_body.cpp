@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene_files/scene_body.hpp"
+#include "core/scene_files/scene_body.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/files/index_rows.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/geometry/mesh_transforms.hpp"
-#include "fettle/core/mesh_files/find_mesh_file.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/scene/angles.hpp"
-#include "fettle/core/scene_files/scene_motion.hpp"
-#include "fettle/core/solids/mesh_repair.hpp"
-#include "fettle/core/solids/shells.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/units.hpp"
+#include "core/files/index_rows.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/geometry/mesh_transforms.hpp"
+#include "core/mesh_files/find_mesh_file.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/scene/angles.hpp"
+#include "core/scene_files/scene_motion.hpp"
+#include "core/solids/mesh_repair.hpp"
+#include "core/solids/shells.hpp"
 
 namespace fettle::core::scene_files {
 namespace {

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/read_options.hpp"
-#include "fettle/core/scene_files/scene_formulas.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/read_options.hpp"
+#include "core/scene_files/scene_formulas.hpp"
 
 namespace fettle::core::scene_files {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene_files/scene_formulas.hpp"
+#include "core/scene_files/scene_formulas.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/scene/place.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/units.hpp"
+#include "core/scene/place.hpp"
 
 namespace fettle::core::scene_files {
 namespace {

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/expression/parse_formula.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/read_options.hpp"
+#include "core/expression/parse_formula.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/read_options.hpp"
 
 namespace fettle::core::scene_files {
 

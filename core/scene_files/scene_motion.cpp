@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene_files/scene_motion.hpp"
+#include "core/scene_files/scene_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/scene/angles.hpp"
+#include "core/scene/angles.hpp"
 
 namespace fettle::core::scene_files {
 namespace {

@@ -3,8 +3,8 @@
 /// Faults go to the document; values read after a fault are never used.
 #pragma once
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/scene.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::core::scene_files {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene_files/scene_reader.hpp"
+#include "core/scene_files/scene_reader.hpp"
 
 #include <utility>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/paper_scenes/fixture_reader.hpp"
-#include "fettle/core/scene_files/mechanism_reader.hpp"
-#include "fettle/core/scene_files/scene_body.hpp"
+#include "core/base/units.hpp"
+#include "core/files/json_keys.hpp"
+#include "core/paper_scenes/fixture_reader.hpp"
+#include "core/scene_files/mechanism_reader.hpp"
+#include "core/scene_files/scene_body.hpp"
 
 namespace fettle::core::scene_files {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/scene/read_options.hpp"
+#include "core/base/result.hpp"
+#include "core/scene/read_options.hpp"
 
 namespace fettle::core::scene_files {
 

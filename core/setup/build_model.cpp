@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/setup/build_model.hpp"
+#include "core/setup/build_model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <map>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/model/body_geometry.hpp"
-#include "fettle/core/model/body_mass.hpp"
-#include "fettle/core/model/check_scene.hpp"
-#include "fettle/core/model/start_check.hpp"
-#include "fettle/core/setup/round_contact.hpp"
+#include "core/base/parallel.hpp"
+#include "core/model/body_geometry.hpp"
+#include "core/model/body_mass.hpp"
+#include "core/model/check_scene.hpp"
+#include "core/model/start_check.hpp"
+#include "core/setup/round_contact.hpp"
 
 namespace fettle::core::setup {
 namespace {

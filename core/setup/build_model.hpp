@@ -5,12 +5,12 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/build_mechanism.hpp"
-#include "fettle/core/model/choose_kappa.hpp"
-#include "fettle/core/model/choose_proximal_weight.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/scene/scene.hpp"
+#include "core/base/result.hpp"
+#include "core/model/build_mechanism.hpp"
+#include "core/model/choose_kappa.hpp"
+#include "core/model/choose_proximal_weight.hpp"
+#include "core/model/model.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::core::setup {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/setup/round_contact.hpp"
+#include "core/setup/round_contact.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/contact/round_contacts.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/text.hpp"
+#include "core/contact/round_contacts.hpp"
 
 namespace fettle::core::setup {
 namespace {

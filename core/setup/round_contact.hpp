@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/model/model.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::setup {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solids/closure.hpp"
+#include "core/solids/closure.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -10,8 +10,8 @@
 #include <numeric>
 #include <utility>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/solids/point_in_solid.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/solids/point_in_solid.hpp"
 
 namespace fettle::core::solids {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solids/mesh_judgement.hpp"
+#include "core/solids/mesh_judgement.hpp"
 
 #include <algorithm>
 #include <cstdio>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/core/solids/overlap_bound.hpp"
-#include "fettle/core/solids/shells.hpp"
+#include "core/base/text.hpp"
+#include "core/geometry/half_edges.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/geometry/predicates.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "core/solids/overlap_bound.hpp"
+#include "core/solids/shells.hpp"
 
 namespace fettle::core::solids {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/base/result.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::core::solids {
 

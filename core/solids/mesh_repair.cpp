@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solids/mesh_repair.hpp"
+#include "core/solids/mesh_repair.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <set>
 
-#include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/core/solids/shells.hpp"
+#include "core/geometry/half_edges.hpp"
+#include "core/geometry/predicates.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "core/solids/shells.hpp"
 
 namespace fettle::core::solids {
 namespace {

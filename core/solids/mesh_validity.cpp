@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solids/mesh_validity.hpp"
+#include "core/solids/mesh_validity.hpp"
 
 #include <algorithm>
 #include <cstdio>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/overlapping_boxes.hpp"
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/solids/shells.hpp"
+#include "core/base/contract.hpp"
+#include "core/geometry/half_edges.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
+#include "core/geometry/predicates.hpp"
+#include "core/solids/shells.hpp"
 
 namespace fettle::core::solids {
 namespace {

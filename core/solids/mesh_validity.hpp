@@ -4,11 +4,11 @@
 
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/solids/point_in_solid.hpp"
-#include "fettle/core/solids/self_intersection.hpp"
+#include "core/base/result.hpp"
+#include "core/geometry/half_edges.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/solids/point_in_solid.hpp"
+#include "core/solids/self_intersection.hpp"
 
 namespace fettle::core::solids {
 

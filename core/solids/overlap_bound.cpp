@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solids/overlap_bound.hpp"
+#include "core/solids/overlap_bound.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/geometry/overlapping_boxes.hpp"
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/solids/point_in_solid.hpp"
+#include "core/geometry/half_edges.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
+#include "core/geometry/predicates.hpp"
+#include "core/solids/point_in_solid.hpp"
 
 namespace fettle::core::solids {
 namespace {

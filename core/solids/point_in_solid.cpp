@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solids/point_in_solid.hpp"
+#include "core/solids/point_in_solid.hpp"
 
 #include <array>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/geometry/overlapping_boxes.hpp"
-#include "fettle/core/geometry/predicates.hpp"
+#include "core/base/contract.hpp"
+#include "core/geometry/half_edges.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
+#include "core/geometry/predicates.hpp"
 
 namespace fettle::core::solids {
 namespace {

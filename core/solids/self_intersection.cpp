@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solids/self_intersection.hpp"
+#include "core/solids/self_intersection.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,13 +8,13 @@
 #include <cstdint>
 #include <optional>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/rounding.hpp"
-#include "fettle/core/geometry/close_boxes.hpp"
-#include "fettle/core/geometry/overlapping_boxes.hpp"
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/solids/simple_fan.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/rounding.hpp"
+#include "core/geometry/close_boxes.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
+#include "core/geometry/predicates.hpp"
+#include "core/solids/simple_fan.hpp"
 
 namespace fettle::core::solids {
 namespace {

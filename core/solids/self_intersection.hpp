@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::core::solids {
 

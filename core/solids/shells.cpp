@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solids/shells.hpp"
+#include "core/solids/shells.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/geometry/mesh_transforms.hpp"
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/solids/point_in_solid.hpp"
+#include "core/base/contract.hpp"
+#include "core/geometry/half_edges.hpp"
+#include "core/geometry/mesh_transforms.hpp"
+#include "core/geometry/predicates.hpp"
+#include "core/solids/point_in_solid.hpp"
 
 namespace fettle::core::solids {
 namespace {

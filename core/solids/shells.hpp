@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/geometry/overlapping_boxes.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
 
 namespace fettle::core::solids {
 

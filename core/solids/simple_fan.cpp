@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solids/simple_fan.hpp"
+#include "core/solids/simple_fan.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "fettle/core/geometry/predicates.hpp"
+#include "core/geometry/predicates.hpp"
 
 namespace fettle::core::solids {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solver/coasting.hpp"
+#include "core/solver/coasting.hpp"
 
 #include <cmath>
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "fettle/core/energy/step_problem.hpp"
-#include "fettle/core/linear/free_dofs.hpp"
+#include "core/energy/step_problem.hpp"
+#include "core/linear/free_dofs.hpp"
 
 namespace fettle::core::solver {
 

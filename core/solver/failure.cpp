@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solver/failure.hpp"
+#include "core/solver/failure.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/kinematics/mass_matrix.hpp"
-#include "fettle/core/model/choose_kappa.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/kinematics/mass_matrix.hpp"
+#include "core/model/choose_kappa.hpp"
 
 namespace fettle::core::solver {
 namespace {

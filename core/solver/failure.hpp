@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/ccd/safe_step.hpp"
-#include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/solver/row_system.hpp"
+#include "core/ccd/safe_step.hpp"
+#include "core/energy/incremental_potential.hpp"
+#include "core/solver/row_system.hpp"
 
 namespace fettle::core::solver {
 

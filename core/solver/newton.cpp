@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solver/newton.hpp"
+#include "core/solver/newton.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,15 +8,15 @@
 #include <optional>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/ccd/linear_ccd.hpp"
-#include "fettle/core/ccd/safe_step.hpp"
-#include "fettle/core/solver/caution.hpp"
-#include "fettle/core/solver/coasting.hpp"
-#include "fettle/core/solver/failure.hpp"
-#include "fettle/core/solver/newton_direction.hpp"
-#include "fettle/core/solver/prescribed_drive.hpp"
-#include "fettle/core/solver/touching_groups.hpp"
+#include "core/base/parallel.hpp"
+#include "core/ccd/linear_ccd.hpp"
+#include "core/ccd/safe_step.hpp"
+#include "core/solver/caution.hpp"
+#include "core/solver/coasting.hpp"
+#include "core/solver/failure.hpp"
+#include "core/solver/newton_direction.hpp"
+#include "core/solver/prescribed_drive.hpp"
+#include "core/solver/touching_groups.hpp"
 
 namespace fettle::core::solver {
 namespace {

@@ -24,8 +24,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/solver/newton_workspace.hpp"
+#include "core/energy/incremental_potential.hpp"
+#include "core/solver/newton_workspace.hpp"
 
 namespace fettle::core::solver {
 

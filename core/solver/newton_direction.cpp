@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solver/newton_direction.hpp"
+#include "core/solver/newton_direction.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/kinematics/mass_matrix.hpp"
+#include "core/base/parallel.hpp"
+#include "core/kinematics/mass_matrix.hpp"
 
 namespace fettle::core::solver {
 namespace {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/solver/newton_workspace.hpp"
+#include "core/energy/incremental_potential.hpp"
+#include "core/solver/newton_workspace.hpp"
 
 namespace fettle::core::solver {
 

@@ -4,11 +4,11 @@
 
 #include <optional>
 
-#include "fettle/core/base/phase_clock.hpp"
-#include "fettle/core/ccd/candidates.hpp"
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/linear/linear_system.hpp"
-#include "fettle/core/solver/row_system.hpp"
+#include "core/base/phase_clock.hpp"
+#include "core/ccd/candidates.hpp"
+#include "core/contact/contact_set.hpp"
+#include "core/linear/linear_system.hpp"
+#include "core/solver/row_system.hpp"
 
 namespace fettle::core::solver {
 

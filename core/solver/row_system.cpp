@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solver/row_system.hpp"
+#include "core/solver/row_system.hpp"
 
 #include <algorithm>
 #include <cmath>

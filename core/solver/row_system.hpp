@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "fettle/core/constraint/row.hpp"
-#include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/linear/linear_system.hpp"
+#include "core/constraint/row.hpp"
+#include "core/energy/incremental_potential.hpp"
+#include "core/linear/linear_system.hpp"
 
 namespace fettle::core::solver {
 

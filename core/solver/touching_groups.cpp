@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solver/touching_groups.hpp"
+#include "core/solver/touching_groups.hpp"
 
 #include <algorithm>
 #include <numeric>
 
-#include "fettle/core/energy/step_problem.hpp"
+#include "core/energy/step_problem.hpp"
 
 namespace fettle::core::solver {
 

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/contact/friction.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/contact/contact_set.hpp"
+#include "core/contact/friction.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::solver {
 

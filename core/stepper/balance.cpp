@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/balance.hpp"
+#include "core/stepper/balance.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "fettle/core/base/text.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::core::stepper {
 namespace {

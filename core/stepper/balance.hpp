@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "fettle/core/stepper/step_outputs.hpp"
+#include "core/stepper/step_outputs.hpp"
 
 namespace fettle::core::stepper {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/branch_warnings.hpp"
+#include "core/stepper/branch_warnings.hpp"
 
 #include <cmath>
 #include <utility>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/model/branch_of_joint.hpp"
+#include "core/base/units.hpp"
+#include "core/model/branch_of_joint.hpp"
 
 namespace fettle::core::stepper {
 

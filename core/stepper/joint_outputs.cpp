@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/joint_outputs.hpp"
+#include "core/stepper/joint_outputs.hpp"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "fettle/core/energy/step_problem.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/energy/step_problem.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::stepper {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/jointed_motion.hpp"
+#include "core/stepper/jointed_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,17 +10,17 @@
 #include <set>
 #include <sstream>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/constraint/assembly.hpp"
-#include "fettle/core/geometry/overlapping_boxes.hpp"
-#include "fettle/core/model/limits.hpp"
-#include "fettle/core/model/row_choice.hpp"
-#include "fettle/core/stepper/joint_outputs.hpp"
-#include "fettle/core/stepper/prescribed_path.hpp"
-#include "fettle/core/stepper/scripted_motion.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/core/stepper/step.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/text.hpp"
+#include "core/constraint/assembly.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
+#include "core/model/limits.hpp"
+#include "core/model/row_choice.hpp"
+#include "core/stepper/joint_outputs.hpp"
+#include "core/stepper/prescribed_path.hpp"
+#include "core/stepper/scripted_motion.hpp"
+#include "core/stepper/simulate.hpp"
+#include "core/stepper/step.hpp"
 
 namespace fettle::core::stepper {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/kept_contacts.hpp"
+#include "core/stepper/kept_contacts.hpp"
 
 #include <algorithm>
 #include <utility>

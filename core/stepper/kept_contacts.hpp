@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fettle/core/contact/contact_set.hpp"
+#include "core/contact/contact_set.hpp"
 
 namespace fettle::core::stepper {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/prescribed_path.hpp"
+#include "core/stepper/prescribed_path.hpp"
 
 #include <algorithm>
 #include <optional>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/stepper/rotation_lift.hpp"
+#include "core/base/parallel.hpp"
+#include "core/stepper/rotation_lift.hpp"
 
 namespace fettle::core::stepper {
 namespace {

@@ -11,8 +11,8 @@
 
 #include <vector>
 
-#include "fettle/core/kinematics/path.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/kinematics/path.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::core::stepper {
 

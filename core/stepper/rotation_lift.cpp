@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/rotation_lift.hpp"
+#include "core/stepper/rotation_lift.hpp"
 
 #include <cmath>
 
-#include "fettle/core/kinematics/rotation.hpp"
+#include "core/kinematics/rotation.hpp"
 
 namespace fettle::core::stepper {
 namespace {

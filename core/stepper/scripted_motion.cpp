@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/scripted_motion.hpp"
+#include "core/stepper/scripted_motion.hpp"
 
-#include "fettle/core/stepper/prescribed_path.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/core/stepper/step.hpp"
+#include "core/stepper/prescribed_path.hpp"
+#include "core/stepper/simulate.hpp"
+#include "core/stepper/step.hpp"
 
 namespace fettle::core::stepper {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/simulate.hpp"
+#include "core/stepper/simulate.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <sstream>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/stop.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/model/row_choice.hpp"
-#include "fettle/core/scene/step_count.hpp"
-#include "fettle/core/stepper/step.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/stop.hpp"
+#include "core/base/text.hpp"
+#include "core/model/row_choice.hpp"
+#include "core/scene/step_count.hpp"
+#include "core/stepper/step.hpp"
 
 namespace fettle::core::stepper {
 int step_count(const model::Model& model, const SimulationOptions& options) {

@@ -2,8 +2,8 @@
 /// Runs a model through time. One step: stepper/step.hpp.
 #pragma once
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/simulation.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/simulation.hpp"
 
 namespace fettle::core::stepper {
 

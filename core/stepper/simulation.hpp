@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/solver/newton_workspace.hpp"
-#include "fettle/core/stepper/balance.hpp"
-#include "fettle/core/stepper/step_outputs.hpp"
-#include "fettle/core/stepper/step_state.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/solver/newton_workspace.hpp"
+#include "core/stepper/balance.hpp"
+#include "core/stepper/step_outputs.hpp"
+#include "core/stepper/step_state.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::stepper {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/split_path.hpp"
+#include "core/stepper/split_path.hpp"
 
 #include <algorithm>
 #include <array>
 #include <optional>
 #include <sstream>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/ccd/chord_deviation.hpp"
-#include "fettle/core/constraint/assembly.hpp"
+#include "core/base/text.hpp"
+#include "core/ccd/chord_deviation.hpp"
+#include "core/constraint/assembly.hpp"
 
 namespace fettle::core::stepper {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/step.hpp"
+#include "core/stepper/step.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +8,14 @@
 #include <sstream>
 #include <utility>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/ccd/safe_step.hpp"
-#include "fettle/core/energy/body_terms.hpp"
-#include "fettle/core/energy/start_history.hpp"
-#include "fettle/core/model/choose_kappa.hpp"
-#include "fettle/core/model/choose_proximal_weight.hpp"
-#include "fettle/core/stepper/prescribed_path.hpp"
-#include "fettle/core/stepper/step_outputs.hpp"
+#include "core/base/text.hpp"
+#include "core/ccd/safe_step.hpp"
+#include "core/energy/body_terms.hpp"
+#include "core/energy/start_history.hpp"
+#include "core/model/choose_kappa.hpp"
+#include "core/model/choose_proximal_weight.hpp"
+#include "core/stepper/prescribed_path.hpp"
+#include "core/stepper/step_outputs.hpp"
 
 namespace fettle::core::stepper {
 namespace {

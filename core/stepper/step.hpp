@@ -7,9 +7,9 @@
 /// that has passed. (Friction is lagged from where the last stretch starts.)
 #pragma once
 
-#include "fettle/core/solver/newton.hpp"
-#include "fettle/core/stepper/simulation.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/solver/newton.hpp"
+#include "core/stepper/simulation.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::core::stepper {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/step_outputs.hpp"
+#include "core/stepper/step_outputs.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "fettle/core/energy/body_terms.hpp"
-#include "fettle/core/solver/newton.hpp"
+#include "core/energy/body_terms.hpp"
+#include "core/solver/newton.hpp"
 
 namespace fettle::core::stepper {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/solver/newton.hpp"
-#include "fettle/core/stepper/joint_outputs.hpp"
-#include "fettle/core/stepper/step_state.hpp"
+#include "core/energy/incremental_potential.hpp"
+#include "core/solver/newton.hpp"
+#include "core/stepper/joint_outputs.hpp"
+#include "core/stepper/step_state.hpp"
 
 namespace fettle::core::stepper {
 

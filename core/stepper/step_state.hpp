@@ -2,7 +2,7 @@
 /// What a simulation carries from step to step.
 #pragma once
 
-#include "fettle/core/energy/time_integration.hpp"
+#include "core/energy/time_integration.hpp"
 
 namespace fettle::core::stepper {
 

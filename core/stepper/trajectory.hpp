@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/kinematics/path.hpp"
-#include "fettle/core/stepper/kept_contacts.hpp"
+#include "core/kinematics/path.hpp"
+#include "core/stepper/kept_contacts.hpp"
 
 namespace fettle::core::stepper {
 

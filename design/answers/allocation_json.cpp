@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/allocation_json.hpp"
+#include "design/answers/allocation_json.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/answers/tolerance_json.hpp"
-#include "fettle/design/description/requirement_text.hpp"
+#include "core/base/text.hpp"
+#include "design/answers/tolerance_json.hpp"
+#include "design/description/requirement_text.hpp"
 
 namespace fettle::design::answers {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/studies/allocation.hpp"
+#include "design/studies/allocation.hpp"
 
 namespace fettle::design::answers {
 

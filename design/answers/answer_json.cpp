@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/answer_json.hpp"
+#include "design/answers/answer_json.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/design/description/made_design.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/model/model.hpp"
+#include "design/description/made_design.hpp"
 
 namespace fettle::design::answers {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/optimisers/problem.hpp"
-#include "fettle/design/problem/design_problem.hpp"
+#include "core/base/types.hpp"
+#include "core/clearance/clearance.hpp"
+#include "design/description/design.hpp"
+#include "design/optimisers/problem.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::answers {
 

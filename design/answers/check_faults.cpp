@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/check_faults.hpp"
+#include "design/answers/check_faults.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/text.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::design::answers {
 

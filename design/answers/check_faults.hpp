@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/gradient_audit/difference_check.hpp"
+#include "design/gradient_audit/difference_check.hpp"
 
 namespace fettle::design::answers {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/gradient_json.hpp"
+#include "design/answers/gradient_json.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/answers/check_faults.hpp"
-#include "fettle/design/description/constraint.hpp"
-#include "fettle/design/gradient_audit/design_line.hpp"
-#include "fettle/design/problem/motion_warnings.hpp"
+#include "design/answers/answer_json.hpp"
+#include "design/answers/check_faults.hpp"
+#include "design/description/constraint.hpp"
+#include "design/gradient_audit/design_line.hpp"
+#include "design/problem/motion_warnings.hpp"
 
 namespace fettle::design::answers {
 

@@ -6,9 +6,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "fettle/design/gradient_audit/difference_check.hpp"
-#include "fettle/design/gradient_audit/gradient_warnings.hpp"
-#include "fettle/design/problem/design_problem.hpp"
+#include "design/gradient_audit/difference_check.hpp"
+#include "design/gradient_audit/gradient_warnings.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::answers {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/growing_tables.hpp"
+#include "design/answers/growing_tables.hpp"
 
 #include <cstddef>
 #include <utility>
 
-#include "fettle/core/records/step_tables.hpp"
-#include "fettle/design/answers/answer_json.hpp"
+#include "core/records/step_tables.hpp"
+#include "design/answers/answer_json.hpp"
 
 namespace fettle::design::answers {
 

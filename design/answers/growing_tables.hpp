@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/simulation.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/simulation.hpp"
 
 namespace fettle::design::answers {
 

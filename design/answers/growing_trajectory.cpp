@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/growing_trajectory.hpp"
+#include "design/answers/growing_trajectory.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -9,8 +9,8 @@
 #include <system_error>
 #include <utility>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/design/answers/output_folder.hpp"
+#include "core/files/atomic_file.hpp"
+#include "design/answers/output_folder.hpp"
 
 namespace fettle::design::answers {
 

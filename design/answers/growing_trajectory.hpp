@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/records/trajectory_lines.hpp"
-#include "fettle/core/stepper/simulation.hpp"
+#include "core/base/result.hpp"
+#include "core/records/trajectory_lines.hpp"
+#include "core/stepper/simulation.hpp"
 
 namespace fettle::design::answers {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/made_json.hpp"
+#include "design/answers/made_json.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/text.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::design::answers {
 

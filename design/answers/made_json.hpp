@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "fettle/design/studies/made_sample.hpp"
+#include "design/studies/made_sample.hpp"
 
 namespace fettle::design::answers {
 

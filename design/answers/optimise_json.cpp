@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/optimise_json.hpp"
+#include "design/answers/optimise_json.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/answers/summary.hpp"
-#include "fettle/design/problem/motion_warnings.hpp"
+#include "core/base/text.hpp"
+#include "design/answers/answer_json.hpp"
+#include "design/answers/summary.hpp"
+#include "design/problem/motion_warnings.hpp"
 
 namespace fettle::design::answers {
 

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "fettle/design/answers/verdict.hpp"
-#include "fettle/design/problem/design_problem.hpp"
+#include "design/answers/verdict.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::answers {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/output_folder.hpp"
+#include "design/answers/output_folder.hpp"
 
 #include <unistd.h>
 
@@ -8,11 +8,11 @@
 #include <limits>
 #include <system_error>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/design/answers/run_folder.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_keys.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "design/answers/run_folder.hpp"
 
 namespace fettle::design::answers {
 

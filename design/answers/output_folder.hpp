@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::design::answers {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/run_folder.hpp"
+#include "design/answers/run_folder.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -8,13 +8,13 @@
 #include <string_view>
 #include <system_error>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/design/exports/glb_writer.hpp"
+#include "core/base/text.hpp"
+#include "core/base/version.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_dump.hpp"
+#include "core/files/json_keys.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "design/exports/glb_writer.hpp"
 
 namespace fettle::design::answers {
 

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
-#include "fettle/design/problem/design_problem.hpp"
+#include "core/base/result.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::answers {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/simulate_json.hpp"
+#include "design/answers/simulate_json.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/design/answers/answer_json.hpp"
+#include "core/base/parallel.hpp"
+#include "design/answers/answer_json.hpp"
 
 namespace fettle::design::answers {
 

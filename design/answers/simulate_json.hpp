@@ -4,9 +4,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/balance.hpp"
-#include "fettle/core/stepper/simulation.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/balance.hpp"
+#include "core/stepper/simulation.hpp"
 
 namespace fettle::design::answers {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/summary.hpp"
+#include "design/answers/summary.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/quantities/clearance.hpp"
-#include "fettle/design/quantities/in_scenario.hpp"
+#include "core/base/text.hpp"
+#include "design/description/requirement_text.hpp"
+#include "design/quantities/clearance.hpp"
+#include "design/quantities/in_scenario.hpp"
 
 namespace fettle::design::answers {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/clearance/true_bounds.hpp"
-#include "fettle/design/answers/verdict.hpp"
+#include "core/clearance/true_bounds.hpp"
+#include "design/answers/verdict.hpp"
 
 namespace fettle::design::answers {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/tolerance_json.hpp"
+#include "design/answers/tolerance_json.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/answers/answer_json.hpp"
+#include "core/base/text.hpp"
+#include "design/answers/answer_json.hpp"
 
 namespace fettle::design::answers {
 

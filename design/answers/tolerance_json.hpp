@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/tolerance_study.hpp"
+#include "design/description/requirement_text.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/studies/tolerance_study.hpp"
 
 namespace fettle::design::answers {
 

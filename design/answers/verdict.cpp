@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/verdict.hpp"
+#include "design/answers/verdict.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/description/requirement_text.hpp"
+#include "core/base/text.hpp"
+#include "design/description/requirement_text.hpp"
 
 namespace fettle::design::answers {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/studies/optimise_design.hpp"
+#include "design/studies/optimise_design.hpp"
 
 namespace fettle::design::answers {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/baseline.hpp"
+#include "design/clearance/baseline.hpp"
 
 #include <limits>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/json_document.hpp"
+#include "core/base/text.hpp"
+#include "core/files/json_document.hpp"
 
 namespace fettle::design::clearance {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/clearance/pair_clearance.hpp"
+#include "core/base/result.hpp"
+#include "core/clearance/pair_clearance.hpp"
 
 namespace fettle::design::clearance {
 

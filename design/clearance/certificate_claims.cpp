@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/certificate_claims.hpp"
+#include "design/clearance/certificate_claims.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/clearance/joint_ranges.hpp"
-#include "fettle/core/clearance/jointed_clearance.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/hash.hpp"
-#include "fettle/design/clearance/certificate_files.hpp"
-#include "fettle/design/clearance/read_subject.hpp"
+#include "core/base/text.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/clearance/joint_ranges.hpp"
+#include "core/clearance/jointed_clearance.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/hash.hpp"
+#include "design/clearance/certificate_files.hpp"
+#include "design/clearance/read_subject.hpp"
 
 namespace fettle::design::clearance {
 

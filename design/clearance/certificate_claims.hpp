@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/design/reading/model_file.hpp"
+#include "core/base/result.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "design/reading/model_file.hpp"
 
 namespace fettle::design::clearance {
 

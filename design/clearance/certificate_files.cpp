@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/certificate_files.hpp"
+#include "design/clearance/certificate_files.hpp"
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/hash.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/hash.hpp"
 
 namespace fettle::design::clearance {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/certificate/certificate.hpp"
+#include "core/base/result.hpp"
+#include "core/certificate/certificate.hpp"
 
 namespace fettle::design::clearance {
 

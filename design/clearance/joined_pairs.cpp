@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/joined_pairs.hpp"
+#include "design/clearance/joined_pairs.hpp"
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/model/joint_fit.hpp"
+#include "core/base/text.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/model/joint_fit.hpp"
 
 namespace fettle::design::clearance {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/clearance/pairs.hpp"
-#include "fettle/design/clearance/subject.hpp"
+#include "design/clearance/pairs.hpp"
+#include "design/clearance/subject.hpp"
 
 namespace fettle::design::clearance {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/left_out.hpp"
+#include "design/clearance/left_out.hpp"
 
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/model/joint_fit.hpp"
+#include "core/base/text.hpp"
+#include "core/model/joint_fit.hpp"
 
 namespace fettle::design::clearance {
 

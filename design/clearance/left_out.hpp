@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/model/model.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::design::clearance {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/mesh_parts.hpp"
+#include "design/clearance/mesh_parts.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/files/unique_names.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/solids/mesh_repair.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/files/unique_names.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/solids/mesh_repair.hpp"
 
 namespace fettle::design::clearance {
 

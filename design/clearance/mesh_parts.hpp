@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/design/reading/model_file.hpp"
+#include "core/base/result.hpp"
+#include "core/model/model.hpp"
+#include "design/reading/model_file.hpp"
 
 namespace fettle::design::clearance {
 

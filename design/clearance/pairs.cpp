@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/pairs.hpp"
+#include "design/clearance/pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,14 +9,14 @@
 #include <sstream>
 #include <unordered_map>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/design/quantities/clearance.hpp"
-#include "fettle/design/quantities/expression.hpp"
-#include "fettle/design/quantities/in_scenario.hpp"
-#include "fettle/design/reading/process_file.hpp"
-#include "fettle/design/tolerances/process_clearance.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/files/nearest_word.hpp"
+#include "design/quantities/clearance.hpp"
+#include "design/quantities/expression.hpp"
+#include "design/quantities/in_scenario.hpp"
+#include "design/reading/process_file.hpp"
+#include "design/tolerances/process_clearance.hpp"
 
 namespace fettle::design::clearance {
 

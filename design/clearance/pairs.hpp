@@ -19,9 +19,9 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/design/description/design.hpp"
+#include "core/base/result.hpp"
+#include "core/model/model.hpp"
+#include "design/description/design.hpp"
 
 namespace fettle::design::clearance {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/path_proof.hpp"
+#include "design/clearance/path_proof.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/rounded_lengths.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/design/answers/answer_json.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/rounded_lengths.hpp"
+#include "core/base/text.hpp"
+#include "core/clearance/clearance.hpp"
+#include "design/answers/answer_json.hpp"
 
 namespace fettle::design::clearance {
 

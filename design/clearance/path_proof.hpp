@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/stepper/simulation.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/stepper/simulation.hpp"
 
 namespace fettle::design::clearance {
 

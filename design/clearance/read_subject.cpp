@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/read_subject.hpp"
+#include "design/clearance/read_subject.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/clearance/driven_ranges.hpp"
-#include "fettle/core/model/start_check.hpp"
-#include "fettle/core/records/poses_file.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/core/scene/step_count.hpp"
-#include "fettle/core/stepper/branch_warnings.hpp"
-#include "fettle/core/stepper/jointed_motion.hpp"
-#include "fettle/core/stepper/scripted_motion.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/clearance/mesh_parts.hpp"
-#include "fettle/design/problem/toleranced_bodies.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/clearance/driven_ranges.hpp"
+#include "core/model/start_check.hpp"
+#include "core/records/poses_file.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "core/scene/step_count.hpp"
+#include "core/stepper/branch_warnings.hpp"
+#include "core/stepper/jointed_motion.hpp"
+#include "core/stepper/scripted_motion.hpp"
+#include "core/stepper/simulate.hpp"
+#include "design/answers/answer_json.hpp"
+#include "design/clearance/mesh_parts.hpp"
+#include "design/problem/toleranced_bodies.hpp"
 
 namespace fettle::design::clearance {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/clearance/subject.hpp"
-#include "fettle/design/reading/model_file.hpp"
+#include "core/base/result.hpp"
+#include "core/stepper/simulate.hpp"
+#include "design/clearance/subject.hpp"
+#include "design/reading/model_file.hpp"
 
 namespace fettle::design::clearance {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/report.hpp"
+#include "design/clearance/report.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "fettle/core/base/text.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::design::clearance {
 

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/clearance/true_bounds.hpp"
-#include "fettle/design/clearance/baseline.hpp"
-#include "fettle/design/clearance/joined_pairs.hpp"
-#include "fettle/design/clearance/pairs.hpp"
-#include "fettle/design/clearance/subject.hpp"
+#include "core/base/result.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/clearance/true_bounds.hpp"
+#include "design/clearance/baseline.hpp"
+#include "design/clearance/joined_pairs.hpp"
+#include "design/clearance/pairs.hpp"
+#include "design/clearance/subject.hpp"
 
 namespace fettle::design::clearance {
 

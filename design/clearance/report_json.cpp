@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/report_json.hpp"
+#include "design/clearance/report_json.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "fettle/design/answers/answer_json.hpp"
+#include "design/answers/answer_json.hpp"
 
 namespace fettle::design::clearance {
 

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "fettle/design/clearance/path_proof.hpp"
-#include "fettle/design/clearance/report.hpp"
+#include "design/clearance/path_proof.hpp"
+#include "design/clearance/report.hpp"
 
 namespace fettle::design::clearance {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/subject.hpp"
+#include "design/clearance/subject.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "fettle/core/base/text.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::design::clearance {
 

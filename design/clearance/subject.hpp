@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/clearance/jointed_clearance.hpp"
-#include "fettle/core/clearance/range_clearance.hpp"
-#include "fettle/core/clearance/toleranced_clearance.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
-#include "fettle/design/clearance/pairs.hpp"
+#include "core/clearance/jointed_clearance.hpp"
+#include "core/clearance/range_clearance.hpp"
+#include "core/clearance/toleranced_clearance.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
+#include "design/clearance/pairs.hpp"
 
 namespace fettle::design::clearance {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/true_bounds.hpp"
+#include "core/clearance/true_bounds.hpp"
 
-#include "fettle/design/clearance/report.hpp"
+#include "design/clearance/report.hpp"
 
 namespace fettle::design::clearance {
 

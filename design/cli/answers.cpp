@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/answers.hpp"
+#include "design/cli/answers.hpp"
 
 #include <sys/resource.h>
 
-#include "fettle/design/description/requirement_text.hpp"
+#include "design/description/requirement_text.hpp"
 
 namespace fettle::design::cli {
 

@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/cli/console.hpp"
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/optimisers/problem.hpp"
+#include "core/base/text.hpp"
+#include "design/cli/console.hpp"
+#include "design/description/design.hpp"
+#include "design/optimisers/problem.hpp"
 
 namespace fettle::design::cli {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/body_facts.hpp"
+#include "design/cli/body_facts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/solids/shells.hpp"
-#include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/cli/answers.hpp"
+#include "core/base/units.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/solids/shells.hpp"
+#include "design/answers/answer_json.hpp"
+#include "design/cli/answers.hpp"
 
 namespace fettle::design::cli {
 

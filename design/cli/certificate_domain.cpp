@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/certificate_domain.hpp"
+#include "design/cli/certificate_domain.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/design/description/parameter.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "design/description/parameter.hpp"
 
 namespace fettle::design::cli {
 

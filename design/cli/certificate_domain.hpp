@@ -7,9 +7,9 @@
 
 #include <string>
 
-#include "fettle/core/base/rounded_lengths.hpp"
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/base/rounded_lengths.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::design::cli {
 

@@ -6,12 +6,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/studies/resolution.hpp"
+#include "core/base/text.hpp"
+#include "design/answers/answer_json.hpp"
+#include "design/cli/answers.hpp"
+#include "design/cli/inputs.hpp"
+#include "design/description/requirement_text.hpp"
+#include "design/studies/resolution.hpp"
 
 namespace fettle::design::cli {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/child_process.hpp"
+#include "design/cli/child_process.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "fettle/core/files/atomic_file.hpp"
+#include "core/files/atomic_file.hpp"
 
 namespace fettle::design::cli {
 

@@ -3,16 +3,16 @@
 /// judged: design/clearance; how it is told: clearance_text.hpp.
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/solids/shells.hpp"
-#include "fettle/design/clearance/mesh_parts.hpp"
-#include "fettle/design/clearance/read_subject.hpp"
-#include "fettle/design/clearance/report_json.hpp"
-#include "fettle/design/cli/clearance_files.hpp"
-#include "fettle/design/cli/clearance_text.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/tolerances/known_processes.hpp"
-#include "fettle/design/tolerances/process_clearance.hpp"
+#include "core/base/units.hpp"
+#include "core/solids/shells.hpp"
+#include "design/clearance/mesh_parts.hpp"
+#include "design/clearance/read_subject.hpp"
+#include "design/clearance/report_json.hpp"
+#include "design/cli/clearance_files.hpp"
+#include "design/cli/clearance_text.hpp"
+#include "design/cli/inputs.hpp"
+#include "design/tolerances/known_processes.hpp"
+#include "design/tolerances/process_clearance.hpp"
 
 namespace fettle::design::cli {
 

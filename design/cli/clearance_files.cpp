@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/clearance_files.hpp"
+#include "design/cli/clearance_files.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/design/answers/output_folder.hpp"
-#include "fettle/design/answers/run_folder.hpp"
-#include "fettle/design/clearance/certificate_files.hpp"
-#include "fettle/design/cli/clearance_text.hpp"
-#include "fettle/design/cli/report_made.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "design/answers/output_folder.hpp"
+#include "design/answers/run_folder.hpp"
+#include "design/clearance/certificate_files.hpp"
+#include "design/cli/clearance_text.hpp"
+#include "design/cli/report_made.hpp"
 
 namespace fettle::design::cli {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "fettle/design/clearance/report.hpp"
-#include "fettle/design/cli/session.hpp"
+#include "design/clearance/report.hpp"
+#include "design/cli/session.hpp"
 
 namespace fettle::design::cli {
 

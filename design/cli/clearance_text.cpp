@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/clearance_text.hpp"
+#include "design/cli/clearance_text.hpp"
 
 #include <Eigen/Geometry>
 
@@ -11,12 +11,12 @@
 #include <numbers>
 #include <span>
 
-#include "fettle/core/base/rounded_lengths.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/cli/answers.hpp"
-#include "fettle/design/description/parameter.hpp"
+#include "core/base/rounded_lengths.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "design/answers/answer_json.hpp"
+#include "design/cli/answers.hpp"
+#include "design/description/parameter.hpp"
 
 namespace fettle::design::cli {
 

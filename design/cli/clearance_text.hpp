@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/clearance/report.hpp"
-#include "fettle/design/cli/console.hpp"
+#include "design/clearance/report.hpp"
+#include "design/cli/console.hpp"
 
 namespace fettle::design::cli {
 

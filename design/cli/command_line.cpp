@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/command_line.hpp"
+#include "design/cli/command_line.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,9 +10,9 @@
 #include <limits>
 #include <sstream>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/nearest_word.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/text.hpp"
+#include "core/files/nearest_word.hpp"
 
 namespace fettle::design::cli {
 

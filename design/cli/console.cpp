@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/console.hpp"
+#include "design/cli/console.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -15,10 +15,10 @@
 #include <system_error>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/printed_text.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/json_dump.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/printed_text.hpp"
+#include "core/base/text.hpp"
+#include "core/files/json_dump.hpp"
 
 namespace fettle::design::cli {
 

@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/design/cli/finding_files.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "design/cli/finding_files.hpp"
 
 namespace fettle::design::cli {
 

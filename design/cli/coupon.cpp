@@ -5,16 +5,16 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/mesh_files/mesh_writer.hpp"
-#include "fettle/design/cli/session.hpp"
-#include "fettle/design/coupons/coupon_form.hpp"
-#include "fettle/design/coupons/coupon_solid.hpp"
-#include "fettle/design/exports/profile_drawing.hpp"
-#include "fettle/design/tolerances/known_processes.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
+#include "design/cli/session.hpp"
+#include "design/coupons/coupon_form.hpp"
+#include "design/coupons/coupon_solid.hpp"
+#include "design/exports/profile_drawing.hpp"
+#include "design/tolerances/known_processes.hpp"
 
 namespace fettle::design::cli {
 

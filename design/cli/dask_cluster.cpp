@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/dask_cluster.hpp"
+#include "design/cli/dask_cluster.hpp"
 
 #include <unistd.h>
 
@@ -10,7 +10,7 @@
 #include <sstream>
 #include <utility>
 
-#include "fettle/core/files/json_text.hpp"
+#include "core/files/json_text.hpp"
 
 namespace fettle::design::cli {
 

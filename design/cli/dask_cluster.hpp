@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/cli/child_process.hpp"
-#include "fettle/design/studies/exploration.hpp"
+#include "core/base/result.hpp"
+#include "design/cli/child_process.hpp"
+#include "design/studies/exploration.hpp"
 
 namespace fettle::design::cli {
 

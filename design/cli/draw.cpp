@@ -6,18 +6,18 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/rounded_lengths.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/answers/output_folder.hpp"
-#include "fettle/design/clearance/pairs.hpp"
-#include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/shown_motion.hpp"
-#include "fettle/design/exports/picture.hpp"
-#include "fettle/design/exports/png_writer.hpp"
-#include "fettle/design/exports/svg_writer.hpp"
+#include "core/base/rounded_lengths.hpp"
+#include "core/base/units.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/files/atomic_file.hpp"
+#include "design/answers/answer_json.hpp"
+#include "design/answers/output_folder.hpp"
+#include "design/clearance/pairs.hpp"
+#include "design/cli/answers.hpp"
+#include "design/cli/shown_motion.hpp"
+#include "design/exports/picture.hpp"
+#include "design/exports/png_writer.hpp"
+#include "design/exports/svg_writer.hpp"
 
 namespace fettle::design::cli {
 

@@ -5,13 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/cli/dask_cluster.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/reading/design_text.hpp"
-#include "fettle/design/studies/exploration.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/text.hpp"
+#include "design/cli/dask_cluster.hpp"
+#include "design/cli/inputs.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/reading/design_text.hpp"
+#include "design/studies/exploration.hpp"
 
 namespace fettle::design::cli {
 

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/export_mechanism.hpp"
+#include "design/cli/export_mechanism.hpp"
 
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/hash.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/design/answers/output_folder.hpp"
-#include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/read_files.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/problem/moved_scene.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
-#include "fettle/design/reading/scene_text.hpp"
-#include "fettle/design/urdf/robot_notes_json.hpp"
-#include "fettle/design/urdf/urdf_writer.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/hash.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "design/answers/output_folder.hpp"
+#include "design/cli/answers.hpp"
+#include "design/cli/inputs.hpp"
+#include "design/cli/read_files.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/problem/moved_scene.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/reading/scene_shapes.hpp"
+#include "design/reading/scene_text.hpp"
+#include "design/urdf/robot_notes_json.hpp"
+#include "design/urdf/urdf_writer.hpp"
 
 namespace fettle::design::cli {
 

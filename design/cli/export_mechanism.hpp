@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/design/cli/session.hpp"
+#include "design/cli/session.hpp"
 
 namespace fettle::design::cli {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/finding_files.hpp"
+#include "design/cli/finding_files.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -10,13 +10,13 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/hash.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/core/files/json_lines.hpp"
-#include "fettle/design/answers/output_folder.hpp"
+#include "core/base/text.hpp"
+#include "core/base/version.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/hash.hpp"
+#include "core/files/json_dump.hpp"
+#include "core/files/json_lines.hpp"
+#include "design/answers/output_folder.hpp"
 
 namespace fettle::design::cli {
 

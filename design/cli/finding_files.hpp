@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/clearance/pair_clearance.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "core/clearance/pair_clearance.hpp"
 
 namespace fettle::design::cli {
 

@@ -5,16 +5,16 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/design/answers/check_faults.hpp"
-#include "fettle/design/answers/gradient_json.hpp"
-#include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/gradient_audit/design_line.hpp"
-#include "fettle/design/gradient_audit/difference_check.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
+#include "core/base/parallel.hpp"
+#include "design/answers/check_faults.hpp"
+#include "design/answers/gradient_json.hpp"
+#include "design/cli/answers.hpp"
+#include "design/cli/inputs.hpp"
+#include "design/description/requirement_text.hpp"
+#include "design/gradient_audit/design_line.hpp"
+#include "design/gradient_audit/difference_check.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
 
 namespace fettle::design::cli {
 

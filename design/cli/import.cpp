@@ -3,15 +3,15 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/core/model/start_check.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/read_files.hpp"
-#include "fettle/design/cli/session.hpp"
-#include "fettle/design/urdf/urdf_parser.hpp"
-#include "fettle/design/urdf/urdf_scene.hpp"
+#include "core/base/text.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_dump.hpp"
+#include "core/model/start_check.hpp"
+#include "design/cli/inputs.hpp"
+#include "design/cli/read_files.hpp"
+#include "design/cli/session.hpp"
+#include "design/urdf/urdf_parser.hpp"
+#include "design/urdf/urdf_scene.hpp"
 
 namespace fettle::design::cli {
 

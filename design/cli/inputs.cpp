@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/inputs.hpp"
+#include "design/cli/inputs.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/design/cli/program_memory.hpp"
+#include "core/base/parallel.hpp"
+#include "design/cli/program_memory.hpp"
 
 namespace fettle::design::cli {
 

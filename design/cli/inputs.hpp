@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/cli/session.hpp"
-#include "fettle/design/reading/model_file.hpp"
+#include "core/base/result.hpp"
+#include "design/cli/session.hpp"
+#include "design/reading/model_file.hpp"
 
 namespace fettle::design::cli {
 

@@ -5,22 +5,22 @@
 #include <regex>
 #include <set>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/geometry/named_faces.hpp"
-#include "fettle/core/scene/joint_kind.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/session.hpp"
-#include "fettle/design/exports/picture.hpp"
-#include "fettle/design/exports/png_writer.hpp"
-#include "fettle/design/exports/svg_writer.hpp"
-#include "fettle/design/optimisers/optimisation.hpp"
-#include "fettle/design/reading/quantity_reader.hpp"
-#include "fettle/design/shapes/file_part.hpp"
-#include "fettle/design/shapes/part_library.hpp"
+#include "core/base/text.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/geometry/named_faces.hpp"
+#include "core/scene/joint_kind.hpp"
+#include "core/setup/build_model.hpp"
+#include "design/cli/answers.hpp"
+#include "design/cli/session.hpp"
+#include "design/exports/picture.hpp"
+#include "design/exports/png_writer.hpp"
+#include "design/exports/svg_writer.hpp"
+#include "design/optimisers/optimisation.hpp"
+#include "design/reading/quantity_reader.hpp"
+#include "design/shapes/file_part.hpp"
+#include "design/shapes/part_library.hpp"
 
 namespace fettle::design::cli {
 

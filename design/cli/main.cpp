@@ -10,19 +10,19 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/printed_text.hpp"
-#include "fettle/core/base/shared_library.hpp"
-#include "fettle/core/base/stop.hpp"
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/answers/output_folder.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/named_files.hpp"
-#include "fettle/design/cli/program_memory.hpp"
-#include "fettle/design/cli/read_files.hpp"
-#include "fettle/design/cli/session.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/printed_text.hpp"
+#include "core/base/shared_library.hpp"
+#include "core/base/stop.hpp"
+#include "core/base/version.hpp"
+#include "core/files/nearest_word.hpp"
+#include "design/answers/answer_json.hpp"
+#include "design/answers/output_folder.hpp"
+#include "design/cli/inputs.hpp"
+#include "design/cli/named_files.hpp"
+#include "design/cli/program_memory.hpp"
+#include "design/cli/read_files.hpp"
+#include "design/cli/session.hpp"
 
 namespace {
 
@@ -199,8 +199,8 @@ std::vector<Command> add_commands(CommandLine& program, const CommonOptions& com
         }
     };
     add("Start", {add_new(program), add_shapes(program), add_joints(program), add_quantities(program), add_optimisers(program)});
-    add("Check", {add_validate(program, common), add_clearance(program, common), add_check_resolution(program, common),
-                  add_tolerance(program, common)});
+    add("Check", {add_validate(program, common), add_clearance(program, common), add_ranges(program, common),
+                  add_check_resolution(program, common), add_tolerance(program, common)});
     add("Measure your printer", {add_coupon(program), add_process(program)});
     add("Simulate and tune",
         {add_simulate(program, common), add_optimise(program, common), add_explore(program, common), add_gradient(program, common)});

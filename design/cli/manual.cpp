@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/design/cli/session.hpp"
+#include "core/base/version.hpp"
+#include "core/files/atomic_file.hpp"
+#include "design/cli/session.hpp"
 
 namespace fettle::design::cli {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/named_files.hpp"
+#include "design/cli/named_files.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
 
-#include "fettle/core/files/atomic_file.hpp"
+#include "core/files/atomic_file.hpp"
 
 namespace fettle::design::cli {
 

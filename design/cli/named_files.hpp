@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/design/cli/command_line.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "design/cli/command_line.hpp"
 
 namespace fettle::design::cli {
 

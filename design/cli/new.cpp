@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/design/cli/session.hpp"
-#include "fettle/design/cli/starters.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/nearest_word.hpp"
+#include "design/cli/session.hpp"
+#include "design/cli/starters.hpp"
 
 namespace fettle::design::cli {
 

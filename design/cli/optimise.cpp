@@ -3,19 +3,19 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/design/answers/optimise_json.hpp"
-#include "fettle/design/answers/output_folder.hpp"
-#include "fettle/design/answers/run_folder.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/optimise_answer.hpp"
-#include "fettle/design/cli/optimise_starts.hpp"
-#include "fettle/design/cli/report_made.hpp"
-#include "fettle/design/problem/motion_warnings.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/optimise_file.hpp"
-#include "fettle/design/studies/random_start.hpp"
-#include "fettle/design/studies/starting_sides.hpp"
+#include "core/files/atomic_file.hpp"
+#include "design/answers/optimise_json.hpp"
+#include "design/answers/output_folder.hpp"
+#include "design/answers/run_folder.hpp"
+#include "design/cli/inputs.hpp"
+#include "design/cli/optimise_answer.hpp"
+#include "design/cli/optimise_starts.hpp"
+#include "design/cli/report_made.hpp"
+#include "design/problem/motion_warnings.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/studies/optimise_file.hpp"
+#include "design/studies/random_start.hpp"
+#include "design/studies/starting_sides.hpp"
 
 namespace fettle::design::cli {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/optimise_answer.hpp"
+#include "design/cli/optimise_answer.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/resolution_text.hpp"
-#include "fettle/design/description/requirement_text.hpp"
+#include "core/base/text.hpp"
+#include "design/cli/answers.hpp"
+#include "design/cli/resolution_text.hpp"
+#include "design/description/requirement_text.hpp"
 
 namespace fettle::design::cli {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/answers/optimise_json.hpp"
-#include "fettle/design/answers/summary.hpp"
-#include "fettle/design/cli/console.hpp"
-#include "fettle/design/cli/finding_files.hpp"
+#include "design/answers/optimise_json.hpp"
+#include "design/answers/summary.hpp"
+#include "design/cli/console.hpp"
+#include "design/cli/finding_files.hpp"
 
 namespace fettle::design::cli {
 

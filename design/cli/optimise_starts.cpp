@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/optimise_starts.hpp"
+#include "design/cli/optimise_starts.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -8,12 +8,12 @@
 #include <limits>
 #include <thread>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_text.hpp"
-#include "fettle/design/answers/run_folder.hpp"
-#include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/child_process.hpp"
+#include "core/base/parallel.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_text.hpp"
+#include "design/answers/run_folder.hpp"
+#include "design/cli/answers.hpp"
+#include "design/cli/child_process.hpp"
 
 namespace fettle::design::cli {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/cli/session.hpp"
+#include "design/cli/session.hpp"
 
 namespace fettle::design::cli {
 

@@ -5,15 +5,15 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/session.hpp"
-#include "fettle/design/coupons/coupon_form.hpp"
-#include "fettle/design/reading/process_file.hpp"
-#include "fettle/design/tolerances/known_processes.hpp"
-#include "fettle/design/tolerances/process_clearance.hpp"
+#include "core/base/text.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/nearest_word.hpp"
+#include "design/cli/inputs.hpp"
+#include "design/cli/session.hpp"
+#include "design/coupons/coupon_form.hpp"
+#include "design/reading/process_file.hpp"
+#include "design/tolerances/known_processes.hpp"
+#include "design/tolerances/process_clearance.hpp"
 
 namespace fettle::design::cli {
 

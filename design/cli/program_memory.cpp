@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/program_memory.hpp"
+#include "design/cli/program_memory.hpp"
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -12,7 +12,7 @@
 #include <new>
 #include <string_view>
 
-#include "fettle/design/cli/console.hpp"
+#include "design/cli/console.hpp"
 
 #ifdef __GLIBC__
 #include <malloc.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/read_files.hpp"
+#include "design/cli/read_files.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -9,13 +9,13 @@
 #include <string_view>
 #include <system_error>
 
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/mesh_files/find_mesh_file.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/design/clearance/certificate_files.hpp"
-#include "fettle/design/clearance/mesh_parts.hpp"
-#include "fettle/design/cli/inputs.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/mesh_files/find_mesh_file.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "design/clearance/certificate_files.hpp"
+#include "design/clearance/mesh_parts.hpp"
+#include "design/cli/inputs.hpp"
 
 namespace fettle::design::cli {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/design/cli/named_files.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "design/cli/named_files.hpp"
 
 namespace fettle::design::cli {
 

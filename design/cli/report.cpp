@@ -4,11 +4,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "fettle/design/answers/output_folder.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/cli/session.hpp"
-#include "fettle/design/report/exploration_report.hpp"
-#include "fettle/design/report/report_folder.hpp"
+#include "design/answers/output_folder.hpp"
+#include "design/cli/inputs.hpp"
+#include "design/cli/session.hpp"
+#include "design/report/exploration_report.hpp"
+#include "design/report/report_folder.hpp"
 
 namespace fettle::design::cli {
 

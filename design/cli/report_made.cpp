@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/report_made.hpp"
+#include "design/cli/report_made.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include "fettle/design/answers/run_folder.hpp"
-#include "fettle/design/cli/inputs.hpp"
+#include "design/answers/run_folder.hpp"
+#include "design/cli/inputs.hpp"
 
 namespace fettle::design::cli {
 

@@ -5,9 +5,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/cli/session.hpp"
-#include "fettle/design/report/report_folder.hpp"
+#include "core/base/result.hpp"
+#include "design/cli/session.hpp"
+#include "design/report/report_folder.hpp"
 
 namespace fettle::design::cli {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "fettle/design/answers/optimise_json.hpp"
-#include "fettle/design/cli/console.hpp"
+#include "design/answers/optimise_json.hpp"
+#include "design/cli/console.hpp"
 
 namespace fettle::design::cli {
 

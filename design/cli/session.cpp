@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/session.hpp"
+#include "design/cli/session.hpp"
 
 #include <atomic>
 #include <csignal>

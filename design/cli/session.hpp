@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/cli/command_line.hpp"
-#include "fettle/design/cli/console.hpp"
-#include "fettle/design/cli/finding_files.hpp"
-#include "fettle/design/cli/named_files.hpp"
+#include "design/cli/command_line.hpp"
+#include "design/cli/console.hpp"
+#include "design/cli/finding_files.hpp"
+#include "design/cli/named_files.hpp"
 
 namespace fettle::design::cli {
 
@@ -52,6 +52,7 @@ Command add_validate(CommandLine& program, const CommonOptions& common);
 Command add_simulate(CommandLine& program, const CommonOptions& common);
 Command add_gradient(CommandLine& program, const CommonOptions& common);
 Command add_optimise(CommandLine& program, const CommonOptions& common);
+Command add_ranges(CommandLine& program, const CommonOptions& common);
 Command add_report(CommandLine& program, const CommonOptions& common);
 Command add_explore(CommandLine& program, const CommonOptions& common);
 Command add_tolerance(CommandLine& program, const CommonOptions& common);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/shown_motion.hpp"
+#include "design/cli/shown_motion.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
 
-#include "fettle/core/certificate/certificate.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/clearance/certificate_files.hpp"
-#include "fettle/design/clearance/mesh_parts.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "design/answers/answer_json.hpp"
+#include "design/clearance/certificate_files.hpp"
+#include "design/clearance/mesh_parts.hpp"
+#include "design/cli/inputs.hpp"
+#include "design/reading/scene_shapes.hpp"
 
 namespace fettle::design::cli {
 

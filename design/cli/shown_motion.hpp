@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/clearance/read_subject.hpp"
-#include "fettle/design/cli/session.hpp"
-#include "fettle/design/exports/assembly.hpp"
+#include "core/base/result.hpp"
+#include "design/clearance/read_subject.hpp"
+#include "design/cli/session.hpp"
+#include "design/exports/assembly.hpp"
 
 namespace fettle::design::cli {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/starters.hpp"
+#include "design/cli/starters.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -5,13 +5,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "fettle/design/answers/allocation_json.hpp"
-#include "fettle/design/answers/output_folder.hpp"
-#include "fettle/design/answers/tolerance_json.hpp"
-#include "fettle/design/cli/inputs.hpp"
-#include "fettle/design/report/tolerance_report.hpp"
-#include "fettle/design/studies/tolerance_file.hpp"
-#include "fettle/design/tolerances/known_processes.hpp"
+#include "design/answers/allocation_json.hpp"
+#include "design/answers/output_folder.hpp"
+#include "design/answers/tolerance_json.hpp"
+#include "design/cli/inputs.hpp"
+#include "design/report/tolerance_report.hpp"
+#include "design/studies/tolerance_file.hpp"
+#include "design/tolerances/known_processes.hpp"
 
 namespace fettle::design::cli {
 

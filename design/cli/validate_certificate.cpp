@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/validate_certificate.hpp"
+#include "design/cli/validate_certificate.hpp"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/rounded_lengths.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/design/answers/answer_json.hpp"
-#include "fettle/design/clearance/certificate_claims.hpp"
-#include "fettle/design/clearance/certificate_files.hpp"
-#include "fettle/design/cli/answers.hpp"
-#include "fettle/design/cli/certificate_domain.hpp"
-#include "fettle/design/cli/inputs.hpp"
+#include "core/base/rounded_lengths.hpp"
+#include "core/base/units.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/files/json_dump.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "design/answers/answer_json.hpp"
+#include "design/clearance/certificate_claims.hpp"
+#include "design/clearance/certificate_files.hpp"
+#include "design/cli/answers.hpp"
+#include "design/cli/certificate_domain.hpp"
+#include "design/cli/inputs.hpp"
 
 namespace fettle::design::cli {
 

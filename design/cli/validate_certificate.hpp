@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "fettle/design/cli/session.hpp"
+#include "design/cli/session.hpp"
 
 namespace fettle::design::cli {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/coupons/coupon.hpp"
+#include "design/coupons/coupon.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
 
 namespace fettle::design::coupons {
 

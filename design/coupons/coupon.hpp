@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/coupons/stroke_font.hpp"
-#include "fettle/design/tolerances/process.hpp"
+#include "core/base/result.hpp"
+#include "design/coupons/stroke_font.hpp"
+#include "design/tolerances/process.hpp"
 
 namespace fettle::design::coupons {
 

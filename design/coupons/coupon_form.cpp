@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/coupons/coupon_form.hpp"
+#include "design/coupons/coupon_form.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/files/text_lines.hpp"
+#include "core/base/text.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/files/text_lines.hpp"
 
 namespace fettle::design::coupons {
 

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/coupons/coupon.hpp"
-#include "fettle/design/tolerances/process_fit.hpp"
+#include "core/base/result.hpp"
+#include "design/coupons/coupon.hpp"
+#include "design/tolerances/process_fit.hpp"
 
 namespace fettle::design::coupons {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/coupons/coupon_solid.hpp"
+#include "design/coupons/coupon_solid.hpp"
 
 #include <algorithm>
 #include <set>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/parts/drawn_part.hpp"
-#include "fettle/core/parts/extrude.hpp"
-#include "fettle/design/exports/profile_drawing.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/text.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/parts/drawn_part.hpp"
+#include "core/parts/extrude.hpp"
+#include "design/exports/profile_drawing.hpp"
 
 namespace fettle::design::coupons {
 

@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/parts/profile.hpp"
-#include "fettle/design/coupons/coupon.hpp"
+#include "core/base/result.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/parts/profile.hpp"
+#include "design/coupons/coupon.hpp"
 
 namespace fettle::design::coupons {
 

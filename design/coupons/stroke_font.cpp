@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/coupons/stroke_font.hpp"
+#include "design/coupons/stroke_font.hpp"
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/parts/profile_booleans.hpp"
+#include "core/base/contract.hpp"
+#include "core/parts/profile_booleans.hpp"
 
 namespace fettle::design::coupons {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/parts/profile.hpp"
+#include "core/base/result.hpp"
+#include "core/parts/profile.hpp"
 
 namespace fettle::design::coupons {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/description/constraint.hpp"
+#include "design/description/constraint.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -11,8 +11,8 @@
 #include <optional>
 #include <string>
 
-#include "fettle/design/description/over_tolerances.hpp"
-#include "fettle/design/description/quantity.hpp"
+#include "design/description/over_tolerances.hpp"
+#include "design/description/quantity.hpp"
 
 namespace fettle::design::description {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/description/design.hpp"
+#include "design/description/design.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/scene/place.hpp"
+#include "core/base/contract.hpp"
+#include "core/scene/place.hpp"
 
 namespace fettle::design::description {
 

@@ -18,12 +18,12 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/scene/scene.hpp"
-#include "fettle/design/description/constraint.hpp"
-#include "fettle/design/description/parameter.hpp"
-#include "fettle/design/description/quantity.hpp"
-#include "fettle/design/description/relation.hpp"
-#include "fettle/design/description/shape.hpp"
+#include "core/scene/scene.hpp"
+#include "design/description/constraint.hpp"
+#include "design/description/parameter.hpp"
+#include "design/description/quantity.hpp"
+#include "design/description/relation.hpp"
+#include "design/description/shape.hpp"
 
 namespace fettle::design::description {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/description/independent_inputs.hpp"
+#include "design/description/independent_inputs.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/tolerances/normal_distribution.hpp"
+#include "core/base/contract.hpp"
+#include "design/tolerances/normal_distribution.hpp"
 
 namespace fettle::design::description {
 

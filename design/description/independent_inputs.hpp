@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/description/tolerance.hpp"
-#include "fettle/design/tolerances/moments.hpp"
-#include "fettle/design/tolerances/sobol.hpp"
+#include "design/description/tolerance.hpp"
+#include "design/tolerances/moments.hpp"
+#include "design/tolerances/sobol.hpp"
 
 namespace fettle::design::description {
 

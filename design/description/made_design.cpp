@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/description/made_design.hpp"
+#include "design/description/made_design.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/description/independent_inputs.hpp"
+#include "core/base/contract.hpp"
+#include "design/description/independent_inputs.hpp"
 
 namespace fettle::design::description {
 

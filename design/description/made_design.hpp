@@ -6,9 +6,9 @@
 #include <functional>
 #include <vector>
 
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/description/tolerance.hpp"
-#include "fettle/design/tolerances/robust_offset.hpp"
+#include "design/description/design.hpp"
+#include "design/description/tolerance.hpp"
+#include "design/tolerances/robust_offset.hpp"
 
 namespace fettle::design::description {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/description/over_tolerances.hpp"
+#include "design/description/over_tolerances.hpp"
 
-#include "fettle/core/base/text.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::design::description {
 

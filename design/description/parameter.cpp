@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/description/parameter.hpp"
+#include "design/description/parameter.hpp"
 
 #include <cmath>
 #include <cstdio>

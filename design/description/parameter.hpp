@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/expression/parse_formula.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "core/base/units.hpp"
+#include "core/expression/parse_formula.hpp"
 
 namespace fettle::design::description {
 

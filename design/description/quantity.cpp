@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/description/quantity.hpp"
+#include "design/description/quantity.hpp"
 
 namespace fettle::design::description {
 

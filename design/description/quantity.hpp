@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/base/result.hpp"
+#include "core/base/units.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::design::description {
 

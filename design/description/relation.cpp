@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/description/relation.hpp"
+#include "design/description/relation.hpp"
 
 #include <algorithm>
 #include <cmath>

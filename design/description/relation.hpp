@@ -11,10 +11,10 @@
 #include <optional>
 #include <string>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/expression/formula.hpp"
-#include "fettle/design/description/constraint.hpp"
-#include "fettle/design/description/parameter.hpp"
+#include "core/base/types.hpp"
+#include "core/expression/formula.hpp"
+#include "design/description/constraint.hpp"
+#include "design/description/parameter.hpp"
 
 namespace fettle::design::description {
 

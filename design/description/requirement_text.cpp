@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/description/requirement_text.hpp"
+#include "design/description/requirement_text.hpp"
 
 #include <cmath>
 #include <cstdio>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/expression/dimension_powers.hpp"
+#include "core/base/text.hpp"
+#include "core/expression/dimension_powers.hpp"
 
 namespace fettle::design::description {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "fettle/core/base/bound_text.hpp"
-#include "fettle/design/description/design.hpp"
+#include "core/base/bound_text.hpp"
+#include "design/description/design.hpp"
 
 namespace fettle::design::description {
 

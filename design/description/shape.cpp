@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/description/shape.hpp"
+#include "design/description/shape.hpp"
 
 namespace fettle::design::description {
 

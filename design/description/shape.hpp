@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/expression/operation.hpp"
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "core/expression/operation.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::design::description {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/description/tolerance.hpp"
+#include "design/description/tolerance.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/expression/formula.hpp"
-#include "fettle/core/scene/place.hpp"
+#include "core/expression/formula.hpp"
+#include "core/scene/place.hpp"
 
 namespace fettle::design::description {
 

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/expression/formula.hpp"
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/tolerances/distribution.hpp"
+#include "core/expression/formula.hpp"
+#include "design/description/design.hpp"
+#include "design/tolerances/distribution.hpp"
 
 namespace fettle::design::description {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
-#include "fettle/design/exports/palette.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
+#include "design/exports/palette.hpp"
 
 namespace fettle::design::exports {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/exports/base64.hpp"
+#include "design/exports/base64.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/exports/depth_buffer.hpp"
+#include "design/exports/depth_buffer.hpp"
 
 #include <algorithm>
 #include <cmath>

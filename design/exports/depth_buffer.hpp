@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/design/exports/image.hpp"
-#include "fettle/design/exports/palette.hpp"
+#include "design/exports/image.hpp"
+#include "design/exports/palette.hpp"
 
 namespace fettle::design::exports {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/exports/export_files.hpp"
+#include "design/exports/export_files.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/files/unique_names.hpp"
-#include "fettle/design/exports/glb_writer.hpp"
-#include "fettle/design/exports/vtk_writer.hpp"
+#include "core/base/contract.hpp"
+#include "core/files/unique_names.hpp"
+#include "design/exports/glb_writer.hpp"
+#include "design/exports/vtk_writer.hpp"
 
 namespace fettle::design::exports {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/exports/assembly.hpp"
+#include "core/base/result.hpp"
+#include "design/exports/assembly.hpp"
 
 namespace fettle::design::exports {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // glTF 2.0, Khronos Group 2021: section 3 (JSON), 4.4 (GLB). Numbers of accessors, views and so on are indices into their lists.
-#include "fettle/design/exports/glb_writer.hpp"
+#include "design/exports/glb_writer.hpp"
 
 #include <bit>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/core/kinematics/rotation.hpp"
+#include "core/base/version.hpp"
+#include "core/files/json_dump.hpp"
+#include "core/kinematics/rotation.hpp"
 
 namespace fettle::design::exports {
 

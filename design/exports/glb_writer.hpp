@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "fettle/design/exports/assembly.hpp"
+#include "design/exports/assembly.hpp"
 
 namespace fettle::design::exports {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fettle/core/mesh_files/mesh_writer.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
 
 namespace fettle::design::exports {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/exports/palette.hpp"
+#include "design/exports/palette.hpp"
 
 #include <algorithm>
 #include <array>

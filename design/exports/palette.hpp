@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/mesh_files/mesh_writer.hpp"
-#include "fettle/core/model/model.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
+#include "core/model/model.hpp"
 
 namespace fettle::design::exports {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/exports/parts_view.hpp"
+#include "design/exports/parts_view.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::design::exports {
 

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/design/exports/assembly.hpp"
-#include "fettle/design/exports/depth_buffer.hpp"
-#include "fettle/design/exports/projection_view.hpp"
+#include "core/geometry/mesh.hpp"
+#include "design/exports/assembly.hpp"
+#include "design/exports/depth_buffer.hpp"
+#include "design/exports/projection_view.hpp"
 
 namespace fettle::design::exports {
 

@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/design/exports/assembly.hpp"
-#include "fettle/design/exports/image.hpp"
-#include "fettle/design/exports/parts_view.hpp"
-#include "fettle/design/exports/projection_view.hpp"
+#include "design/exports/assembly.hpp"
+#include "design/exports/image.hpp"
+#include "design/exports/parts_view.hpp"
+#include "design/exports/projection_view.hpp"
 
 namespace fettle::design::exports {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/exports/picture.hpp"
+#include "design/exports/picture.hpp"
 
 namespace fettle::design::exports {
 

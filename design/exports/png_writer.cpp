@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // cairo's functions are loaded where they are first called (core/base/shared_library.hpp): it brings fonts and a window system with it.
-#include "fettle/design/exports/png_writer.hpp"
+#include "design/exports/png_writer.hpp"
 
 #include <cairo-ft.h>
 #include <ft2build.h>
@@ -11,10 +11,10 @@
 #include <memory>
 #include <new>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/shared_library.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/exports/picture_marks.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/shared_library.hpp"
+#include "core/base/text.hpp"
+#include "design/exports/picture_marks.hpp"
 
 namespace fettle::design::exports {
 

@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include "fettle/design/exports/image.hpp"
-#include "fettle/design/exports/picture.hpp"
+#include "design/exports/image.hpp"
+#include "design/exports/picture.hpp"
 
 namespace fettle::design::exports {
 

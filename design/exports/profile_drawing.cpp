@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/exports/profile_drawing.hpp"
+#include "design/exports/profile_drawing.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "fettle/core/parts/curve_geometry.hpp"
+#include "core/parts/curve_geometry.hpp"
 
 namespace fettle::design::exports {
 namespace {

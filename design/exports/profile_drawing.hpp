@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "fettle/core/parts/profile.hpp"
+#include "core/parts/profile.hpp"
 
 namespace fettle::design::exports {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/exports/projection_view.hpp"
+#include "design/exports/projection_view.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
 
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/files/text_lines.hpp"
-#include "fettle/core/kinematics/rotation.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/files/text_lines.hpp"
+#include "core/kinematics/rotation.hpp"
 
 namespace fettle::design::exports {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::design::exports {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/exports/svg_writer.hpp"
+#include "design/exports/svg_writer.hpp"
 
 #include <cstdio>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/exports/base64.hpp"
-#include "fettle/design/exports/picture_marks.hpp"
-#include "fettle/design/exports/png_writer.hpp"
+#include "core/base/text.hpp"
+#include "design/exports/base64.hpp"
+#include "design/exports/picture_marks.hpp"
+#include "design/exports/png_writer.hpp"
 
 namespace fettle::design::exports {
 

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "fettle/design/exports/picture.hpp"
+#include "design/exports/picture.hpp"
 
 namespace fettle::design::exports {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // VTK XML file formats, version 1.0: UnstructuredGrid, appended raw data, vtkZLibDataCompressor, header_type UInt64.
-#include "fettle/design/exports/vtk_writer.hpp"
+#include "design/exports/vtk_writer.hpp"
 
 #include <zlib.h>
 
@@ -8,9 +8,9 @@
 #include <bit>
 #include <cstdint>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/mesh_files/millimetres.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/text.hpp"
+#include "core/mesh_files/millimetres.hpp"
 
 namespace fettle::design::exports {
 

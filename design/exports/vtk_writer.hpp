@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/design/exports/assembly.hpp"
+#include "design/exports/assembly.hpp"
 
 namespace fettle::design::exports {
 

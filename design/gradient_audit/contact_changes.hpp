@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/gradient_audit/contact_states.hpp"
+#include "design/gradient_audit/contact_states.hpp"
 
 namespace fettle::design::gradient_audit {
 

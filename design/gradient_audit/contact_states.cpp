@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/gradient_audit/contact_states.hpp"
+#include "design/gradient_audit/contact_states.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <numeric>
 #include <tuple>
 
-#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
-#include "fettle/adjoint/stepper/step_linearisation.hpp"
-#include "fettle/core/contact/closest_feature.hpp"
-#include "fettle/core/contact/contact_set.hpp"
+#include "adjoint/contact/contact_pair_adjoint.hpp"
+#include "adjoint/stepper/step_linearisation.hpp"
+#include "core/contact/closest_feature.hpp"
+#include "core/contact/contact_set.hpp"
 
 namespace fettle::design::gradient_audit {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::design::gradient_audit {
 

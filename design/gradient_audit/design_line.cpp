@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/gradient_audit/design_line.hpp"
+#include "design/gradient_audit/design_line.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/parallel.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/parallel.hpp"
 
 namespace fettle::design::gradient_audit {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/design/problem/design_problem.hpp"
+#include "core/base/types.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::gradient_audit {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/gradient_audit/difference_check.hpp"
+#include "design/gradient_audit/difference_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@
 #include <numeric>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/design/gradient_audit/design_line.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/parallel.hpp"
+#include "design/gradient_audit/design_line.hpp"
 
 namespace fettle::design::gradient_audit {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/design/gradient_audit/contact_changes.hpp"
-#include "fettle/design/gradient_audit/roughness.hpp"
-#include "fettle/design/gradient_audit/sweep_agreement.hpp"
-#include "fettle/design/problem/design_problem.hpp"
+#include "core/base/types.hpp"
+#include "design/gradient_audit/contact_changes.hpp"
+#include "design/gradient_audit/roughness.hpp"
+#include "design/gradient_audit/sweep_agreement.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::gradient_audit {
 

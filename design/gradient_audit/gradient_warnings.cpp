@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/gradient_audit/gradient_warnings.hpp"
+#include "design/gradient_audit/gradient_warnings.hpp"
 
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/gradient_audit/design_line.hpp"
-#include "fettle/design/gradient_audit/roughness.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/text.hpp"
+#include "design/description/requirement_text.hpp"
+#include "design/gradient_audit/design_line.hpp"
+#include "design/gradient_audit/roughness.hpp"
 
 namespace fettle::design::gradient_audit {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/design/description/design.hpp"
+#include "core/base/types.hpp"
+#include "design/description/design.hpp"
 
 namespace fettle::design::gradient_audit {
 

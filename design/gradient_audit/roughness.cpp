@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/gradient_audit/roughness.hpp"
+#include "design/gradient_audit/roughness.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/limits.hpp"
-#include "fettle/design/gradient_audit/design_line.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
+#include "design/gradient_audit/design_line.hpp"
 
 namespace fettle::design::gradient_audit {
 

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/design/optimisers/noise.hpp"
-#include "fettle/design/problem/design_problem.hpp"
+#include "core/base/types.hpp"
+#include "design/optimisers/noise.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::gradient_audit {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/gradient_audit/sweep_agreement.hpp"
+#include "design/gradient_audit/sweep_agreement.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
-#include "fettle/adjoint/stepper/row_multipliers.hpp"
-#include "fettle/adjoint/stepper/tangent_sweep.hpp"
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/limits.hpp"
-#include "fettle/design/gradient_audit/design_line.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
+#include "adjoint/stepper/row_multipliers.hpp"
+#include "adjoint/stepper/tangent_sweep.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
+#include "design/gradient_audit/design_line.hpp"
 
 namespace fettle::design::gradient_audit {
 namespace {

@@ -16,7 +16,7 @@
 #include <optional>
 #include <string>
 
-#include "fettle/design/optimisers/problem.hpp"
+#include "design/optimisers/problem.hpp"
 
 namespace fettle::design::optimisers {
 

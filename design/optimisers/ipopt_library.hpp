@@ -4,7 +4,7 @@
 
 #include <IpStdCInterface.h>
 
-#include "fettle/core/linear/library_threads.hpp"
+#include "core/linear/library_threads.hpp"
 
 namespace fettle::design::optimisers {
 

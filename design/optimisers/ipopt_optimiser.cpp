@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/ipopt_optimiser.hpp"
+#include "design/optimisers/ipopt_optimiser.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "fettle/design/optimisers/nonlinear_program.hpp"
+#include "design/optimisers/nonlinear_program.hpp"
 
 namespace fettle::design::optimisers {
 

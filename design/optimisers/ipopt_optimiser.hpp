@@ -5,7 +5,7 @@
 /// value, and Ipopt halves its step.
 #pragma once
 
-#include "fettle/design/optimisers/optimiser.hpp"
+#include "design/optimisers/optimiser.hpp"
 
 namespace fettle::design::optimisers {
 

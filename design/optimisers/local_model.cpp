@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/local_model.hpp"
+#include "design/optimisers/local_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/linear/factorisations.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "fettle/design/optimisers/evaluator.hpp"
-#include "fettle/design/optimisers/quadratic_program.hpp"
+#include "design/optimisers/evaluator.hpp"
+#include "design/optimisers/quadratic_program.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/nearest_design.hpp"
+#include "design/optimisers/nearest_design.hpp"
 
 #include <utility>
 

@@ -3,7 +3,7 @@
 ///   minimise sum_k r_k^2,   r_k = (x_k - origin_k) / (upper_k - lower_k),   under the constraints of the problem
 #pragma once
 
-#include "fettle/design/optimisers/problem.hpp"
+#include "design/optimisers/problem.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/nlopt_library.hpp"
+#include "design/optimisers/nlopt_library.hpp"
 
-#include "fettle/core/base/shared_library.hpp"
+#include "core/base/shared_library.hpp"
 
 namespace fettle::design::optimisers {
 

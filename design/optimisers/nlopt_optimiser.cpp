@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/nlopt_optimiser.hpp"
+#include "design/optimisers/nlopt_optimiser.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 
-#include "fettle/design/optimisers/nlopt_library.hpp"
+#include "design/optimisers/nlopt_library.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -4,7 +4,7 @@
 /// the best point, within a box that the failed point lies outside of.
 #pragma once
 
-#include "fettle/design/optimisers/optimiser.hpp"
+#include "design/optimisers/optimiser.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/noise.hpp"
+#include "design/optimisers/noise.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/limits.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/nonlinear_program.hpp"
+#include "design/optimisers/nonlinear_program.hpp"
 
 #include <algorithm>
 #include <memory>
 #include <mutex>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/optimisers/ipopt_library.hpp"
+#include "core/base/contract.hpp"
+#include "design/optimisers/ipopt_library.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/optimality.hpp"
+#include "design/optimisers/optimality.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "fettle/design/optimisers/local_model.hpp"
-#include "fettle/design/optimisers/noise.hpp"
-#include "fettle/design/optimisers/unexplored.hpp"
+#include "design/optimisers/local_model.hpp"
+#include "design/optimisers/noise.hpp"
+#include "design/optimisers/unexplored.hpp"
 
 namespace fettle::design::optimisers {
 

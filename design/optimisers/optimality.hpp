@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/optimisers/optimiser.hpp"
+#include "design/optimisers/optimiser.hpp"
 
 namespace fettle::design::optimisers {
 

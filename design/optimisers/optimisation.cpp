@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/optimisation.hpp"
+#include "design/optimisers/optimisation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/optimisers/ipopt_optimiser.hpp"
-#include "fettle/design/optimisers/nlopt_optimiser.hpp"
-#include "fettle/design/optimisers/sequential_optimiser.hpp"
+#include "core/base/text.hpp"
+#include "design/optimisers/ipopt_optimiser.hpp"
+#include "design/optimisers/nlopt_optimiser.hpp"
+#include "design/optimisers/sequential_optimiser.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/optimisers/optimality.hpp"
-#include "fettle/design/optimisers/optimiser.hpp"
+#include "core/base/result.hpp"
+#include "design/optimisers/optimality.hpp"
+#include "design/optimisers/optimiser.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "fettle/design/optimisers/evaluator.hpp"
-#include "fettle/design/optimisers/problem.hpp"
+#include "design/optimisers/evaluator.hpp"
+#include "design/optimisers/problem.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::design::optimisers {
 

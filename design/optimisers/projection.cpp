@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/projection.hpp"
+#include "design/optimisers/projection.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/design/optimisers/quadratic_program.hpp"
+#include "design/optimisers/quadratic_program.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "fettle/design/optimisers/problem.hpp"
+#include "design/optimisers/problem.hpp"
 
 namespace fettle::design::optimisers {
 

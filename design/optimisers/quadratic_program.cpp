@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/quadratic_program.hpp"
+#include "design/optimisers/quadratic_program.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/optimisers/nonlinear_program.hpp"
+#include "core/base/contract.hpp"
+#include "design/optimisers/nonlinear_program.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -11,7 +11,7 @@
 
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/sequential_optimiser.hpp"
+#include "design/optimisers/sequential_optimiser.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/design/optimisers/local_model.hpp"
+#include "design/optimisers/local_model.hpp"
 
 namespace fettle::design::optimisers {
 

@@ -18,7 +18,7 @@
 /// Done when the predicted decrease is below the tolerance, or the box below the least size worth a simulation.
 #pragma once
 
-#include "fettle/design/optimisers/optimiser.hpp"
+#include "design/optimisers/optimiser.hpp"
 
 namespace fettle::design::optimisers {
 

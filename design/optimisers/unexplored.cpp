@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/unexplored.hpp"
+#include "design/optimisers/unexplored.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/base/contract.hpp"
+#include "core/linear/factorisations.hpp"
 
 namespace fettle::design::optimisers {
 

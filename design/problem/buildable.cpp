@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/buildable.hpp"
+#include "design/problem/buildable.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "fettle/core/base/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace fettle::design::problem {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/check_design.hpp"
+#include "design/problem/check_design.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/scene/place.hpp"
-#include "fettle/design/description/requirement_text.hpp"
+#include "core/base/text.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/scene/place.hpp"
+#include "design/description/requirement_text.hpp"
 
 namespace fettle::design::problem {
 

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/design/description/design.hpp"
+#include "core/base/result.hpp"
+#include "core/model/model.hpp"
+#include "design/description/design.hpp"
 
 namespace fettle::design::problem {
 

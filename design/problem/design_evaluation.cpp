@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/design_evaluation.hpp"
+#include "design/problem/design_evaluation.hpp"
 
 #include <cmath>
 #include <mutex>
 #include <utility>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/description/made_design.hpp"
+#include "core/base/text.hpp"
+#include "design/description/made_design.hpp"
 
 namespace fettle::design::problem {
 

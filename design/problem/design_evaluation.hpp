@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/optimisers/problem.hpp"
-#include "fettle/design/problem/witness_branches.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "design/description/design.hpp"
+#include "design/description/requirement_text.hpp"
+#include "design/optimisers/problem.hpp"
+#include "design/problem/witness_branches.hpp"
 
 namespace fettle::design::problem {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/design_problem.hpp"
+#include "design/problem/design_problem.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/adjoint/stepper/seeded_sweep.hpp"
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/design/description/made_design.hpp"
-#include "fettle/design/problem/check_design.hpp"
-#include "fettle/design/problem/evaluate_over_tolerances.hpp"
-#include "fettle/design/problem/stopwatch.hpp"
+#include "adjoint/stepper/seeded_sweep.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/parallel.hpp"
+#include "core/setup/build_model.hpp"
+#include "design/description/made_design.hpp"
+#include "design/problem/check_design.hpp"
+#include "design/problem/evaluate_over_tolerances.hpp"
+#include "design/problem/stopwatch.hpp"
 
 namespace fettle::design::problem {
 

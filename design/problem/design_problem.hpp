@@ -14,12 +14,12 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/build_mechanism.hpp"
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/problem/design_evaluation.hpp"
-#include "fettle/design/problem/evaluate_over_tolerances.hpp"
-#include "fettle/design/problem/moved_scene.hpp"
+#include "core/base/result.hpp"
+#include "core/model/build_mechanism.hpp"
+#include "design/description/design.hpp"
+#include "design/problem/design_evaluation.hpp"
+#include "design/problem/evaluate_over_tolerances.hpp"
+#include "design/problem/moved_scene.hpp"
 
 namespace fettle::design::problem {
 

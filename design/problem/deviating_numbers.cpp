@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/deviating_numbers.hpp"
+#include "design/problem/deviating_numbers.hpp"
 
 #include <algorithm>
 #include <set>
 #include <utility>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/problem/vanishing_number.hpp"
+#include "core/base/text.hpp"
+#include "design/problem/vanishing_number.hpp"
 
 namespace fettle::design::problem {
 

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/certificate/toleranced.hpp"
-#include "fettle/core/expression/tape.hpp"
-#include "fettle/core/geometry/range.hpp"
-#include "fettle/core/scene/place.hpp"
-#include "fettle/core/scene_files/scene_formulas.hpp"
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/description/tolerance.hpp"
+#include "core/certificate/toleranced.hpp"
+#include "core/expression/tape.hpp"
+#include "core/geometry/range.hpp"
+#include "core/scene/place.hpp"
+#include "core/scene_files/scene_formulas.hpp"
+#include "design/description/design.hpp"
+#include "design/description/tolerance.hpp"
 
 namespace fettle::design::problem {
 

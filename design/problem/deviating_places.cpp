@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/deviating_places.hpp"
+#include "design/problem/deviating_places.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <numeric>
 #include <string>
 
-#include "fettle/core/constraint/assembly.hpp"
+#include "core/constraint/assembly.hpp"
 
 namespace fettle::design::problem {
 

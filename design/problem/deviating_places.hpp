@@ -20,10 +20,10 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/clearance/looped_ranges.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/design/problem/deviating_numbers.hpp"
+#include "core/base/result.hpp"
+#include "core/clearance/looped_ranges.hpp"
+#include "core/model/model.hpp"
+#include "design/problem/deviating_numbers.hpp"
 
 namespace fettle::design::problem {
 

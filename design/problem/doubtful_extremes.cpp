@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/doubtful_extremes.hpp"
+#include "design/problem/doubtful_extremes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/quantities/expression.hpp"
-#include "fettle/design/quantities/in_scenario.hpp"
-#include "fettle/design/quantities/step_series.hpp"
-#include "fettle/design/quantities/worst.hpp"
+#include "core/base/text.hpp"
+#include "design/description/requirement_text.hpp"
+#include "design/quantities/expression.hpp"
+#include "design/quantities/in_scenario.hpp"
+#include "design/quantities/step_series.hpp"
+#include "design/quantities/worst.hpp"
 
 namespace fettle::design::problem {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/problem/design_problem.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::problem {
 

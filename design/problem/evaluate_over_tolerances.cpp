@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/evaluate_over_tolerances.hpp"
+#include "design/problem/evaluate_over_tolerances.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/design/description/made_design.hpp"
-#include "fettle/design/problem/proven_clearance.hpp"
-#include "fettle/design/problem/stopwatch.hpp"
+#include "core/base/parallel.hpp"
+#include "design/description/made_design.hpp"
+#include "design/problem/proven_clearance.hpp"
+#include "design/problem/stopwatch.hpp"
 
 namespace fettle::design::problem {
 

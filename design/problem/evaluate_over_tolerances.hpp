@@ -17,8 +17,8 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/problem/design_evaluation.hpp"
+#include "design/description/design.hpp"
+#include "design/problem/design_evaluation.hpp"
 
 namespace fettle::design::problem {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/fits.hpp"
+#include "design/problem/fits.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -9,11 +9,11 @@
 #include <set>
 #include <utility>
 
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/constraint/row.hpp"
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/contact/round_contacts.hpp"
-#include "fettle/core/model/row_choice.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/constraint/row.hpp"
+#include "core/contact/contact_set.hpp"
+#include "core/contact/round_contacts.hpp"
+#include "core/model/row_choice.hpp"
 
 namespace fettle::design::problem {
 

@@ -11,8 +11,8 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::design::problem {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/motion_warnings.hpp"
+#include "design/problem/motion_warnings.hpp"
 
-#include "fettle/core/stepper/balance.hpp"
-#include "fettle/core/stepper/branch_warnings.hpp"
-#include "fettle/design/problem/doubtful_extremes.hpp"
+#include "core/stepper/balance.hpp"
+#include "core/stepper/branch_warnings.hpp"
+#include "design/problem/doubtful_extremes.hpp"
 
 namespace fettle::design::problem {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/problem/design_problem.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::problem {
 

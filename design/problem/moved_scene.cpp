@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/moved_scene.hpp"
+#include "design/problem/moved_scene.hpp"
 
 #include <algorithm>
 #include <map>
 #include <set>
 
-#include "fettle/adjoint/model/build_model_adjoint.hpp"
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/kinematics/tangent_system.hpp"
+#include "adjoint/model/build_model_adjoint.hpp"
+#include "core/base/contract.hpp"
+#include "core/kinematics/tangent_system.hpp"
 
 namespace fettle::design::problem {
 

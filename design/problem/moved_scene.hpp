@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/scene/place.hpp"
-#include "fettle/design/description/design.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/base/result.hpp"
+#include "core/model/model.hpp"
+#include "core/scene/place.hpp"
+#include "design/description/design.hpp"
 
 namespace fettle::design::problem {
 

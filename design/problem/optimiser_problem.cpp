@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/optimiser_problem.hpp"
+#include "design/problem/optimiser_problem.hpp"
 
 #include <cmath>
 
-#include "fettle/design/optimisers/projection.hpp"
+#include "design/optimisers/projection.hpp"
 
 namespace fettle::design::problem {
 

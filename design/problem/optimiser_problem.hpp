@@ -2,8 +2,8 @@
 /// A design as what optimisers see: optimisers/problem.hpp.
 #pragma once
 
-#include "fettle/design/optimisers/problem.hpp"
-#include "fettle/design/problem/design_problem.hpp"
+#include "design/optimisers/problem.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::problem {
 

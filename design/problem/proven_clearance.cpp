@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/proven_clearance.hpp"
+#include "design/problem/proven_clearance.hpp"
 
 #include <cmath>
 #include <optional>
 
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/clearance/looped_ranges.hpp"
-#include "fettle/core/clearance/toleranced_clearance.hpp"
-#include "fettle/design/problem/toleranced_bodies.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/clearance/looped_ranges.hpp"
+#include "core/clearance/toleranced_clearance.hpp"
+#include "design/problem/toleranced_bodies.hpp"
 
 namespace fettle::design::problem {
 

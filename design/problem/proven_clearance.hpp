@@ -6,10 +6,10 @@
 /// or the distance does not change with it there.
 #pragma once
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/design/description/made_design.hpp"
-#include "fettle/design/quantities/clearance.hpp"
+#include "core/base/result.hpp"
+#include "core/model/model.hpp"
+#include "design/description/made_design.hpp"
+#include "design/quantities/clearance.hpp"
 
 namespace fettle::design::problem {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/smoother_models.hpp"
+#include "design/problem/smoother_models.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/clearance/clearance.hpp"
+#include "core/base/text.hpp"
+#include "core/clearance/clearance.hpp"
 
 namespace fettle::design::problem {
 

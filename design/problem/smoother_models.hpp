@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/problem/fits.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/problem/fits.hpp"
 
 namespace fettle::design::problem {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/toleranced_bodies.hpp"
+#include "design/problem/toleranced_bodies.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,14 +7,14 @@
 #include <set>
 #include <string>
 
-#include "fettle/core/clearance/driven_ranges.hpp"
-#include "fettle/core/clearance/made_bodies.hpp"
-#include "fettle/core/scene/mass_kind.hpp"
-#include "fettle/core/scene/place.hpp"
-#include "fettle/core/scene_files/scene_formulas.hpp"
-#include "fettle/design/problem/deviating_numbers.hpp"
-#include "fettle/design/problem/deviating_places.hpp"
-#include "fettle/design/problem/moved_scene.hpp"
+#include "core/clearance/driven_ranges.hpp"
+#include "core/clearance/made_bodies.hpp"
+#include "core/scene/mass_kind.hpp"
+#include "core/scene/place.hpp"
+#include "core/scene_files/scene_formulas.hpp"
+#include "design/problem/deviating_numbers.hpp"
+#include "design/problem/deviating_places.hpp"
+#include "design/problem/moved_scene.hpp"
 
 namespace fettle::design::problem {
 

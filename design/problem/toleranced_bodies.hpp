@@ -13,12 +13,12 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/certificate/toleranced.hpp"
-#include "fettle/core/clearance/looped_ranges.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/description/tolerance.hpp"
+#include "core/base/result.hpp"
+#include "core/certificate/toleranced.hpp"
+#include "core/clearance/looped_ranges.hpp"
+#include "core/model/model.hpp"
+#include "design/description/design.hpp"
+#include "design/description/tolerance.hpp"
 
 namespace fettle::design::problem {
 

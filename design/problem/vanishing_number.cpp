@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/vanishing_number.hpp"
+#include "design/problem/vanishing_number.hpp"
 
 #include <algorithm>
 #include <cmath>

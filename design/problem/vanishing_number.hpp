@@ -6,8 +6,8 @@
 
 #include <span>
 
-#include "fettle/core/expression/tape.hpp"
-#include "fettle/core/geometry/range.hpp"
+#include "core/expression/tape.hpp"
+#include "core/geometry/range.hpp"
 
 namespace fettle::design::problem {
 

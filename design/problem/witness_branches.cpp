@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/witness_branches.hpp"
+#include "design/problem/witness_branches.hpp"
 
 #include <cmath>
 #include <limits>

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/optimisers/problem.hpp"
+#include "design/description/design.hpp"
+#include "design/optimisers/problem.hpp"
 
 namespace fettle::design::problem {
 

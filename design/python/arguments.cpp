@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/python/arguments.hpp"
+#include "design/python/arguments.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/design/python/errors.hpp"
+#include "core/base/limits.hpp"
+#include "core/files/nearest_word.hpp"
+#include "design/python/errors.hpp"
 
 namespace fettle::design::python {
 

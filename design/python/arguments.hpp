@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "core/base/units.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::design::python {
 

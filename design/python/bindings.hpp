@@ -5,7 +5,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "fettle/core/expression/formula.hpp"
+#include "core/expression/formula.hpp"
 
 namespace fettle::design::python {
 

@@ -4,18 +4,18 @@
 #include <optional>
 #include <utility>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/clearance/range_clearance.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/design/clearance/report_json.hpp"
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/bindings.hpp"
-#include "fettle/design/python/errors.hpp"
-#include "fettle/design/python/model_arrays.hpp"
-#include "fettle/design/python/motion_records.hpp"
-#include "fettle/design/python/watch.hpp"
+#include "core/base/text.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/clearance/range_clearance.hpp"
+#include "core/files/json_dump.hpp"
+#include "design/clearance/report_json.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/bindings.hpp"
+#include "design/python/errors.hpp"
+#include "design/python/model_arrays.hpp"
+#include "design/python/motion_records.hpp"
+#include "design/python/watch.hpp"
 
 namespace fettle::design::python {
 

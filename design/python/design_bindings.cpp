@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include "fettle/core/expression/parse_formula.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/bindings.hpp"
-#include "fettle/design/python/design_records.hpp"
-#include "fettle/design/python/errors.hpp"
-#include "fettle/design/reading/design_text.hpp"
+#include "core/expression/parse_formula.hpp"
+#include "core/files/nearest_word.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/bindings.hpp"
+#include "design/python/design_records.hpp"
+#include "design/python/errors.hpp"
+#include "design/reading/design_text.hpp"
 
 namespace fettle::design::python {
 

@@ -2,13 +2,13 @@
 /// The members of the classes that describe a design and its results, for records.hpp.
 #pragma once
 
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/python/motion_records.hpp"
-#include "fettle/design/python/own_quantity.hpp"
-#include "fettle/design/python/own_shape.hpp"
-#include "fettle/design/python/scene_records.hpp"
-#include "fettle/design/reading/design_reader.hpp"
+#include "design/description/design.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/python/motion_records.hpp"
+#include "design/python/own_quantity.hpp"
+#include "design/python/own_shape.hpp"
+#include "design/python/scene_records.hpp"
+#include "design/reading/design_reader.hpp"
 
 namespace fettle::design::python {
 

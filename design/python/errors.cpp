@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/python/errors.hpp"
+#include "design/python/errors.hpp"
 
 #include <pybind11/stl.h>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/python/records.hpp"
+#include "core/base/text.hpp"
+#include "design/python/records.hpp"
 
 FETTLE_WORDS(fettle::core::base::ErrorCode, "file_not_found", "file_unreadable", "file_unwritable", "out_of_memory", "parse", "unknown_key",
              "missing_key", "wrong_type", "out_of_range", "not_finite", "mesh_invalid", "bodies_intersect", "inconsistent", "unsupported")

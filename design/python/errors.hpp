@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/design/python/raised_errors.hpp"
+#include "design/python/raised_errors.hpp"
 
 namespace fettle::design::python {
 

@@ -6,14 +6,14 @@
 #include <variant>
 #include <vector>
 
-#include "fettle/core/base/stop.hpp"
-#include "fettle/core/files/json_text.hpp"
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/bindings.hpp"
-#include "fettle/design/python/design_records.hpp"
-#include "fettle/design/python/errors.hpp"
-#include "fettle/design/python/watch.hpp"
-#include "fettle/design/studies/exploration.hpp"
+#include "core/base/stop.hpp"
+#include "core/files/json_text.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/bindings.hpp"
+#include "design/python/design_records.hpp"
+#include "design/python/errors.hpp"
+#include "design/python/watch.hpp"
+#include "design/studies/exploration.hpp"
 
 namespace fettle::design::python {
 

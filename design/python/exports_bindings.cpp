@@ -2,20 +2,20 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/stepper/scripted_motion.hpp"
-#include "fettle/design/exports/export_files.hpp"
-#include "fettle/design/exports/picture.hpp"
-#include "fettle/design/exports/png_writer.hpp"
-#include "fettle/design/exports/projection_view.hpp"
-#include "fettle/design/exports/svg_writer.hpp"
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/bindings.hpp"
-#include "fettle/design/python/errors.hpp"
-#include "fettle/design/report/report_data.hpp"
-#include "fettle/design/report/report_folder.hpp"
-#include "fettle/design/report/report_page.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/stepper/scripted_motion.hpp"
+#include "design/exports/export_files.hpp"
+#include "design/exports/picture.hpp"
+#include "design/exports/png_writer.hpp"
+#include "design/exports/projection_view.hpp"
+#include "design/exports/svg_writer.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/bindings.hpp"
+#include "design/python/errors.hpp"
+#include "design/report/report_data.hpp"
+#include "design/report/report_folder.hpp"
+#include "design/report/report_page.hpp"
 
 namespace fettle::design::python {
 

@@ -5,9 +5,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
-#include "fettle/design/python/scene_records.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
+#include "design/python/scene_records.hpp"
 
 namespace fettle::design::python {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/bindings.hpp"
-#include "fettle/design/python/errors.hpp"
-#include "fettle/design/python/model_arrays.hpp"
+#include "core/setup/build_model.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/bindings.hpp"
+#include "design/python/errors.hpp"
+#include "design/python/model_arrays.hpp"
 
 namespace fettle::design::python {
 

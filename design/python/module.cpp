@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/version.hpp"
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/bindings.hpp"
-#include "fettle/design/python/errors.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/version.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/bindings.hpp"
+#include "design/python/errors.hpp"
 
 PYBIND11_MODULE(_fettle, module) {
     namespace python = fettle::design::python;

@@ -2,11 +2,11 @@
 /// The members of what a simulation and a certification of clearance answer, for records.hpp.
 #pragma once
 
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/clearance/joint_ranges.hpp"
-#include "fettle/core/clearance/pair_clearance.hpp"
-#include "fettle/core/stepper/simulation.hpp"
-#include "fettle/design/python/records.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/clearance/joint_ranges.hpp"
+#include "core/clearance/pair_clearance.hpp"
+#include "core/stepper/simulation.hpp"
+#include "design/python/records.hpp"
 
 FETTLE_WORDS(fettle::core::stepper::SimulationStatus, "ok", "blocked", "not_held", "not_converged", "energy_gained", "interrupted")
 FETTLE_WORDS(fettle::core::clearance::PairStatus, "clear", "violated", "undecided", "contact")

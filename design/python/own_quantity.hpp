@@ -9,8 +9,8 @@
 
 #include <memory>
 
-#include "fettle/design/description/quantity.hpp"
-#include "fettle/design/python/motion_records.hpp"
+#include "design/description/quantity.hpp"
+#include "design/python/motion_records.hpp"
 
 namespace fettle::design::python {
 

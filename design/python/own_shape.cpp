@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/python/own_shape.hpp"
+#include "design/python/own_shape.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/errors.hpp"
-#include "fettle/design/python/scene_records.hpp"
-#include "fettle/design/shapes/file_part.hpp"
-#include "fettle/design/shapes/mesh_program.hpp"
-#include "fettle/design/shapes/part_library.hpp"
+#include "core/files/nearest_word.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/errors.hpp"
+#include "design/python/scene_records.hpp"
+#include "design/shapes/file_part.hpp"
+#include "design/shapes/mesh_program.hpp"
+#include "design/shapes/part_library.hpp"
 
 namespace fettle::design::python {
 

@@ -7,7 +7,7 @@
 
 #include <memory>
 
-#include "fettle/design/description/shape.hpp"
+#include "design/description/shape.hpp"
 
 namespace fettle::design::python {
 

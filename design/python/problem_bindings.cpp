@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/design_problem.hpp"
+#include "design/problem/design_problem.hpp"
 
 #include <cmath>
 
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/bindings.hpp"
-#include "fettle/design/python/design_records.hpp"
-#include "fettle/design/python/errors.hpp"
-#include "fettle/design/python/watch.hpp"
-#include "fettle/design/reading/design_reader.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/bindings.hpp"
+#include "design/python/design_records.hpp"
+#include "design/python/errors.hpp"
+#include "design/python/watch.hpp"
+#include "design/reading/design_reader.hpp"
 
 namespace fettle::design::python {
 

@@ -5,8 +5,8 @@
 #include <exception>
 #include <utility>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::design::python {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/python/records.hpp"
+#include "design/python/records.hpp"
 
 #include <cctype>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/nearest_word.hpp"
+#include "core/base/text.hpp"
+#include "core/files/nearest_word.hpp"
 
 namespace fettle::design::python {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/solids/mesh_judgement.hpp"
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/bindings.hpp"
-#include "fettle/design/python/errors.hpp"
-#include "fettle/design/python/scene_records.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/solids/mesh_judgement.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/bindings.hpp"
+#include "design/python/errors.hpp"
+#include "design/python/scene_records.hpp"
+#include "design/reading/scene_shapes.hpp"
 
 namespace fettle::design::python {
 

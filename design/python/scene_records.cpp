@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/python/scene_records.hpp"
+#include "design/python/scene_records.hpp"
 
 namespace fettle::design::python {
 

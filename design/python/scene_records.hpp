@@ -5,11 +5,11 @@
 
 #include <pybind11/numpy.h>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/scene/scene.hpp"
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/records.hpp"
-#include "fettle/design/shapes/mesh_program.hpp"
+#include "core/base/units.hpp"
+#include "core/scene/scene.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/records.hpp"
+#include "design/shapes/mesh_program.hpp"
 
 namespace fettle::design::python {
 

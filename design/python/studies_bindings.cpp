@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include <nlohmann/json.hpp>
 
-#include "fettle/design/answers/optimise_json.hpp"
-#include "fettle/design/answers/run_folder.hpp"
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/bindings.hpp"
-#include "fettle/design/python/design_records.hpp"
-#include "fettle/design/python/errors.hpp"
-#include "fettle/design/python/studies_records.hpp"
-#include "fettle/design/python/watch.hpp"
-#include "fettle/design/report/report_folder.hpp"
-#include "fettle/design/studies/optimise_file.hpp"
-#include "fettle/design/studies/random_start.hpp"
-#include "fettle/design/studies/starting_sides.hpp"
+#include "design/answers/optimise_json.hpp"
+#include "design/answers/run_folder.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/bindings.hpp"
+#include "design/python/design_records.hpp"
+#include "design/python/errors.hpp"
+#include "design/python/studies_records.hpp"
+#include "design/python/watch.hpp"
+#include "design/report/report_folder.hpp"
+#include "design/studies/optimise_file.hpp"
+#include "design/studies/random_start.hpp"
+#include "design/studies/starting_sides.hpp"
 
 namespace fettle::design::python {
 

@@ -2,9 +2,9 @@
 /// The members of what audits and optimisations answer, for records.hpp.
 #pragma once
 
-#include "fettle/design/gradient_audit/difference_check.hpp"
-#include "fettle/design/python/design_records.hpp"
-#include "fettle/design/studies/optimise_design.hpp"
+#include "design/gradient_audit/difference_check.hpp"
+#include "design/python/design_records.hpp"
+#include "design/studies/optimise_design.hpp"
 
 FETTLE_WORDS(fettle::design::optimisers::OptimiserStatus, "optimal", "feasible", "infeasible", "interrupted", "start_failed")
 FETTLE_WORDS(fettle::design::optimisers::Held, "stationary", "lower bound", "upper bound", "constraints", "nothing")

@@ -3,14 +3,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/design/answers/tolerance_json.hpp"
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/bindings.hpp"
-#include "fettle/design/python/errors.hpp"
-#include "fettle/design/python/watch.hpp"
-#include "fettle/design/studies/sample_maker.hpp"
-#include "fettle/design/studies/tolerance_file.hpp"
+#include "core/files/json_dump.hpp"
+#include "design/answers/tolerance_json.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/bindings.hpp"
+#include "design/python/errors.hpp"
+#include "design/python/watch.hpp"
+#include "design/studies/sample_maker.hpp"
+#include "design/studies/tolerance_file.hpp"
 
 namespace fettle::design::python {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/core/stepper/scripted_motion.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/python/arguments.hpp"
-#include "fettle/design/python/bindings.hpp"
-#include "fettle/design/python/errors.hpp"
-#include "fettle/design/python/model_arrays.hpp"
-#include "fettle/design/python/motion_records.hpp"
-#include "fettle/design/python/watch.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "core/stepper/scripted_motion.hpp"
+#include "core/stepper/simulate.hpp"
+#include "design/python/arguments.hpp"
+#include "design/python/bindings.hpp"
+#include "design/python/errors.hpp"
+#include "design/python/model_arrays.hpp"
+#include "design/python/motion_records.hpp"
+#include "design/python/watch.hpp"
 
 namespace fettle::design::python {
 

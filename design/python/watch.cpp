@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/python/watch.hpp"
+#include "design/python/watch.hpp"
 
 #include <chrono>
 

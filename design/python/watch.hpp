@@ -11,7 +11,7 @@
 #include <mutex>
 #include <string>
 
-#include "fettle/core/stepper/simulation.hpp"
+#include "core/stepper/simulation.hpp"
 
 namespace fettle::design::python {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/body_turn.hpp"
+#include "design/quantities/body_turn.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "fettle/core/measure/measure.hpp"
+#include "core/measure/measure.hpp"
 
 namespace fettle::design::quantities {
 

@@ -6,7 +6,7 @@
 /// along n.
 #pragma once
 
-#include "fettle/design/quantities/step_series.hpp"
+#include "design/quantities/step_series.hpp"
 
 namespace fettle::design::quantities {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/clearance.hpp"
+#include "design/quantities/clearance.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "fettle/adjoint/clearance/clearance_adjoint.hpp"
-#include "fettle/adjoint/clearance/local_witnesses.hpp"
-#include "fettle/adjoint/clearance/range_adjoint.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/clearance/range_clearance.hpp"
-#include "fettle/core/files/nearest_word.hpp"
+#include "adjoint/clearance/clearance_adjoint.hpp"
+#include "adjoint/clearance/local_witnesses.hpp"
+#include "adjoint/clearance/range_adjoint.hpp"
+#include "core/base/text.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/clearance/range_clearance.hpp"
+#include "core/files/nearest_word.hpp"
 
 namespace fettle::design::quantities {
 

@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/clearance/faces_alone.hpp"
-#include "fettle/design/description/quantity.hpp"
+#include "core/clearance/faces_alone.hpp"
+#include "design/description/quantity.hpp"
 
 namespace fettle::design::quantities {
 

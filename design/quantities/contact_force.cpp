@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/contact_force.hpp"
+#include "design/quantities/contact_force.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "fettle/adjoint/clearance/contact_gap_adjoint.hpp"
-#include "fettle/adjoint/stepper/contact_forces.hpp"
-#include "fettle/design/description/constraint.hpp"
-#include "fettle/design/description/requirement_text.hpp"
+#include "adjoint/clearance/contact_gap_adjoint.hpp"
+#include "adjoint/stepper/contact_forces.hpp"
+#include "design/description/constraint.hpp"
+#include "design/description/requirement_text.hpp"
 
 namespace fettle::design::quantities {
 

@@ -18,8 +18,8 @@
 
 #include <optional>
 
-#include "fettle/design/quantities/own_formula.hpp"
-#include "fettle/design/quantities/vector_series.hpp"
+#include "design/quantities/own_formula.hpp"
+#include "design/quantities/vector_series.hpp"
 
 namespace fettle::design::quantities {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/curve_slope.hpp"
+#include "design/quantities/curve_slope.hpp"
 
 #include <algorithm>
 #include <array>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::design::quantities {
 

@@ -2,7 +2,7 @@
 /// The slope of a table (core/scene/curve.hpp) in what it is over, for tables over a coordinate that moves with the design.
 #pragma once
 
-#include "fettle/core/scene/curve.hpp"
+#include "core/scene/curve.hpp"
 
 namespace fettle::design::quantities {
 

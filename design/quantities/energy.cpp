@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/energy.hpp"
+#include "design/quantities/energy.hpp"
 
-#include "fettle/adjoint/model/body_mass_adjoint.hpp"
-#include "fettle/adjoint/stepper/step_linearisation.hpp"
-#include "fettle/adjoint/stepper/velocities.hpp"
-#include "fettle/core/energy/measure_terms.hpp"
+#include "adjoint/model/body_mass_adjoint.hpp"
+#include "adjoint/stepper/step_linearisation.hpp"
+#include "adjoint/stepper/velocities.hpp"
+#include "core/energy/measure_terms.hpp"
 
 namespace fettle::design::quantities {
 

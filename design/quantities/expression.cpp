@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/expression.hpp"
+#include "design/quantities/expression.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/geometry/range.hpp"
-#include "fettle/design/quantities/own_formula.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/text.hpp"
+#include "core/geometry/range.hpp"
+#include "design/quantities/own_formula.hpp"
 
 namespace fettle::design::quantities {
 

@@ -13,9 +13,9 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/expression/formula.hpp"
-#include "fettle/design/description/parameter.hpp"
-#include "fettle/design/description/quantity.hpp"
+#include "core/expression/formula.hpp"
+#include "design/description/parameter.hpp"
+#include "design/description/quantity.hpp"
 
 namespace fettle::design::quantities {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/extreme.hpp"
+#include "design/quantities/extreme.hpp"
 
 #include <algorithm>
 #include <unsupported/Eigen/AutoDiff>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/text.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::design::quantities {
 

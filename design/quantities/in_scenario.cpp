@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/in_scenario.hpp"
+#include "design/quantities/in_scenario.hpp"
 
 #include <algorithm>
 
-#include "fettle/design/quantities/expression.hpp"
+#include "design/quantities/expression.hpp"
 
 namespace fettle::design::quantities {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/joint_load.hpp"
+#include "design/quantities/joint_load.hpp"
 
 #include <algorithm>
 
-#include "fettle/adjoint/stepper/row_multipliers.hpp"
-#include "fettle/core/model/row_choice.hpp"
+#include "adjoint/stepper/row_multipliers.hpp"
+#include "core/model/row_choice.hpp"
 
 namespace fettle::design::quantities {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/joint_position.hpp"
+#include "design/quantities/joint_position.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/measure/measure.hpp"
+#include "core/measure/measure.hpp"
 
 namespace fettle::design::quantities {
 

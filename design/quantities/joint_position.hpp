@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "fettle/design/quantities/step_series.hpp"
+#include "design/quantities/step_series.hpp"
 
 namespace fettle::design::quantities {
 

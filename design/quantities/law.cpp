@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/law.hpp"
+#include "design/quantities/law.hpp"
 
 #include <algorithm>
 
-#include "fettle/design/quantities/curve_slope.hpp"
-#include "fettle/design/quantities/own_formula.hpp"
+#include "design/quantities/curve_slope.hpp"
+#include "design/quantities/own_formula.hpp"
 
 namespace fettle::design::quantities {
 

@@ -8,9 +8,9 @@
 #include <memory>
 #include <vector>
 
-#include "fettle/core/expression/formula.hpp"
-#include "fettle/core/scene/curve.hpp"
-#include "fettle/design/quantities/step_series.hpp"
+#include "core/expression/formula.hpp"
+#include "core/scene/curve.hpp"
+#include "design/quantities/step_series.hpp"
 
 namespace fettle::design::quantities {
 

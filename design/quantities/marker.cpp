@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/marker.hpp"
+#include "design/quantities/marker.hpp"
 
 namespace fettle::design::quantities {
 

@@ -2,7 +2,7 @@
 /// A point fixed to a body, and the seed of its position.
 #pragma once
 
-#include "fettle/design/quantities/own_formula.hpp"
+#include "design/quantities/own_formula.hpp"
 
 namespace fettle::design::quantities {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/marker_path.hpp"
+#include "design/quantities/marker_path.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/quantities/marker.hpp"
+#include "core/base/contract.hpp"
+#include "design/quantities/marker.hpp"
 
 namespace fettle::design::quantities {
 

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "fettle/design/quantities/own_formula.hpp"
+#include "design/quantities/own_formula.hpp"
 
 namespace fettle::design::quantities {
 

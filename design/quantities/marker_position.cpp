@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/marker_position.hpp"
+#include "design/quantities/marker_position.hpp"
 
-#include "fettle/design/quantities/marker.hpp"
+#include "design/quantities/marker.hpp"
 
 namespace fettle::design::quantities {
 

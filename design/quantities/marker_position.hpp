@@ -4,8 +4,8 @@
 /// marker_speed.hpp has the integrator's own velocity.
 #pragma once
 
-#include "fettle/design/quantities/own_formula.hpp"
-#include "fettle/design/quantities/vector_series.hpp"
+#include "design/quantities/own_formula.hpp"
+#include "design/quantities/vector_series.hpp"
 
 namespace fettle::design::quantities {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/marker_speed.hpp"
+#include "design/quantities/marker_speed.hpp"
 
-#include "fettle/adjoint/stepper/velocities.hpp"
+#include "adjoint/stepper/velocities.hpp"
 
 namespace fettle::design::quantities {
 

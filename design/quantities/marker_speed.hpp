@@ -3,8 +3,8 @@
 ///   v = V [X; 1],   V the integrator's end velocity (adjoint/stepper/velocities.hpp)   [m/s], world
 #pragma once
 
-#include "fettle/design/quantities/own_formula.hpp"
-#include "fettle/design/quantities/vector_series.hpp"
+#include "design/quantities/own_formula.hpp"
+#include "design/quantities/vector_series.hpp"
 
 namespace fettle::design::quantities {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/mass.hpp"
+#include "design/quantities/mass.hpp"
 
-#include "fettle/adjoint/scene/mass_kind_adjoint.hpp"
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/scene/mass_kind.hpp"
+#include "adjoint/scene/mass_kind_adjoint.hpp"
+#include "core/base/contract.hpp"
+#include "core/scene/mass_kind.hpp"
 
 namespace fettle::design::quantities {
 

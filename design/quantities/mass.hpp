@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "fettle/core/scene/scene.hpp"
-#include "fettle/design/description/quantity.hpp"
+#include "core/scene/scene.hpp"
+#include "design/description/quantity.hpp"
 
 namespace fettle::design::quantities {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/own_formula.hpp"
+#include "design/quantities/own_formula.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::design::quantities {
 

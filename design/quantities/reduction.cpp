@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/reduction.hpp"
+#include "design/quantities/reduction.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/expression/dimension_powers.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/text.hpp"
+#include "core/expression/dimension_powers.hpp"
 
 namespace fettle::design::quantities {
 

@@ -14,10 +14,10 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/design/quantities/extreme.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "core/base/units.hpp"
+#include "design/quantities/extreme.hpp"
 
 namespace fettle::design::quantities {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/step_expression.hpp"
+#include "design/quantities/step_expression.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/quantities/mass.hpp"
-#include "fettle/design/quantities/own_formula.hpp"
-#include "fettle/design/quantities/stroke.hpp"
+#include "core/base/contract.hpp"
+#include "design/quantities/mass.hpp"
+#include "design/quantities/own_formula.hpp"
+#include "design/quantities/stroke.hpp"
 
 namespace fettle::design::quantities {
 

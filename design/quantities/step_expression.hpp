@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/design/quantities/expression.hpp"
-#include "fettle/design/quantities/step_series.hpp"
+#include "design/quantities/expression.hpp"
+#include "design/quantities/step_series.hpp"
 
 namespace fettle::design::quantities {
 

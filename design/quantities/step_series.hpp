@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/description/quantity.hpp"
-#include "fettle/design/quantities/reduction.hpp"
+#include "design/description/quantity.hpp"
+#include "design/quantities/reduction.hpp"
 
 namespace fettle::design::quantities {
 

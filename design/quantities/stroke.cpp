@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/stroke.hpp"
+#include "design/quantities/stroke.hpp"
 
 #include <cmath>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/quantities/extreme.hpp"
-#include "fettle/design/quantities/own_formula.hpp"
-#include "fettle/design/quantities/reduction.hpp"
+#include "core/base/text.hpp"
+#include "design/quantities/extreme.hpp"
+#include "design/quantities/own_formula.hpp"
+#include "design/quantities/reduction.hpp"
 
 namespace fettle::design::quantities {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/expression/formula.hpp"
-#include "fettle/design/description/quantity.hpp"
+#include "core/expression/formula.hpp"
+#include "design/description/quantity.hpp"
 
 namespace fettle::design::quantities {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/vector_series.hpp"
+#include "design/quantities/vector_series.hpp"
 
 namespace fettle::design::quantities {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/worst.hpp"
+#include "design/quantities/worst.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::design::quantities {
 

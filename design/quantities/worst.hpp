@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "fettle/design/description/quantity.hpp"
+#include "design/description/quantity.hpp"
 
 namespace fettle::design::quantities {
 

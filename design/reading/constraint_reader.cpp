@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/constraint_reader.hpp"
+#include "design/reading/constraint_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
-#include "fettle/core/expression/parse_formula.hpp"
-#include "fettle/design/quantities/expression.hpp"
-#include "fettle/design/reading/over_tolerances_reader.hpp"
-#include "fettle/design/reading/quantity_reader.hpp"
-#include "fettle/design/reading/relation_reader.hpp"
+#include "core/expression/parse_formula.hpp"
+#include "design/quantities/expression.hpp"
+#include "design/reading/over_tolerances_reader.hpp"
+#include "design/reading/quantity_reader.hpp"
+#include "design/reading/relation_reader.hpp"
 
 namespace fettle::design::reading {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/design_formulas.hpp"
+#include "design/reading/design_formulas.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/design/reading/same_formula.hpp"
+#include "core/base/limits.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "design/reading/same_formula.hpp"
 
 namespace fettle::design::reading {
 

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/expression/parse_formula.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/read_options.hpp"
-#include "fettle/design/description/parameter.hpp"
+#include "core/expression/parse_formula.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/read_options.hpp"
+#include "design/description/parameter.hpp"
 
 namespace fettle::design::reading {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/design_reader.hpp"
+#include "design/reading/design_reader.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -9,26 +9,26 @@
 #include <set>
 #include <system_error>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/scene/place.hpp"
-#include "fettle/core/scene/step_count.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/design/description/made_design.hpp"
-#include "fettle/design/optimisers/optimisation.hpp"
-#include "fettle/design/quantities/worst.hpp"
-#include "fettle/design/reading/constraint_reader.hpp"
-#include "fettle/design/reading/design_formulas.hpp"
-#include "fettle/design/reading/over_tolerances_reader.hpp"
-#include "fettle/design/reading/parameter_reader.hpp"
-#include "fettle/design/reading/process_file.hpp"
-#include "fettle/design/reading/quantity_reader.hpp"
-#include "fettle/design/reading/relation_reader.hpp"
-#include "fettle/design/reading/same_parts.hpp"
-#include "fettle/design/reading/scenario_choice.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_keys.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/scene/place.hpp"
+#include "core/scene/step_count.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "design/description/made_design.hpp"
+#include "design/optimisers/optimisation.hpp"
+#include "design/quantities/worst.hpp"
+#include "design/reading/constraint_reader.hpp"
+#include "design/reading/design_formulas.hpp"
+#include "design/reading/over_tolerances_reader.hpp"
+#include "design/reading/parameter_reader.hpp"
+#include "design/reading/process_file.hpp"
+#include "design/reading/quantity_reader.hpp"
+#include "design/reading/relation_reader.hpp"
+#include "design/reading/same_parts.hpp"
+#include "design/reading/scenario_choice.hpp"
 
 namespace fettle::design::reading {
 

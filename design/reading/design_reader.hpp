@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/read_record.hpp"
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/description/tolerance.hpp"
-#include "fettle/design/quantities/expression.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
-#include "fettle/design/reading/tolerance_reader.hpp"
+#include "core/base/read_record.hpp"
+#include "core/base/result.hpp"
+#include "core/files/json_document.hpp"
+#include "design/description/design.hpp"
+#include "design/description/tolerance.hpp"
+#include "design/quantities/expression.hpp"
+#include "design/reading/scene_shapes.hpp"
+#include "design/reading/tolerance_reader.hpp"
 
 namespace fettle::design::reading {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/design_text.hpp"
+#include "design/reading/design_text.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -8,11 +8,11 @@
 #include <set>
 #include <utility>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/files/hash.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/design/reading/process_file.hpp"
+#include "core/base/text.hpp"
+#include "core/base/version.hpp"
+#include "core/files/hash.hpp"
+#include "core/files/json_dump.hpp"
+#include "design/reading/process_file.hpp"
 
 namespace fettle::design::reading {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/model/branch_of_joint.hpp"
-#include "fettle/design/reading/design_reader.hpp"
+#include "core/model/branch_of_joint.hpp"
+#include "design/reading/design_reader.hpp"
 
 namespace fettle::design::reading {
 

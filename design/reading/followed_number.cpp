@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/followed_number.hpp"
+#include "design/reading/followed_number.hpp"
 
 #include <string_view>
 #include <vector>

@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/place.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/place.hpp"
 
 namespace fettle::design::reading {
 

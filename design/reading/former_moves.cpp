@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/former_moves.hpp"
+#include "design/reading/former_moves.hpp"
 
 #include <vector>
 
-#include "fettle/core/expression/parse_formula.hpp"
-#include "fettle/core/scene/place.hpp"
+#include "core/expression/parse_formula.hpp"
+#include "core/scene/place.hpp"
 
 namespace fettle::design::reading {
 namespace {

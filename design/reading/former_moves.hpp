@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "fettle/core/files/json_document.hpp"
+#include "core/files/json_document.hpp"
 
 namespace fettle::design::reading {
 

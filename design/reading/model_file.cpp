@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/model_file.hpp"
+#include "design/reading/model_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,19 +10,19 @@
 #include <string_view>
 #include <utility>
 
-#include "fettle/core/base/stop.hpp"
-#include "fettle/core/files/input_file.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/model/check_scene.hpp"
-#include "fettle/core/part_files/part_file.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
+#include "core/base/stop.hpp"
+#include "core/files/input_file.hpp"
+#include "core/files/json_dump.hpp"
+#include "core/files/json_keys.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/model/check_scene.hpp"
+#include "core/part_files/part_file.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/reading/scene_shapes.hpp"
 
 namespace fettle::design::reading {
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/scene/read_options.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
+#include "core/base/result.hpp"
+#include "core/model/model.hpp"
+#include "core/scene/read_options.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
 
 namespace fettle::design::reading {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/over_tolerances_reader.hpp"
+#include "design/reading/over_tolerances_reader.hpp"
 
 namespace fettle::design::reading {
 

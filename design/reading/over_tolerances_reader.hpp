@@ -10,8 +10,8 @@
 
 #include <optional>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/design/description/constraint.hpp"
+#include "core/files/json_document.hpp"
+#include "design/description/constraint.hpp"
 
 namespace fettle::design::reading {
 

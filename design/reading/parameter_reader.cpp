@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/parameter_reader.hpp"
+#include "design/reading/parameter_reader.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <set>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/reading/former_moves.hpp"
+#include "core/base/text.hpp"
+#include "design/reading/former_moves.hpp"
 
 namespace fettle::design::reading {
 

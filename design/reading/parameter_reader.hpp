@@ -6,9 +6,9 @@
 
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/scene.hpp"
-#include "fettle/design/description/parameter.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/scene.hpp"
+#include "design/description/parameter.hpp"
 
 namespace fettle::design::reading {
 

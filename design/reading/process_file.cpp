@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/process_file.hpp"
+#include "design/reading/process_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,14 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/core/files/json_keys.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/design/tolerances/known_processes.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_document.hpp"
+#include "core/files/json_dump.hpp"
+#include "core/files/json_keys.hpp"
+#include "core/files/nearest_word.hpp"
+#include "design/tolerances/known_processes.hpp"
 
 namespace fettle::design::reading {
 

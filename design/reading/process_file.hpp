@@ -8,9 +8,9 @@
 
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/tolerances/process.hpp"
-#include "fettle/design/tolerances/process_fit.hpp"
+#include "core/base/result.hpp"
+#include "design/tolerances/process.hpp"
+#include "design/tolerances/process_fit.hpp"
 
 namespace fettle::design::reading {
 

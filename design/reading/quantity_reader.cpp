@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/quantity_reader.hpp"
+#include "design/reading/quantity_reader.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/geometry/named_faces.hpp"
-#include "fettle/core/scene/mass_kind.hpp"
-#include "fettle/design/quantities/body_turn.hpp"
-#include "fettle/design/quantities/contact_force.hpp"
-#include "fettle/design/quantities/energy.hpp"
-#include "fettle/design/quantities/expression.hpp"
-#include "fettle/design/quantities/joint_load.hpp"
-#include "fettle/design/quantities/joint_position.hpp"
-#include "fettle/design/quantities/law.hpp"
-#include "fettle/design/quantities/marker_path.hpp"
-#include "fettle/design/quantities/marker_position.hpp"
-#include "fettle/design/quantities/marker_speed.hpp"
-#include "fettle/design/quantities/mass.hpp"
-#include "fettle/design/quantities/own_formula.hpp"
-#include "fettle/design/quantities/step_expression.hpp"
-#include "fettle/design/quantities/stroke.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/geometry/named_faces.hpp"
+#include "core/scene/mass_kind.hpp"
+#include "design/quantities/body_turn.hpp"
+#include "design/quantities/contact_force.hpp"
+#include "design/quantities/energy.hpp"
+#include "design/quantities/expression.hpp"
+#include "design/quantities/joint_load.hpp"
+#include "design/quantities/joint_position.hpp"
+#include "design/quantities/law.hpp"
+#include "design/quantities/marker_path.hpp"
+#include "design/quantities/marker_position.hpp"
+#include "design/quantities/marker_speed.hpp"
+#include "design/quantities/mass.hpp"
+#include "design/quantities/own_formula.hpp"
+#include "design/quantities/step_expression.hpp"
+#include "design/quantities/stroke.hpp"
 
 namespace fettle::design::reading {
 

@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/design/description/quantity.hpp"
-#include "fettle/design/quantities/clearance.hpp"
-#include "fettle/design/reading/read_context.hpp"
+#include "core/files/json_document.hpp"
+#include "design/description/quantity.hpp"
+#include "design/quantities/clearance.hpp"
+#include "design/reading/read_context.hpp"
 
 namespace fettle::design::reading {
 

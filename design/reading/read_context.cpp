@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/read_context.hpp"
+#include "design/reading/read_context.hpp"
 
-#include "fettle/core/expression/parse_formula.hpp"
-#include "fettle/core/files/nearest_word.hpp"
+#include "core/expression/parse_formula.hpp"
+#include "core/files/nearest_word.hpp"
 
 namespace fettle::design::reading {
 

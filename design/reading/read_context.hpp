@@ -7,13 +7,13 @@
 #include <set>
 #include <string>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/scene.hpp"
-#include "fettle/design/description/over_tolerances.hpp"
-#include "fettle/design/quantities/expression.hpp"
-#include "fettle/design/reading/design_formulas.hpp"
-#include "fettle/design/reading/scenario_choice.hpp"
+#include "core/base/units.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/scene.hpp"
+#include "design/description/over_tolerances.hpp"
+#include "design/quantities/expression.hpp"
+#include "design/reading/design_formulas.hpp"
+#include "design/reading/scenario_choice.hpp"
 
 namespace fettle::design::reading {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/relation_reader.hpp"
+#include "design/reading/relation_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <set>
 
-#include "fettle/core/expression/parse_formula.hpp"
-#include "fettle/design/reading/over_tolerances_reader.hpp"
+#include "core/expression/parse_formula.hpp"
+#include "design/reading/over_tolerances_reader.hpp"
 
 namespace fettle::design::reading {
 

@@ -8,11 +8,11 @@
 
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/design/description/constraint.hpp"
-#include "fettle/design/description/parameter.hpp"
-#include "fettle/design/description/relation.hpp"
-#include "fettle/design/reading/read_context.hpp"
+#include "core/files/json_document.hpp"
+#include "design/description/constraint.hpp"
+#include "design/description/parameter.hpp"
+#include "design/description/relation.hpp"
+#include "design/reading/read_context.hpp"
 
 namespace fettle::design::reading {
 

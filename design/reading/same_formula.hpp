@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "fettle/core/expression/formula.hpp"
+#include "core/expression/formula.hpp"
 
 namespace fettle::design::reading {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/same_parts.hpp"
+#include "design/reading/same_parts.hpp"
 
 #include <algorithm>
 #include <initializer_list>
 #include <vector>
 
-#include "fettle/design/reading/same_formula.hpp"
+#include "design/reading/same_formula.hpp"
 
 namespace fettle::design::reading {
 

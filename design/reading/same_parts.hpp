@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "fettle/core/scene/scene.hpp"
+#include "core/scene/scene.hpp"
 
 namespace fettle::design::reading {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/scenario_choice.hpp"
+#include "design/reading/scenario_choice.hpp"
 
 #include <algorithm>
 #include <optional>
 
-#include "fettle/design/quantities/in_scenario.hpp"
+#include "design/quantities/in_scenario.hpp"
 
 namespace fettle::design::reading {
 

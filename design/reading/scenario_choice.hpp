@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/design/description/quantity.hpp"
+#include "core/files/json_document.hpp"
+#include "design/description/quantity.hpp"
 
 namespace fettle::design::reading {
 

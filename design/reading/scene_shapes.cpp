@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/scene_shapes.hpp"
+#include "design/reading/scene_shapes.hpp"
 
 #include <map>
 #include <optional>
 #include <string>
 
-#include "fettle/design/shapes/file_part.hpp"
-#include "fettle/design/shapes/mesh_program.hpp"
-#include "fettle/design/shapes/part_library.hpp"
+#include "design/shapes/file_part.hpp"
+#include "design/shapes/mesh_program.hpp"
+#include "design/shapes/part_library.hpp"
 
 namespace fettle::design::reading {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/read_record.hpp"
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/design/description/shape.hpp"
+#include "core/base/read_record.hpp"
+#include "core/base/result.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "design/description/shape.hpp"
 
 namespace fettle::design::reading {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/scene_text.hpp"
+#include "design/reading/scene_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,14 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/core/part_files/part_file.hpp"
-#include "fettle/core/scene/place.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/problem/moved_scene.hpp"
+#include "core/base/text.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_dump.hpp"
+#include "core/part_files/part_file.hpp"
+#include "core/scene/place.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/problem/moved_scene.hpp"
 
 namespace fettle::design::reading {
 

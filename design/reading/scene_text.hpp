@@ -5,9 +5,9 @@
 
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/scene/read_options.hpp"
-#include "fettle/design/reading/design_reader.hpp"
+#include "core/base/result.hpp"
+#include "core/scene/read_options.hpp"
+#include "design/reading/design_reader.hpp"
 
 namespace fettle::design::reading {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/tolerance_cost_reader.hpp"
+#include "design/reading/tolerance_cost_reader.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 
-#include "fettle/core/expression/parse_formula.hpp"
-#include "fettle/design/tolerances/iso286.hpp"
+#include "core/expression/parse_formula.hpp"
+#include "design/tolerances/iso286.hpp"
 
 namespace fettle::design::reading {
 

@@ -7,9 +7,9 @@
 /// Part of tolerance_reader.hpp.
 #pragma once
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/design/description/tolerance.hpp"
+#include "core/base/units.hpp"
+#include "core/files/json_document.hpp"
+#include "design/description/tolerance.hpp"
 
 namespace fettle::design::reading {
 

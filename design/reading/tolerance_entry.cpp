@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/tolerance_entry.hpp"
+#include "design/reading/tolerance_entry.hpp"
 
 #include <cmath>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/expression/parse_formula.hpp"
-#include "fettle/design/reading/process_file.hpp"
-#include "fettle/design/reading/tolerance_cost_reader.hpp"
-#include "fettle/design/tolerances/iso2768.hpp"
-#include "fettle/design/tolerances/iso286.hpp"
+#include "core/base/text.hpp"
+#include "core/expression/parse_formula.hpp"
+#include "design/reading/process_file.hpp"
+#include "design/reading/tolerance_cost_reader.hpp"
+#include "design/tolerances/iso2768.hpp"
+#include "design/tolerances/iso286.hpp"
 
 namespace fettle::design::reading {
 

@@ -14,9 +14,9 @@
 #include <optional>
 #include <string>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/design/description/tolerance.hpp"
-#include "fettle/design/tolerances/process.hpp"
+#include "core/files/json_document.hpp"
+#include "design/description/tolerance.hpp"
+#include "design/tolerances/process.hpp"
 
 namespace fettle::design::reading {
 

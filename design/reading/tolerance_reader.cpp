@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/tolerance_reader.hpp"
+#include "design/reading/tolerance_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/scene/place.hpp"
-#include "fettle/design/reading/followed_number.hpp"
-#include "fettle/design/reading/parameter_reader.hpp"
+#include "core/base/contract.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/scene/place.hpp"
+#include "design/reading/followed_number.hpp"
+#include "design/reading/parameter_reader.hpp"
 
 namespace fettle::design::reading {
 

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/design/description/tolerance.hpp"
-#include "fettle/design/reading/design_formulas.hpp"
-#include "fettle/design/reading/tolerance_entry.hpp"
+#include "core/files/json_document.hpp"
+#include "design/description/tolerance.hpp"
+#include "design/reading/design_formulas.hpp"
+#include "design/reading/tolerance_entry.hpp"
 
 namespace fettle::design::reading {
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "fettle/core/files/json_text.hpp"
+#include "core/files/json_text.hpp"
 
 namespace fettle::design::report {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/design_rows.hpp"
+#include "design/report/design_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/quantities/clearance.hpp"
-#include "fettle/design/quantities/in_scenario.hpp"
-#include "fettle/design/report/answer_values.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "design/description/requirement_text.hpp"
+#include "design/quantities/clearance.hpp"
+#include "design/quantities/in_scenario.hpp"
+#include "design/report/answer_values.hpp"
 
 namespace fettle::design::report {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/exploration_data.hpp"
+#include "design/report/exploration_data.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,15 +7,15 @@
 #include <map>
 #include <numeric>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/design/exports/assembly.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/report/answer_values.hpp"
-#include "fettle/design/report/design_rows.hpp"
-#include "fettle/design/report/moving_parts.hpp"
-#include "fettle/design/report/packed_numbers.hpp"
+#include "core/base/text.hpp"
+#include "core/base/version.hpp"
+#include "core/files/json_dump.hpp"
+#include "design/exports/assembly.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/report/answer_values.hpp"
+#include "design/report/design_rows.hpp"
+#include "design/report/moving_parts.hpp"
+#include "design/report/packed_numbers.hpp"
 
 namespace fettle::design::report {
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/description/design.hpp"
+#include "design/description/design.hpp"
 
 namespace fettle::design::report {
 

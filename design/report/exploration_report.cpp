@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/exploration_report.hpp"
+#include "design/report/exploration_report.hpp"
 
 #include <filesystem>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/design/answers/run_folder.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/report/answer_values.hpp"
-#include "fettle/design/report/exploration_data.hpp"
-#include "fettle/design/report/report_page.hpp"
-#include "fettle/design/studies/exploration_file.hpp"
+#include "core/files/atomic_file.hpp"
+#include "design/answers/run_folder.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/report/answer_values.hpp"
+#include "design/report/exploration_data.hpp"
+#include "design/report/report_page.hpp"
+#include "design/studies/exploration_file.hpp"
 
 namespace fettle::design::report {
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/report/report_folder.hpp"
+#include "core/base/result.hpp"
+#include "design/report/report_folder.hpp"
 
 namespace fettle::design::report {
 

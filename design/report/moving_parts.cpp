@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/moving_parts.hpp"
+#include "design/report/moving_parts.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/design/exports/palette.hpp"
-#include "fettle/design/report/answer_values.hpp"
-#include "fettle/design/report/packed_numbers.hpp"
+#include "core/geometry/mesh.hpp"
+#include "design/exports/palette.hpp"
+#include "design/report/answer_values.hpp"
+#include "design/report/packed_numbers.hpp"
 
 namespace fettle::design::report {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/packed_numbers.hpp"
+#include "design/report/packed_numbers.hpp"
 
 #include <bit>
 #include <nlohmann/json.hpp>
 
-#include "fettle/design/exports/base64.hpp"
+#include "design/exports/base64.hpp"
 
 namespace fettle::design::report {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/pair_rows.hpp"
+#include "design/report/pair_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "fettle/design/report/answer_values.hpp"
-#include "fettle/design/report/moving_parts.hpp"
-#include "fettle/design/report/packed_numbers.hpp"
+#include "design/report/answer_values.hpp"
+#include "design/report/moving_parts.hpp"
+#include "design/report/packed_numbers.hpp"
 
 namespace fettle::design::report {
 

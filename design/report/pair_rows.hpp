@@ -6,7 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "fettle/core/clearance/clearance.hpp"
+#include "core/clearance/clearance.hpp"
 
 namespace fettle::design::report {
 

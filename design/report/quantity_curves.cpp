@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/quantity_curves.hpp"
+#include "design/report/quantity_curves.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/design/quantities/in_scenario.hpp"
-#include "fettle/design/quantities/step_expression.hpp"
-#include "fettle/design/quantities/stroke.hpp"
-#include "fettle/design/quantities/worst.hpp"
-#include "fettle/design/report/packed_numbers.hpp"
+#include "core/base/units.hpp"
+#include "design/quantities/in_scenario.hpp"
+#include "design/quantities/step_expression.hpp"
+#include "design/quantities/stroke.hpp"
+#include "design/quantities/worst.hpp"
+#include "design/report/packed_numbers.hpp"
 
 namespace fettle::design::report {
 

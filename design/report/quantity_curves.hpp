@@ -6,8 +6,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/quantities/expression.hpp"
+#include "design/description/design.hpp"
+#include "design/quantities/expression.hpp"
 
 namespace fettle::design::report {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/report_data.hpp"
+#include "design/report/report_data.hpp"
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/design/quantities/clearance.hpp"
-#include "fettle/design/quantities/in_scenario.hpp"
-#include "fettle/design/report/answer_values.hpp"
-#include "fettle/design/report/design_rows.hpp"
-#include "fettle/design/report/moving_parts.hpp"
-#include "fettle/design/report/pair_rows.hpp"
-#include "fettle/design/report/quantity_curves.hpp"
-#include "fettle/design/report/search_curves.hpp"
+#include "core/base/text.hpp"
+#include "core/base/version.hpp"
+#include "core/files/json_dump.hpp"
+#include "design/quantities/clearance.hpp"
+#include "design/quantities/in_scenario.hpp"
+#include "design/report/answer_values.hpp"
+#include "design/report/design_rows.hpp"
+#include "design/report/moving_parts.hpp"
+#include "design/report/pair_rows.hpp"
+#include "design/report/quantity_curves.hpp"
+#include "design/report/search_curves.hpp"
 
 namespace fettle::design::report {
 

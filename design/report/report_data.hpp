@@ -27,11 +27,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/quantities/expression.hpp"
-#include "fettle/design/report/step_curves.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
+#include "design/description/design.hpp"
+#include "design/quantities/expression.hpp"
+#include "design/report/step_curves.hpp"
 
 namespace fettle::design::report {
 

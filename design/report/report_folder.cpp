@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/report_folder.hpp"
+#include "design/report/report_folder.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/records/geometry_hash.hpp"
-#include "fettle/core/records/step_tables.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/design/answers/run_folder.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
-#include "fettle/design/report/answer_values.hpp"
-#include "fettle/design/report/quantity_curves.hpp"
-#include "fettle/design/report/report_page.hpp"
-#include "fettle/design/studies/history.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/records/geometry_hash.hpp"
+#include "core/records/step_tables.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "design/answers/run_folder.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/reading/scene_shapes.hpp"
+#include "design/report/answer_values.hpp"
+#include "design/report/quantity_curves.hpp"
+#include "design/report/report_page.hpp"
+#include "design/studies/history.hpp"
 
 namespace fettle::design::report {
 

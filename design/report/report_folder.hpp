@@ -14,12 +14,12 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
-#include "fettle/design/report/report_data.hpp"
-#include "fettle/design/studies/optimise_design.hpp"
+#include "core/base/result.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/reading/scene_shapes.hpp"
+#include "design/report/report_data.hpp"
+#include "design/studies/optimise_design.hpp"
 
 namespace fettle::design::report {
 

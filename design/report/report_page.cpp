@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/report_page.hpp"
+#include "design/report/report_page.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/files/embedded_file.hpp"
-#include "fettle/core/files/json_dump.hpp"
+#include "core/base/contract.hpp"
+#include "core/files/embedded_file.hpp"
+#include "core/files/json_dump.hpp"
 
 FETTLE_EMBEDDED_FILE(fettle_report_template, FETTLE_REPORT_TEMPLATE)
 

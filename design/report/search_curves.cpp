@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/search_curves.hpp"
+#include "design/report/search_curves.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "fettle/design/report/answer_values.hpp"
-#include "fettle/design/report/design_rows.hpp"
+#include "design/report/answer_values.hpp"
+#include "design/report/design_rows.hpp"
 
 namespace fettle::design::report {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "fettle/design/description/design.hpp"
+#include "design/description/design.hpp"
 
 namespace fettle::design::report {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/spread_charts.hpp"
+#include "design/report/spread_charts.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/text.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::design::report {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/step_curves.hpp"
+#include "design/report/step_curves.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "fettle/design/report/packed_numbers.hpp"
-#include "fettle/design/report/table_rows.hpp"
+#include "design/report/packed_numbers.hpp"
+#include "design/report/table_rows.hpp"
 
 namespace fettle::design::report {
 

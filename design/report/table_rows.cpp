@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/table_rows.hpp"
+#include "design/report/table_rows.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <limits>
 
-#include "fettle/core/base/text.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::design::report {
 

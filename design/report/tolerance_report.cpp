@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/tolerance_report.hpp"
+#include "design/report/tolerance_report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/design/answers/run_folder.hpp"
-#include "fettle/design/answers/tolerance_json.hpp"
-#include "fettle/design/description/independent_inputs.hpp"
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/report/report_page.hpp"
-#include "fettle/design/report/spread_charts.hpp"
+#include "core/base/text.hpp"
+#include "core/base/version.hpp"
+#include "core/files/atomic_file.hpp"
+#include "design/answers/run_folder.hpp"
+#include "design/answers/tolerance_json.hpp"
+#include "design/description/independent_inputs.hpp"
+#include "design/description/requirement_text.hpp"
+#include "design/report/report_page.hpp"
+#include "design/report/spread_charts.hpp"
 
 namespace fettle::design::report {
 

@@ -7,9 +7,9 @@
 
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/tolerance_study.hpp"
+#include "core/base/result.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/studies/tolerance_study.hpp"
 
 namespace fettle::design::report {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/shapes/file_part.hpp"
+#include "design/shapes/file_part.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <string_view>
 
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/design/shapes/part_library.hpp"
+#include "core/files/nearest_word.hpp"
+#include "design/shapes/part_library.hpp"
 
 namespace fettle::design::shapes {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/part_files/part_file.hpp"
-#include "fettle/design/description/shape.hpp"
+#include "core/part_files/part_file.hpp"
+#include "design/description/shape.hpp"
 
 namespace fettle::design::shapes {
 

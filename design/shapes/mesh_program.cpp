@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/shapes/mesh_program.hpp"
+#include "design/shapes/mesh_program.hpp"
 
 #include <fcntl.h>
 #include <stdlib.h>
@@ -20,11 +20,11 @@
 #include <sstream>
 #include <thread>
 
-#include "fettle/core/base/read_record.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/input_file.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "core/base/read_record.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/input_file.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
 
 namespace fettle::design::shapes {
 

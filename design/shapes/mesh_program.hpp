@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/scene/scene.hpp"
-#include "fettle/design/shapes/rebuilt_shape.hpp"
+#include "core/base/result.hpp"
+#include "core/scene/scene.hpp"
+#include "design/shapes/rebuilt_shape.hpp"
 
 namespace fettle::design::shapes {
 

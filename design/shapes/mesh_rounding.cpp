@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/shapes/mesh_rounding.hpp"
+#include "design/shapes/mesh_rounding.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 /// chosen.
 #pragma once
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::design::shapes {
 

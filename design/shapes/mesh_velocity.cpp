@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/shapes/mesh_velocity.hpp"
+#include "design/shapes/mesh_velocity.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -9,8 +9,8 @@
 #include <set>
 #include <vector>
 
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/geometry/distance.hpp"
+#include "core/linear/factorisations.hpp"
 
 namespace fettle::design::shapes {
 

@@ -9,8 +9,8 @@
 /// changes what a rigid body is.
 #pragma once
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/base/result.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::design::shapes {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/shapes/part_library.hpp"
+#include "design/shapes/part_library.hpp"
 
-#include "fettle/core/files/nearest_word.hpp"
+#include "core/files/nearest_word.hpp"
 
 namespace fettle::design::shapes {
 

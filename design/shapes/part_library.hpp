@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/part_files/part_file.hpp"
+#include "core/part_files/part_file.hpp"
 
 namespace fettle::design::shapes {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/shapes/rebuilt_shape.hpp"
+#include "design/shapes/rebuilt_shape.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/design/shapes/mesh_rounding.hpp"
-#include "fettle/design/shapes/mesh_velocity.hpp"
+#include "core/base/parallel.hpp"
+#include "design/shapes/mesh_rounding.hpp"
+#include "design/shapes/mesh_velocity.hpp"
 
 namespace fettle::design::shapes {
 

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/design/description/shape.hpp"
+#include "design/description/shape.hpp"
 
 namespace fettle::design::shapes {
 

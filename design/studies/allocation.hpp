@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/studies/allocation_model.hpp"
-#include "fettle/design/studies/tolerance_study.hpp"
+#include "design/studies/allocation_model.hpp"
+#include "design/studies/tolerance_study.hpp"
 
 namespace fettle::design::studies {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/allocation_model.hpp"
+#include "design/studies/allocation_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/design/optimisers/nonlinear_program.hpp"
-#include "fettle/design/tolerances/moments.hpp"
-#include "fettle/design/tolerances/normal_distribution.hpp"
+#include "core/base/limits.hpp"
+#include "design/optimisers/nonlinear_program.hpp"
+#include "design/tolerances/moments.hpp"
+#include "design/tolerances/normal_distribution.hpp"
 
 namespace fettle::design::studies {
 

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/design/tolerances/distribution.hpp"
-#include "fettle/design/tolerances/yield.hpp"
+#include "core/base/types.hpp"
+#include "design/tolerances/distribution.hpp"
+#include "design/tolerances/yield.hpp"
 
 namespace fettle::design::studies {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/exploration.hpp"
+#include "design/studies/exploration.hpp"
 
 #include <atomic>
 #include <charconv>
@@ -12,14 +12,14 @@
 #include <unordered_set>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/stop.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/hash.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/design/studies/optimise_design.hpp"
-#include "fettle/design/studies/random_start.hpp"
-#include "fettle/design/studies/starting_sides.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/stop.hpp"
+#include "core/base/text.hpp"
+#include "core/files/hash.hpp"
+#include "core/files/nearest_word.hpp"
+#include "design/studies/optimise_design.hpp"
+#include "design/studies/random_start.hpp"
+#include "design/studies/starting_sides.hpp"
 
 namespace fettle::design::studies {
 

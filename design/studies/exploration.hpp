@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/studies/exploration_file.hpp"
+#include "core/base/result.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/studies/exploration_file.hpp"
 
 namespace fettle::design::studies {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/exploration_file.hpp"
+#include "design/studies/exploration_file.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -7,10 +7,10 @@
 #include <string_view>
 #include <utility>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_text.hpp"
+#include "core/base/text.hpp"
+#include "core/base/version.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_text.hpp"
 
 namespace fettle::design::studies {
 

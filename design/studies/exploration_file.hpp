@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/description/design.hpp"
-#include "fettle/design/studies/line_file.hpp"
+#include "core/base/result.hpp"
+#include "design/description/design.hpp"
+#include "design/studies/line_file.hpp"
 
 namespace fettle::design::studies {
 

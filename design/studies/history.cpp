@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/history.hpp"
+#include "design/studies/history.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -11,9 +11,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/core/files/json_text.hpp"
+#include "core/base/version.hpp"
+#include "core/files/json_dump.hpp"
+#include "core/files/json_text.hpp"
 
 namespace fettle::design::studies {
 

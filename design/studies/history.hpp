@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/optimisers/problem.hpp"
-#include "fettle/design/studies/line_file.hpp"
+#include "core/base/result.hpp"
+#include "design/optimisers/problem.hpp"
+#include "design/studies/line_file.hpp"
 
 namespace fettle::design::studies {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/limits.hpp"
+#include "design/studies/limits.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/gradient_audit/gradient_warnings.hpp"
-#include "fettle/design/problem/buildable.hpp"
+#include "design/description/requirement_text.hpp"
+#include "design/gradient_audit/gradient_warnings.hpp"
+#include "design/problem/buildable.hpp"
 
 namespace fettle::design::studies {
 

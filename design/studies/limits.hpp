@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/optimisers/problem.hpp"
-#include "fettle/design/problem/design_problem.hpp"
+#include "design/optimisers/problem.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::studies {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/made_responses.hpp"
+#include "design/studies/made_responses.hpp"
 
 #include <algorithm>
 #include <cmath>

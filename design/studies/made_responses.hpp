@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/description/tolerance.hpp"
-#include "fettle/design/problem/design_problem.hpp"
+#include "design/description/tolerance.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::studies {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/made_sample.hpp"
+#include "design/studies/made_sample.hpp"
 
 #include <utility>
 
-#include "fettle/design/description/independent_inputs.hpp"
-#include "fettle/design/reading/design_text.hpp"
-#include "fettle/design/studies/tolerance_file.hpp"
+#include "design/description/independent_inputs.hpp"
+#include "design/reading/design_text.hpp"
+#include "design/studies/tolerance_file.hpp"
 
 namespace fettle::design::studies {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/reading/model_file.hpp"
-#include "fettle/design/studies/sample_file.hpp"
+#include "core/base/result.hpp"
+#include "design/reading/model_file.hpp"
+#include "design/studies/sample_file.hpp"
 
 namespace fettle::design::studies {
 

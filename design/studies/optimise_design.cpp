@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/optimise_design.hpp"
+#include "design/studies/optimise_design.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,13 +7,13 @@
 #include <limits>
 #include <utility>
 
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/optimisers/nearest_design.hpp"
-#include "fettle/design/problem/buildable.hpp"
-#include "fettle/design/problem/optimiser_problem.hpp"
-#include "fettle/design/problem/smoother_models.hpp"
-#include "fettle/design/studies/limits.hpp"
-#include "fettle/design/studies/random_start.hpp"
+#include "design/description/requirement_text.hpp"
+#include "design/optimisers/nearest_design.hpp"
+#include "design/problem/buildable.hpp"
+#include "design/problem/optimiser_problem.hpp"
+#include "design/problem/smoother_models.hpp"
+#include "design/studies/limits.hpp"
+#include "design/studies/random_start.hpp"
 
 namespace fettle::design::studies {
 

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/branch_of_joint.hpp"
-#include "fettle/design/gradient_audit/gradient_warnings.hpp"
-#include "fettle/design/optimisers/optimisation.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/studies/history.hpp"
-#include "fettle/design/studies/resolution.hpp"
+#include "core/base/result.hpp"
+#include "core/model/branch_of_joint.hpp"
+#include "design/gradient_audit/gradient_warnings.hpp"
+#include "design/optimisers/optimisation.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/studies/history.hpp"
+#include "design/studies/resolution.hpp"
 
 namespace fettle::design::studies {
 

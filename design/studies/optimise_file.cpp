@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/optimise_file.hpp"
+#include "design/studies/optimise_file.hpp"
 
 #include <filesystem>
 #include <utility>
 
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/design/reading/design_text.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "design/reading/design_text.hpp"
 
 namespace fettle::design::studies {
 

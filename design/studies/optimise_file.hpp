@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/optimise_design.hpp"
+#include "core/files/atomic_file.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/studies/optimise_design.hpp"
 
 namespace fettle::design::studies {
 

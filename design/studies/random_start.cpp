@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/random_start.hpp"
+#include "design/studies/random_start.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/optimisers/projection.hpp"
-#include "fettle/design/problem/buildable.hpp"
-#include "fettle/design/problem/optimiser_problem.hpp"
+#include "core/base/contract.hpp"
+#include "design/optimisers/projection.hpp"
+#include "design/problem/buildable.hpp"
+#include "design/problem/optimiser_problem.hpp"
 
 namespace fettle::design::studies {
 

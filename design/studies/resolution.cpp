@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/resolution.hpp"
+#include "design/studies/resolution.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "fettle/core/part_files/part_file.hpp"
-#include "fettle/design/problem/design_problem.hpp"
+#include "core/part_files/part_file.hpp"
+#include "design/problem/design_problem.hpp"
 
 namespace fettle::design::studies {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/sample_file.hpp"
+#include "design/studies/sample_file.hpp"
 
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
-#include "fettle/core/base/version.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/core/files/json_text.hpp"
+#include "core/base/version.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_dump.hpp"
+#include "core/files/json_text.hpp"
 
 namespace fettle::design::studies {
 

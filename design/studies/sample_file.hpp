@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/studies/line_file.hpp"
-#include "fettle/design/studies/made_responses.hpp"
+#include "design/studies/line_file.hpp"
+#include "design/studies/made_responses.hpp"
 
 namespace fettle::design::studies {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/sample_maker.hpp"
+#include "design/studies/sample_maker.hpp"
 
 #include <utility>
 
-#include "fettle/design/description/independent_inputs.hpp"
-#include "fettle/design/studies/tolerance_file.hpp"
+#include "design/description/independent_inputs.hpp"
+#include "design/studies/tolerance_file.hpp"
 
 namespace fettle::design::studies {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/sample_file.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/studies/sample_file.hpp"
 
 namespace fettle::design::studies {
 

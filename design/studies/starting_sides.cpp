@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/starting_sides.hpp"
+#include "design/studies/starting_sides.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/description/made_design.hpp"
-#include "fettle/design/reading/design_text.hpp"
-#include "fettle/design/studies/random_start.hpp"
+#include "core/base/contract.hpp"
+#include "design/description/made_design.hpp"
+#include "design/reading/design_text.hpp"
+#include "design/studies/random_start.hpp"
 
 namespace fettle::design::studies {
 

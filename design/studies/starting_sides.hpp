@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/model/branch_of_joint.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
+#include "core/base/result.hpp"
+#include "core/model/branch_of_joint.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
 
 namespace fettle::design::studies {
 

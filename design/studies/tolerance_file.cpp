@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/tolerance_file.hpp"
+#include "design/studies/tolerance_file.hpp"
 
 #include <optional>
 #include <utility>
 
-#include "fettle/design/reading/design_text.hpp"
+#include "design/reading/design_text.hpp"
 
 namespace fettle::design::studies {
 

@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/allocation.hpp"
-#include "fettle/design/studies/tolerance_study.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/studies/allocation.hpp"
+#include "design/studies/tolerance_study.hpp"
 
 namespace fettle::design::studies {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/tolerance_study.hpp"
+#include "design/studies/tolerance_study.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -9,9 +9,9 @@
 #include <mutex>
 #include <utility>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/design/gradient_audit/contact_states.hpp"
-#include "fettle/design/problem/motion_warnings.hpp"
+#include "core/base/parallel.hpp"
+#include "design/gradient_audit/contact_states.hpp"
+#include "design/problem/motion_warnings.hpp"
 
 namespace fettle::design::studies {
 

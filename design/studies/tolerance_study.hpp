@@ -20,17 +20,17 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/description/independent_inputs.hpp"
-#include "fettle/design/description/tolerance.hpp"
-#include "fettle/design/gradient_audit/contact_changes.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/studies/made_responses.hpp"
-#include "fettle/design/studies/sample_file.hpp"
-#include "fettle/design/studies/worst_case.hpp"
-#include "fettle/design/tolerances/capability.hpp"
-#include "fettle/design/tolerances/control_variate.hpp"
-#include "fettle/design/tolerances/propagation.hpp"
-#include "fettle/design/tolerances/yield.hpp"
+#include "design/description/independent_inputs.hpp"
+#include "design/description/tolerance.hpp"
+#include "design/gradient_audit/contact_changes.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/studies/made_responses.hpp"
+#include "design/studies/sample_file.hpp"
+#include "design/studies/worst_case.hpp"
+#include "design/tolerances/capability.hpp"
+#include "design/tolerances/control_variate.hpp"
+#include "design/tolerances/propagation.hpp"
+#include "design/tolerances/yield.hpp"
 
 namespace fettle::design::studies {
 

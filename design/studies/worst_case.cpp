@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/worst_case.hpp"
+#include "design/studies/worst_case.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/design/optimisers/optimisation.hpp"
-#include "fettle/design/tolerances/propagation.hpp"
+#include "design/optimisers/optimisation.hpp"
+#include "design/tolerances/propagation.hpp"
 
 namespace fettle::design::studies {
 

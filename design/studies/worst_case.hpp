@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/studies/made_responses.hpp"
+#include "design/studies/made_responses.hpp"
 
 namespace fettle::design::studies {
 

@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include "fettle/design/tolerances/yield.hpp"
+#include "design/tolerances/yield.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/control_variate.hpp"
+#include "design/tolerances/control_variate.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -8,8 +8,8 @@
 /// Source: Owen, Monte Carlo theory, methods and examples (2013), chapter 8.9.
 #pragma once
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/design/tolerances/yield.hpp"
+#include "core/base/types.hpp"
+#include "design/tolerances/yield.hpp"
 
 namespace fettle::design::tolerances {
 

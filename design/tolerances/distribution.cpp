@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/distribution.hpp"
+#include "design/tolerances/distribution.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/tolerances/normal_distribution.hpp"
+#include "core/base/contract.hpp"
+#include "design/tolerances/normal_distribution.hpp"
 
 namespace fettle::design::tolerances {
 

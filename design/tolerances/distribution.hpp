@@ -15,7 +15,7 @@
 
 #include <string>
 
-#include "fettle/design/tolerances/moments.hpp"
+#include "design/tolerances/moments.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/iso2768.hpp"
+#include "design/tolerances/iso2768.hpp"
 
 #include <array>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/design/tolerances/size_steps.hpp"
+#include "core/base/units.hpp"
+#include "design/tolerances/size_steps.hpp"
 
 namespace fettle::design::tolerances {
 

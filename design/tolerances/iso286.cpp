@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/iso286.hpp"
+#include "design/tolerances/iso286.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <optional>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/design/tolerances/size_steps.hpp"
+#include "core/base/units.hpp"
+#include "design/tolerances/size_steps.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/known_processes.hpp"
+#include "design/tolerances/known_processes.hpp"
 
 #include <algorithm>
 

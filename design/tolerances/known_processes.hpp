@@ -22,7 +22,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/design/tolerances/process.hpp"
+#include "design/tolerances/process.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -3,7 +3,7 @@
 /// A dimension's follow from its distribution (distribution.hpp), a result's from its derivatives (propagation.hpp).
 #pragma once
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/normal_distribution.hpp"
+#include "design/tolerances/normal_distribution.hpp"
 
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/process.hpp"
+#include "design/tolerances/process.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/design/tolerances/iso2768.hpp"
-#include "fettle/design/tolerances/size_steps.hpp"
+#include "core/base/text.hpp"
+#include "core/base/units.hpp"
+#include "design/tolerances/iso2768.hpp"
+#include "design/tolerances/size_steps.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -18,9 +18,9 @@
 #include <string_view>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/types.hpp"
-#include "fettle/design/tolerances/deviation_limits.hpp"
+#include "core/base/result.hpp"
+#include "core/base/types.hpp"
+#include "design/tolerances/deviation_limits.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/process_clearance.hpp"
+#include "design/tolerances/process_clearance.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/design/tolerances/known_processes.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/text.hpp"
+#include "design/tolerances/known_processes.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -14,8 +14,8 @@
 
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/tolerances/process.hpp"
+#include "core/base/result.hpp"
+#include "design/tolerances/process.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/process_fit.hpp"
+#include "design/tolerances/process_fit.hpp"
 
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
@@ -7,8 +7,8 @@
 #include <numeric>
 #include <set>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/text.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/text.hpp"
 
 namespace fettle::design::tolerances {
 

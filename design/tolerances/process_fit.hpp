@@ -24,9 +24,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/tolerances/process.hpp"
-#include "fettle/design/tolerances/variance_components.hpp"
+#include "core/base/result.hpp"
+#include "design/tolerances/process.hpp"
+#include "design/tolerances/variance_components.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "fettle/design/tolerances/moments.hpp"
+#include "design/tolerances/moments.hpp"
 
 namespace fettle::design::tolerances {
 

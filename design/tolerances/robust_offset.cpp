@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/robust_offset.hpp"
+#include "design/tolerances/robust_offset.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/tolerances/propagation.hpp"
+#include "core/base/contract.hpp"
+#include "design/tolerances/propagation.hpp"
 
 namespace fettle::design::tolerances {
 

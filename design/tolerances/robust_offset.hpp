@@ -9,7 +9,7 @@
 ///   d offset/dp = (dg/dp)^T w,   w = d offset/dg = m + side k C g / s,   or the corner of the worst case
 #pragma once
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/sobol.hpp"
+#include "design/tolerances/sobol.hpp"
 
 #include <boost/random/sobol.hpp>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/base/mixed_bits.hpp"
+#include "core/base/contract.hpp"
+#include "core/base/mixed_bits.hpp"
 
 namespace fettle::design::tolerances {
 

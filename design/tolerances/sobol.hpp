@@ -18,7 +18,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/yield.hpp"
+#include "design/tolerances/yield.hpp"
 
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <numeric>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/tolerances/normal_distribution.hpp"
+#include "core/base/contract.hpp"
+#include "design/tolerances/normal_distribution.hpp"
 
 namespace fettle::design::tolerances {
 

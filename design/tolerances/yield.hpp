@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/design/tolerances/moments.hpp"
+#include "core/base/limits.hpp"
+#include "design/tolerances/moments.hpp"
 
 namespace fettle::design::tolerances {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/urdf/joint_starts.hpp"
+#include "design/urdf/joint_starts.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/files/nearest_word.hpp"
+#include "core/base/limits.hpp"
+#include "core/files/nearest_word.hpp"
 
 namespace fettle::design::urdf {
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "fettle/design/urdf/robot.hpp"
+#include "design/urdf/robot.hpp"
 
 namespace fettle::design::urdf {
 

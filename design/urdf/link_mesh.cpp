@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/urdf/link_mesh.hpp"
+#include "design/urdf/link_mesh.hpp"
 
 #include <array>
 #include <filesystem>
 #include <map>
 #include <utility>
 
-#include "fettle/core/geometry/mesh_transforms.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/design/shapes/file_part.hpp"
+#include "core/geometry/mesh_transforms.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "design/shapes/file_part.hpp"
 
 namespace fettle::design::urdf {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/design/urdf/robot.hpp"
+#include "core/geometry/mesh.hpp"
+#include "design/urdf/robot.hpp"
 
 namespace fettle::design::urdf {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/urdf/robot.hpp"
+#include "design/urdf/robot.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/kinematics/path.hpp"
+#include "core/base/result.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::design::urdf {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/design/urdf/robot.hpp"
+#include "design/urdf/robot.hpp"
 
 namespace fettle::design::urdf {
 

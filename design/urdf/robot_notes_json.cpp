@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/urdf/robot_notes_json.hpp"
+#include "design/urdf/robot_notes_json.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/scene/angles.hpp"
+#include "core/base/units.hpp"
+#include "core/files/json_document.hpp"
+#include "core/scene/angles.hpp"
 
 namespace fettle::design::urdf {
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/design/urdf/robot_notes.hpp"
+#include "core/base/result.hpp"
+#include "design/urdf/robot_notes.hpp"
 
 namespace fettle::design::urdf {
 

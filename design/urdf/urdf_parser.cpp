@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/urdf/urdf_parser.hpp"
+#include "design/urdf/urdf_parser.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/core/files/text_lines.hpp"
-#include "fettle/core/mesh_files/xml_reader.hpp"
-#include "fettle/design/urdf/urdf_words.hpp"
+#include "core/base/text.hpp"
+#include "core/files/nearest_word.hpp"
+#include "core/files/text_lines.hpp"
+#include "core/mesh_files/xml_reader.hpp"
+#include "design/urdf/urdf_words.hpp"
 
 namespace fettle::design::urdf {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "fettle/design/urdf/robot.hpp"
+#include "design/urdf/robot.hpp"
 
 namespace fettle::design::urdf {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/urdf/urdf_scene.hpp"
+#include "design/urdf/urdf_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +9,13 @@
 #include <set>
 #include <unordered_map>
 
-#include "fettle/core/files/json_dump.hpp"
-#include "fettle/core/files/unique_names.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/mesh_files/mesh_writer.hpp"
-#include "fettle/core/scene/inertial.hpp"
-#include "fettle/design/urdf/joint_starts.hpp"
-#include "fettle/design/urdf/robot_notes_json.hpp"
+#include "core/files/json_dump.hpp"
+#include "core/files/unique_names.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
+#include "core/scene/inertial.hpp"
+#include "design/urdf/joint_starts.hpp"
+#include "design/urdf/robot_notes_json.hpp"
 
 namespace fettle::design::urdf {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/design/urdf/link_mesh.hpp"
-#include "fettle/design/urdf/robot.hpp"
+#include "design/urdf/link_mesh.hpp"
+#include "design/urdf/robot.hpp"
 
 namespace fettle::design::urdf {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/urdf/urdf_words.hpp"
+#include "design/urdf/urdf_words.hpp"
 
 #include <algorithm>
 

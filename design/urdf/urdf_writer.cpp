@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/urdf/urdf_writer.hpp"
+#include "design/urdf/urdf_writer.hpp"
 
 #include <algorithm>
 #include <map>
@@ -8,10 +8,10 @@
 #include <unordered_map>
 #include <utility>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/files/unique_names.hpp"
-#include "fettle/core/mesh_files/mesh_writer.hpp"
-#include "fettle/core/mesh_files/millimetres.hpp"
+#include "core/base/text.hpp"
+#include "core/files/unique_names.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
+#include "core/mesh_files/millimetres.hpp"
 
 namespace fettle::design::urdf {
 

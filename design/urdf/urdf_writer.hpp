@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/scene/scene.hpp"
-#include "fettle/design/urdf/robot_notes.hpp"
+#include "core/model/model.hpp"
+#include "core/scene/scene.hpp"
+#include "design/urdf/robot_notes.hpp"
 
 namespace fettle::design::urdf {
 

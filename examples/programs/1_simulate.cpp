@@ -2,9 +2,9 @@
 // A scene made in memory: a cube falls 1 mm onto a table, and comes to rest. SI units throughout.
 #include <cstdio>
 
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/shapes/file_part.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "design/shapes/file_part.hpp"
 
 namespace core = fettle::core;
 

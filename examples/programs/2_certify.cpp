@@ -3,11 +3,11 @@
 // data, and is checked without the search that found it.
 #include <cstdio>
 
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/shapes/file_part.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "design/shapes/file_part.hpp"
 
 namespace core = fettle::core;
 

@@ -2,8 +2,8 @@
 // A design made in memory, with a quantity of its own: the mean height of a brick on a table that a motor tilts, and its derivatives.
 #include <cstdio>
 
-#include "fettle/design/gradient_audit/difference_check.hpp"
-#include "fettle/design/shapes/file_part.hpp"
+#include "design/gradient_audit/difference_check.hpp"
+#include "design/shapes/file_part.hpp"
 
 namespace core = fettle::core;
 using namespace fettle::design::description;

@@ -2,10 +2,10 @@
 // A shape of one's own, optimised: the heaviest square peg with 0.3 mm of certified clearance to a wall, its head 1.2 times its foot.
 #include <cstdio>
 
-#include "fettle/design/quantities/clearance.hpp"
-#include "fettle/design/quantities/mass.hpp"
-#include "fettle/design/shapes/file_part.hpp"
-#include "fettle/design/studies/optimise_design.hpp"
+#include "design/quantities/clearance.hpp"
+#include "design/quantities/mass.hpp"
+#include "design/shapes/file_part.hpp"
+#include "design/studies/optimise_design.hpp"
 
 using namespace fettle::design::description;
 using fettle::Matrix3X;

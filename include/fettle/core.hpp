@@ -4,26 +4,26 @@
 #pragma once
 
 // A scene: as data, and read from its file.
-#include "fettle/core/scene/scene.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
+#include "core/scene/scene.hpp"
+#include "core/scene_files/scene_reader.hpp"
 // The model that is built from it, const from then on.
-#include "fettle/core/setup/build_model.hpp"
+#include "core/setup/build_model.hpp"
 // Its motion: by dynamics, or where scripts or joints and motors say everything.
-#include "fettle/core/stepper/jointed_motion.hpp"
-#include "fettle/core/stepper/scripted_motion.hpp"
-#include "fettle/core/stepper/simulate.hpp"
+#include "core/stepper/jointed_motion.hpp"
+#include "core/stepper/scripted_motion.hpp"
+#include "core/stepper/simulate.hpp"
 // Certified clearances: over a motion, of joints met at all times, over ranges of joints; and who does not trust us checks them.
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/clearance/jointed_clearance.hpp"
-#include "fettle/core/clearance/range_clearance.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/clearance/jointed_clearance.hpp"
+#include "core/clearance/range_clearance.hpp"
 // Files: trajectories and meshes, and whether a mesh is what it should be.
-#include "fettle/core/solids/mesh_judgement.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/mesh_files/mesh_writer.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
+#include "core/solids/mesh_judgement.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
+#include "core/records/trajectory_io.hpp"
 // Results and their errors, units, threads.
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/base/version.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/result.hpp"
+#include "core/base/units.hpp"
+#include "core/base/version.hpp"

@@ -20,10 +20,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "fettle/tests/benchmarks/box_scenes.hpp"
-#include "fettle/tests/benchmarks/child_run.hpp"
-#include "fettle/tests/benchmarks/program_run.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "tests/benchmarks/box_scenes.hpp"
+#include "tests/benchmarks/child_run.hpp"
+#include "tests/benchmarks/program_run.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace fettle::tests;
 using namespace fettle::tests::benchmarks;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/benchmarks/box_scenes.hpp"
+#include "tests/benchmarks/box_scenes.hpp"
 
 #include <cstdio>
 

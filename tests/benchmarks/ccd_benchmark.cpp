@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/ccd/curved_ccd.hpp"
-#include "fettle/tests/benchmarks/ccd_files.hpp"
-#include "fettle/tests/support/ccd_queries.hpp"
-#include "fettle/tests/support/inclusion_ccd.hpp"
-#include "fettle/tests/support/shared_files.hpp"
+#include "core/ccd/curved_ccd.hpp"
+#include "tests/benchmarks/ccd_files.hpp"
+#include "tests/support/ccd_queries.hpp"
+#include "tests/support/inclusion_ccd.hpp"
+#include "tests/support/shared_files.hpp"
 
 using namespace fettle;
 using namespace fettle::core::ccd;

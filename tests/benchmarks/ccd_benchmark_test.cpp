@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/shared_files.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/shared_files.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::tests::benchmarks::ccd_benchmark_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/benchmarks/ccd_files.hpp"
+#include "tests/benchmarks/ccd_files.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -8,10 +8,10 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/units.hpp"
-#include "fettle/core/ccd/curved_ccd.hpp"
-#include "fettle/tests/support/ccd_queries.hpp"
-#include "fettle/tests/support/inclusion_ccd.hpp"
+#include "core/base/units.hpp"
+#include "core/ccd/curved_ccd.hpp"
+#include "tests/support/ccd_queries.hpp"
+#include "tests/support/inclusion_ccd.hpp"
 
 namespace fettle::tests::benchmarks {
 

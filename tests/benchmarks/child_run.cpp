@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/benchmarks/child_run.hpp"
+#include "tests/benchmarks/child_run.hpp"
 
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -10,15 +10,15 @@
 #include <ctime>
 #include <string>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/clearance/pair_search.hpp"
-#include "fettle/core/model/body_geometry.hpp"
-#include "fettle/core/model/choose_kappa.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/base/parallel.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/clearance/pair_search.hpp"
+#include "core/model/body_geometry.hpp"
+#include "core/model/choose_kappa.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/core/clearance/clearance_oracle.hpp"
+#include "tests/support/test_models.hpp"
 
 using namespace fettle;
 using namespace fettle::core;

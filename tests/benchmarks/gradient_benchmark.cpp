@@ -17,12 +17,12 @@
 #include <random>
 #include <string>
 
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
-#include "fettle/adjoint/stepper/step_linearisation.hpp"
-#include "fettle/adjoint/stepper/tangent_sweep.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
+#include "adjoint/stepper/step_linearisation.hpp"
+#include "adjoint/stepper/tangent_sweep.hpp"
+#include "core/stepper/simulate.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
 
 using namespace fettle;
 using namespace fettle::core;

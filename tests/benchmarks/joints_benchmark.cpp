@@ -11,10 +11,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/box_mesh.hpp"
 
 using namespace fettle;
 using namespace fettle::core;

@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/parts/drawn_part.hpp"
-#include "fettle/core/parts/extrude.hpp"
-#include "fettle/core/parts/revolve.hpp"
-#include "fettle/core/parts/solid_booleans.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/parts/drawn_part.hpp"
+#include "core/parts/extrude.hpp"
+#include "core/parts/revolve.hpp"
+#include "core/parts/solid_booleans.hpp"
 
 using namespace fettle;
 using namespace fettle::core::parts;

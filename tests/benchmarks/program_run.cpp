@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/benchmarks/program_run.hpp"
+#include "tests/benchmarks/program_run.hpp"
 
 #include <unistd.h>
 
@@ -9,8 +9,8 @@
 #include <sstream>
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/tests/benchmarks/child_run.hpp"
+#include "core/files/json_document.hpp"
+#include "tests/benchmarks/child_run.hpp"
 
 namespace fettle::tests::benchmarks {
 namespace {

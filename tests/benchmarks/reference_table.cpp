@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/benchmarks/reference_table.hpp"
+#include "tests/benchmarks/reference_table.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
 
-#include "fettle/core/files/atomic_file.hpp"
+#include "core/files/atomic_file.hpp"
 
 namespace fettle::tests::benchmarks {
 namespace {

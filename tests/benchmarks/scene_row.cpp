@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/benchmarks/scene_row.hpp"
+#include "tests/benchmarks/scene_row.hpp"
 
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_document.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_document.hpp"
 
 namespace fettle::tests::benchmarks {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/tests/benchmarks/scene_run.hpp"
+#include "tests/benchmarks/scene_run.hpp"
 
 namespace fettle::tests::benchmarks {
 

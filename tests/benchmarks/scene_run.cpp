@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/benchmarks/scene_run.hpp"
+#include "tests/benchmarks/scene_run.hpp"
 
 #include <sys/resource.h>
 
@@ -11,13 +11,13 @@
 #include <limits>
 #include <numeric>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/benchmarks/child_run.hpp"
-#include "fettle/tests/benchmarks/scene_row.hpp"
-#include "fettle/tests/support/intersection_oracle.hpp"
+#include "core/base/parallel.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/benchmarks/child_run.hpp"
+#include "tests/benchmarks/scene_row.hpp"
+#include "tests/support/intersection_oracle.hpp"
 
 namespace fettle::tests::benchmarks {
 namespace {

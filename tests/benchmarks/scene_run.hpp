@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "fettle/tests/benchmarks/program_run.hpp"
+#include "tests/benchmarks/program_run.hpp"
 
 namespace fettle::tests::benchmarks {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/benchmarks/scene_summary.hpp"
+#include "tests/benchmarks/scene_summary.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/tests/benchmarks/reference_table.hpp"
-#include "fettle/tests/benchmarks/scene_run.hpp"
+#include "tests/benchmarks/reference_table.hpp"
+#include "tests/benchmarks/scene_run.hpp"
 
 namespace fettle::tests::benchmarks {
 

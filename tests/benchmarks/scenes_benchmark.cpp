@@ -19,13 +19,13 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/tests/benchmarks/reference_table.hpp"
-#include "fettle/tests/benchmarks/scene_row.hpp"
-#include "fettle/tests/benchmarks/scene_summary.hpp"
-#include "fettle/tests/support/chain_net.hpp"
-#include "fettle/tests/support/shared_files.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/files/atomic_file.hpp"
+#include "tests/benchmarks/reference_table.hpp"
+#include "tests/benchmarks/scene_row.hpp"
+#include "tests/benchmarks/scene_summary.hpp"
+#include "tests/support/chain_net.hpp"
+#include "tests/support/shared_files.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace fettle;
 using namespace fettle::tests::benchmarks;

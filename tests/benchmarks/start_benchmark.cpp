@@ -15,15 +15,15 @@
 #include <optional>
 #include <string>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/geometry/half_edges.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/solids/mesh_judgement.hpp"
-#include "fettle/core/solids/mesh_repair.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
+#include "core/base/parallel.hpp"
+#include "core/geometry/body_hierarchy.hpp"
+#include "core/geometry/half_edges.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/solids/mesh_judgement.hpp"
+#include "core/solids/mesh_repair.hpp"
+#include "core/solids/mesh_validity.hpp"
 
 using namespace fettle;
 using namespace fettle::core;

@@ -2,8 +2,8 @@
 /// Numbers of a scene that follow from a parameter linearly, whatever dimensions the two have.
 #pragma once
 
-#include "fettle/core/scene/place.hpp"
-#include "fettle/design/description/design.hpp"
+#include "core/scene/place.hpp"
+#include "design/description/design.hpp"
 
 namespace fettle::tests::design_support {
 

@@ -4,9 +4,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/tests/design/small_design.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
+#include "tests/design/small_design.hpp"
 
 namespace fettle::tests::design_support {
 

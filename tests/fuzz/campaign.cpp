@@ -12,8 +12,8 @@
 #include <fstream>
 #include <string>
 
-#include "fettle/tests/fuzz/mutations.hpp"
-#include "fettle/tests/fuzz/readers.hpp"
+#include "tests/fuzz/mutations.hpp"
+#include "tests/fuzz/readers.hpp"
 
 namespace {
 

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "fettle/tests/fuzz/mutations.hpp"
-#include "fettle/tests/fuzz/readers.hpp"
+#include "tests/fuzz/mutations.hpp"
+#include "tests/fuzz/readers.hpp"
 
 namespace fettle::tests::fuzz::corpus_test {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "fettle/tests/fuzz/readers.hpp"
+#include "tests/fuzz/readers.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using fettle::tests::fuzz::readers;

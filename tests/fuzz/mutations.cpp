@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/fuzz/mutations.hpp"
+#include "tests/fuzz/mutations.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "fettle/tests/support/text.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::tests::fuzz {
 namespace {

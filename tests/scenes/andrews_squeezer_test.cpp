@@ -2,8 +2,8 @@
 // Andrews' squeezer (Hairer and Wanner, Solving Ordinary Differential Equations II; test set for IVP solvers): seven bodies in a plane, ten
 // hinges, one spring, a crank that a constant torque turns two and a half times in 0.03 s. The scene is the published data, and fettle's
 // settings are its own.
-#include "fettle/tests/scenes/part_mechanism.hpp"
-#include "fettle/tests/scenes/refinement.hpp"
+#include "tests/scenes/part_mechanism.hpp"
+#include "tests/scenes/refinement.hpp"
 
 namespace fettle::tests::scenes::andrews_squeezer_test {
 

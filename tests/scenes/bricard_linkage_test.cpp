@@ -5,9 +5,9 @@
 //     (1 + cos theta) (1 + cos phi) = 1
 // closes the loop (Chen, You, Tarnai 2005, with twists of 90 degrees in turn to either side). With one degree of freedom s along that
 // curve, the energy 1/2 M(s) s'^2 + V(s) gives the motion; it is integrated here. fettle's settings are its own.
-#include "fettle/tests/scenes/part_mechanism.hpp"
-#include "fettle/tests/scenes/refinement.hpp"
-#include "fettle/tests/support/integrated.hpp"
+#include "tests/scenes/part_mechanism.hpp"
+#include "tests/scenes/refinement.hpp"
+#include "tests/support/integrated.hpp"
 
 namespace fettle::tests::scenes::bricard_linkage_test {
 

@@ -8,7 +8,7 @@
 // the pressure angle at least. As d is below dhat, the law is met to (dhat + in) / cos(pressure).
 #include <functional>
 
-#include "fettle/tests/scenes/part_mechanism.hpp"
+#include "tests/scenes/part_mechanism.hpp"
 
 namespace fettle::tests::scenes::cams_test {
 

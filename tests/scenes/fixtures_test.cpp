@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/intersection_oracle.hpp"
-#include "fettle/tests/support/shared_files.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/intersection_oracle.hpp"
+#include "tests/support/shared_files.hpp"
 
 namespace fettle::tests::scenes::fixtures_test {
 

@@ -14,7 +14,7 @@
 // their flanks, on which the vertices lie, at one from d - deviation to d, the deviation being that of both.
 #include <random>
 
-#include "fettle/tests/scenes/part_mechanism.hpp"
+#include "tests/scenes/part_mechanism.hpp"
 
 namespace fettle::tests::scenes::gear_pairs_test {
 

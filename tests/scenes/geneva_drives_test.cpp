@@ -4,7 +4,7 @@
 //     wheel(t) = -atan2(a sin t, c - a cos t)  while the pin is in a slot, |t| <= pi / 2 - pi / N;  +-pi / N in between.
 // The play follows from `clearance` alone: the wheel may be off by so much that the pin touches a wall of its slot, or the locking disc an
 // end of its arc. Both parts' meshes cover the true parts, so that the mesh's play is at most that.
-#include "fettle/tests/scenes/part_mechanism.hpp"
+#include "tests/scenes/part_mechanism.hpp"
 
 namespace fettle::tests::scenes::geneva_drives_test {
 

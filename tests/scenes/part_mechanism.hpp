@@ -9,13 +9,13 @@
 #include <numbers>
 #include <string>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
-#include "fettle/design/shapes/part_library.hpp"
-#include "fettle/tests/support/intersection_oracle.hpp"
+#include "core/base/text.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "design/reading/scene_shapes.hpp"
+#include "design/shapes/part_library.hpp"
+#include "tests/support/intersection_oracle.hpp"
 
 namespace fettle::tests::scenes::part_mechanism {
 

@@ -4,8 +4,8 @@
 //     sin(angle(t) / 2) = k cd(omega t, k),   period = 4 K(k) / omega.
 #include <boost/math/special_functions/jacobi_elliptic.hpp>
 
-#include "fettle/tests/scenes/part_mechanism.hpp"
-#include "fettle/tests/scenes/refinement.hpp"
+#include "tests/scenes/part_mechanism.hpp"
+#include "tests/scenes/refinement.hpp"
 
 namespace fettle::tests::scenes::pendulum_test {
 

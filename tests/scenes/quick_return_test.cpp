@@ -2,7 +2,7 @@
 // A slotted-crank quick return in quasi-statics, which a force on its ram loads: a plain pin in a slot, and a linkage of which three
 // conditions follow from the others. Each step is solved to rounding, however far apart the stiffness of the contact and the proximal term
 // are.
-#include "fettle/tests/scenes/part_mechanism.hpp"
+#include "tests/scenes/part_mechanism.hpp"
 
 namespace fettle::tests::scenes::quick_return_test {
 

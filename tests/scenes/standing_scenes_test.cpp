@@ -2,10 +2,10 @@
 // What the paper builds with friction stands: scenes as they are, over 5 s. Needs ../shared; skipped without it.
 #include <catch2/catch.hpp>
 
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/shared_files.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/shared_files.hpp"
 
 namespace fettle::tests::scenes::standing_scenes_test {
 

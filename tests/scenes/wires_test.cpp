@@ -5,11 +5,11 @@
 #include <cmath>
 #include <random>
 
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/exact_ccd.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/exact_ccd.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::tests::scenes::wires_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/ccd_queries.hpp"
+#include "tests/support/ccd_queries.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "fettle/core/files/json_document.hpp"
+#include "core/files/json_document.hpp"
 
 namespace fettle::tests::support {
 

@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/ccd/linear_ccd.hpp"
-#include "fettle/core/kinematics/path.hpp"
+#include "core/base/result.hpp"
+#include "core/ccd/linear_ccd.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::tests::support {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/ccd_queries.hpp"
+#include "tests/support/ccd_queries.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "fettle/tests/support/shared_files.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "tests/support/shared_files.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::tests::support::ccd_queries_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/chain_net.hpp"
+#include "tests/support/chain_net.hpp"
 
 #include <cstdio>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/chain_net.hpp"
+#include "tests/support/chain_net.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/tests/support/shared_files.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "tests/support/shared_files.hpp"
 
 namespace fettle::tests::support::chain_net_test {
 

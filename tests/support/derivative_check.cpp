@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/derivative_check.hpp"
+#include "tests/support/derivative_check.hpp"
 
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
 
-#include "fettle/core/base/contract.hpp"
+#include "core/base/contract.hpp"
 
 namespace fettle::tests::support {
 namespace {

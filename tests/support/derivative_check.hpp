@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "fettle/core/base/types.hpp"
+#include "core/base/types.hpp"
 
 namespace fettle::tests::support {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The checker must accept right derivatives and reject wrong ones, also those that are only slightly wrong.
-#include "fettle/tests/support/derivative_check.hpp"
+#include "tests/support/derivative_check.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

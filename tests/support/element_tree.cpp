@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/element_tree.hpp"
+#include "tests/support/element_tree.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/kinematics/path.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/kinematics/path.hpp"
 
 namespace fettle::tests::support {
 

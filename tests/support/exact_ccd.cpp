@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "fettle/tests/support/exact_system.hpp"
+#include "tests/support/exact_system.hpp"
 
 namespace fettle::tests {
 

@@ -7,7 +7,7 @@
 /// power of two to whole numbers, of 128 bits where those suffice (10 us a query on a small grid).
 #pragma once
 
-#include "fettle/core/ccd/linear_ccd.hpp"
+#include "core/ccd/linear_ccd.hpp"
 
 namespace fettle::tests {
 

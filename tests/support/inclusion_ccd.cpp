@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/inclusion_ccd.hpp"
+#include "tests/support/inclusion_ccd.hpp"
 
 #include <algorithm>
 #include <cmath>

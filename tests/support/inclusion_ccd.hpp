@@ -19,7 +19,7 @@
 /// larger constant and 2 for the shift: err = 36 * 2^-52 = 72u for both.
 #pragma once
 
-#include "fettle/core/ccd/linear_ccd.hpp"
+#include "core/ccd/linear_ccd.hpp"
 
 namespace fettle::tests::support {
 

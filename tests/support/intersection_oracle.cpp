@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/intersection_oracle.hpp"
+#include "tests/support/intersection_oracle.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
 #include <sstream>
 
-#include "fettle/core/kinematics/path.hpp"
-#include "fettle/tests/support/passage_oracle.hpp"
+#include "core/kinematics/path.hpp"
+#include "tests/support/passage_oracle.hpp"
 
 namespace fettle::tests::support {
 namespace {

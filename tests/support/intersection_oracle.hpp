@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
-#include "fettle/tests/support/element_tree.hpp"
+#include "core/base/types.hpp"
+#include "core/model/model.hpp"
+#include "core/stepper/trajectory.hpp"
+#include "tests/support/element_tree.hpp"
 
 namespace fettle::tests::support {
 

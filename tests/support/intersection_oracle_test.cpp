@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/intersection_oracle.hpp"
+#include "tests/support/intersection_oracle.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/line_check.hpp"
+#include "tests/support/line_check.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The judge must pass right derivatives, find wrong ones out, and say where it cannot tell.
-#include "fettle/tests/support/line_check.hpp"
+#include "tests/support/line_check.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/tests/support/mechanisms.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::tests::mechanisms {
 

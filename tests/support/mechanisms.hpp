@@ -6,10 +6,10 @@
 #include <cmath>
 #include <string>
 
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::tests::mechanisms {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/passage_oracle.hpp"
+#include "tests/support/passage_oracle.hpp"
 
 #include <algorithm>
 
-#include "fettle/tests/support/exact_ccd.hpp"
+#include "tests/support/exact_ccd.hpp"
 
 namespace fettle::tests::support {
 namespace {

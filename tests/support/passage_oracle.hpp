@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "fettle/core/ccd/linear_ccd.hpp"
+#include "core/ccd/linear_ccd.hpp"
 
 namespace fettle::tests::support {
 

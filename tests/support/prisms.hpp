@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/core/model/model.hpp"
-#include "fettle/core/setup/round_contact.hpp"
+#include "core/geometry/mesh.hpp"
+#include "core/model/model.hpp"
+#include "core/setup/round_contact.hpp"
 
 namespace fettle::tests::support {
 

@@ -3,7 +3,7 @@
 #define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/support/skip.hpp"
+#include "tests/support/skip.hpp"
 
 int main(int argc, char** argv) {
     constexpr int skipped = 77;

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fettle/tests/support/skip.hpp"
+#include "tests/support/skip.hpp"
 
 namespace fettle::tests::support {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/solid_oracle.hpp"
+#include "tests/support/solid_oracle.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::tests::support {
 

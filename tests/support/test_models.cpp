@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/support/test_models.hpp"
+#include "tests/support/test_models.hpp"
 
 #include <algorithm>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/model/body_geometry.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/model/body_geometry.hpp"
 
 namespace fettle::tests::support {
 

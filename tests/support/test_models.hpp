@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "fettle/core/model/model.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
+#include "core/model/model.hpp"
+#include "tests/support/box_mesh.hpp"
 
 namespace fettle::tests::support {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/clearance/clearance_adjoint.hpp"
+#include "adjoint/clearance/clearance_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/adjoint/clearance/clearance_cases.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
+#include "tests/adjoint/clearance/clearance_cases.hpp"
+#include "tests/support/derivative_check.hpp"
 
 namespace fettle::adjoint::clearance::clearance_adjoint_test {
 

@@ -2,8 +2,8 @@
 /// Small moving pairs whose certified clearance is differentiated: as coordinates, six a pose (dq, phi), then three a vertex.
 #pragma once
 
-#include "fettle/adjoint/clearance/clearance_adjoint.hpp"
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
+#include "adjoint/clearance/clearance_adjoint.hpp"
+#include "tests/core/clearance/clearance_oracle.hpp"
 
 namespace fettle::tests::clearance_cases {
 

@@ -2,7 +2,7 @@
 // Where several witnesses attain the least distance, it has a derivative on each side only.
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/adjoint/clearance/clearance_cases.hpp"
+#include "tests/adjoint/clearance/clearance_cases.hpp"
 
 namespace fettle::adjoint::clearance::clearance_ties_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/clearance/distinct_witnesses.hpp"
+#include "adjoint/clearance/distinct_witnesses.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/adjoint/clearance/tied_features.hpp"
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/tests/adjoint/clearance/clearance_cases.hpp"
+#include "adjoint/clearance/tied_features.hpp"
+#include "core/geometry/distance.hpp"
+#include "tests/adjoint/clearance/clearance_cases.hpp"
 
 namespace fettle::adjoint::clearance::distinct_witnesses_test {
 

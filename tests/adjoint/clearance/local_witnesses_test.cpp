@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // What could become the witness of a clearance over ranges: closed forms of the local minima.
-#include "fettle/adjoint/clearance/local_witnesses.hpp"
+#include "adjoint/clearance/local_witnesses.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "fettle/adjoint/clearance/range_adjoint.hpp"
-#include "fettle/core/clearance/range_clearance.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
+#include "adjoint/clearance/range_adjoint.hpp"
+#include "core/clearance/range_clearance.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/support/box_mesh.hpp"
 
 namespace fettle::adjoint::clearance::local_witnesses_test {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Nodes inside a step: where a prescribed motion changes the certified clearance of whole simulations is differentiated as it is; what a
 // free body did on its way has no derivative, which is said.
-#include "fettle/adjoint/clearance/path_nodes.hpp"
+#include "adjoint/clearance/path_nodes.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/adjoint/clearance/clearance_adjoint.hpp"
-#include "fettle/adjoint/stepper/seeded_sweep.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "adjoint/clearance/clearance_adjoint.hpp"
+#include "adjoint/stepper/seeded_sweep.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::adjoint::clearance::path_nodes_test {
 

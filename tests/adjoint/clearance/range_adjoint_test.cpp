@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Clearances over the ranges of joints: closed forms of their least distance and of its derivative. By everything that a design moves:
 // tests/design/quantities/clearance_test.cpp.
-#include "fettle/adjoint/clearance/range_adjoint.hpp"
+#include "adjoint/clearance/range_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/support/box_mesh.hpp"
 
 namespace fettle::adjoint::clearance::range_adjoint_test {
 

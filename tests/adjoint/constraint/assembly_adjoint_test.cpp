@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Derivatives of the assembled poses against differences of assemblies.
-#include "fettle/adjoint/constraint/assembly_adjoint.hpp"
+#include "adjoint/constraint/assembly_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/tests/support/mechanisms.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::adjoint::constraint::assembly_adjoint_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/contact/area_weights_adjoint.hpp"
+#include "adjoint/contact/area_weights_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::adjoint::contact::area_weights_adjoint_test {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The damping of contacts along a motion of the bodies, as it depends on the shapes and on where the step started, against differences.
-#include "fettle/adjoint/contact/contact_damping_adjoint.hpp"
+#include "adjoint/contact/contact_damping_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
-#include "fettle/core/energy/step_problem.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "adjoint/contact/contact_pair_adjoint.hpp"
+#include "core/energy/step_problem.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::adjoint::contact::contact_damping_adjoint_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
+#include "adjoint/contact/contact_pair_adjoint.hpp"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/tests/support/derivative_check.hpp"
+#include "tests/support/derivative_check.hpp"
 
 namespace fettle::adjoint::contact::contact_pair_adjoint_test {
 

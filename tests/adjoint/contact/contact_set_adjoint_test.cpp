@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
+#include "adjoint/contact/contact_set_adjoint.hpp"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <random>
 
-#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "adjoint/contact/contact_pair_adjoint.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::adjoint::contact::contact_set_adjoint_test {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/contact/friction_adjoint.hpp"
+#include "adjoint/contact/friction_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
-#include "fettle/core/contact/friction.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "adjoint/contact/contact_pair_adjoint.hpp"
+#include "core/contact/friction.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::adjoint::contact::friction_adjoint_test {
 

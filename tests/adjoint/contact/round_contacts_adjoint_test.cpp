@@ -5,17 +5,17 @@
 #include <limits>
 #include <random>
 
-#include "fettle/adjoint/contact/contact_set_adjoint.hpp"
-#include "fettle/adjoint/contact/friction_adjoint.hpp"
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
-#include "fettle/adjoint/stepper/tangent_sweep.hpp"
-#include "fettle/core/contact/friction.hpp"
-#include "fettle/core/model/choose_proximal_weight.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/prisms.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "adjoint/contact/contact_set_adjoint.hpp"
+#include "adjoint/contact/friction_adjoint.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
+#include "adjoint/stepper/tangent_sweep.hpp"
+#include "core/contact/friction.hpp"
+#include "core/model/choose_proximal_weight.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/adjoint/stepper/sweep_scenes.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/prisms.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::adjoint::contact::round_contacts_adjoint_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/energy/body_terms_adjoint.hpp"
+#include "adjoint/energy/body_terms_adjoint.hpp"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>

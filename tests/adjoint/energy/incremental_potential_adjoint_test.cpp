@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/energy/incremental_potential_adjoint.hpp"
+#include "adjoint/energy/incremental_potential_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
-#include "fettle/core/energy/incremental_potential.hpp"
+#include "core/energy/incremental_potential.hpp"
 
 namespace fettle::adjoint::energy::incremental_potential_adjoint_test {
 

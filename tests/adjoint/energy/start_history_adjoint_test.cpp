@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Newmark's accelerations at the start: changes against differences of core's, gradients against changes.
-#include "fettle/adjoint/energy/start_history_adjoint.hpp"
+#include "adjoint/energy/start_history_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/energy/start_history.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "core/energy/start_history.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::adjoint::energy::start_history_adjoint_test {
 

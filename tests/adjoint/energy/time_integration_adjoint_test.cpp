@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Newmark's rates, the start's acceleration and the chart's torque: values against core's, tangents against differences of core's, adjoints
 // against tangents.
-#include "fettle/adjoint/energy/time_integration_adjoint.hpp"
+#include "adjoint/energy/time_integration_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/energy/start_history.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/energy/start_history.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::adjoint::energy::time_integration_adjoint_test {
 

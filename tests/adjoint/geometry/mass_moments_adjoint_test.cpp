@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/geometry/mass_moments_adjoint.hpp"
+#include "adjoint/geometry/mass_moments_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::adjoint::geometry::mass_moments_adjoint_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/model/body_mass_adjoint.hpp"
+#include "adjoint/model/body_mass_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/model/body_mass.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/model/body_mass.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::adjoint::model::body_mass_adjoint_test {
 

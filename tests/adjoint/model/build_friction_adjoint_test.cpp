@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/model/build_friction_adjoint.hpp"
+#include "adjoint/model/build_friction_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/adjoint/scene/scene_gradient.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
+#include "adjoint/scene/scene_gradient.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/support/box_mesh.hpp"
 
 namespace fettle::adjoint::model::build_friction_adjoint_test {
 

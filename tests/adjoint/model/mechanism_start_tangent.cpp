@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/adjoint/model/mechanism_start_tangent.hpp"
+#include "tests/adjoint/model/mechanism_start_tangent.hpp"
 
 #include <Eigen/LU>
 
-#include "fettle/adjoint/measure/measure_tangent.hpp"
-#include "fettle/adjoint/model/body_mass_adjoint.hpp"
-#include "fettle/core/model/mechanism_start.hpp"
+#include "adjoint/measure/measure_tangent.hpp"
+#include "adjoint/model/body_mass_adjoint.hpp"
+#include "core/model/mechanism_start.hpp"
 
 namespace fettle::adjoint::model {
 namespace {

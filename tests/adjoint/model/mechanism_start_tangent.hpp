@@ -9,7 +9,7 @@
 /// of coordinates: for checks and for small mechanisms.
 #pragma once
 
-#include "fettle/adjoint/model_gradient.hpp"
+#include "adjoint/model_gradient.hpp"
 
 namespace fettle::adjoint::model {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The start of a mechanism forwards, which shares nothing with the adjoint but the measures: they agree.
-#include "fettle/tests/adjoint/model/mechanism_start_tangent.hpp"
+#include "tests/adjoint/model/mechanism_start_tangent.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/adjoint/model/mechanism_start_adjoint.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "adjoint/model/mechanism_start_adjoint.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::adjoint::model::mechanism_start_tangent_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/scene/mass_kind_adjoint.hpp"
+#include "adjoint/scene/mass_kind_adjoint.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/derivative_check.hpp"
 
 namespace fettle::adjoint::scene::mass_kind_adjoint_test {
 

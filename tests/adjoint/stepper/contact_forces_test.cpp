@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Resultant forces of contact: as the steps report them, the whole of what stands still, and derivatives backwards, forwards and by
 // differences.
-#include "fettle/adjoint/stepper/contact_forces.hpp"
+#include "adjoint/stepper/contact_forces.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/adjoint/stepper/seeded_sweep.hpp"
-#include "fettle/adjoint/stepper/tangent_sweep.hpp"
-#include "fettle/core/model/choose_proximal_weight.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "adjoint/stepper/seeded_sweep.hpp"
+#include "adjoint/stepper/tangent_sweep.hpp"
+#include "core/model/choose_proximal_weight.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/adjoint/stepper/sweep_scenes.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::adjoint::stepper::contact_forces_test {
 

@@ -2,12 +2,12 @@
 // Joints, springs, motors backwards and forwards: the two sweeps against each other, and against central differences of simulations.
 #include <catch2/catch.hpp>
 
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
-#include "fettle/adjoint/stepper/row_multipliers.hpp"
-#include "fettle/adjoint/stepper/tangent_sweep.hpp"
-#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
-#include "fettle/tests/support/line_check.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
+#include "adjoint/stepper/row_multipliers.hpp"
+#include "adjoint/stepper/tangent_sweep.hpp"
+#include "tests/adjoint/stepper/sweep_scenes.hpp"
+#include "tests/support/line_check.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::adjoint::stepper::joint_sweep_test {
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
-#include "fettle/adjoint/stepper/row_multipliers.hpp"
-#include "fettle/core/model/row_choice.hpp"
-#include "fettle/tests/support/linkages.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
+#include "adjoint/stepper/row_multipliers.hpp"
+#include "core/model/row_choice.hpp"
+#include "tests/support/linkages.hpp"
 
 namespace fettle::adjoint::stepper::limits_sweep_test {
 

@@ -2,15 +2,15 @@
 // The sweeps of quasi-static simulations and of damped ones: backwards against forwards, and both against differences of whole simulations.
 #include <catch2/catch.hpp>
 
-#include "fettle/adjoint/energy/body_terms_adjoint.hpp"
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
-#include "fettle/adjoint/stepper/tangent_sweep.hpp"
-#include "fettle/core/energy/body_terms.hpp"
-#include "fettle/core/model/choose_proximal_weight.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "adjoint/energy/body_terms_adjoint.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
+#include "adjoint/stepper/tangent_sweep.hpp"
+#include "core/energy/body_terms.hpp"
+#include "core/model/choose_proximal_weight.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/adjoint/stepper/sweep_scenes.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::adjoint::stepper::quasi_static_sweep_test {
 

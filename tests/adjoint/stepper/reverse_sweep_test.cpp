@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "fettle/adjoint/stepper/tangent_sweep.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "adjoint/stepper/tangent_sweep.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/adjoint/stepper/sweep_scenes.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::adjoint::stepper::reverse_sweep_test {
 

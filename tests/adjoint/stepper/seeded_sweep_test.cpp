@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/adjoint/stepper/seeded_sweep.hpp"
+#include "adjoint/stepper/seeded_sweep.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/adjoint/stepper/sweep_scenes.hpp"
 
 namespace fettle::adjoint::stepper::seeded_sweep_test {
 

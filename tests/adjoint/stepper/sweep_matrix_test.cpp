@@ -4,14 +4,14 @@
 // simulations.
 #include <catch2/catch.hpp>
 
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
-#include "fettle/adjoint/stepper/tangent_sweep.hpp"
-#include "fettle/core/model/body_mass.hpp"
-#include "fettle/core/model/choose_proximal_weight.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
-#include "fettle/tests/support/line_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
+#include "adjoint/stepper/tangent_sweep.hpp"
+#include "core/model/body_mass.hpp"
+#include "core/model/choose_proximal_weight.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/adjoint/stepper/sweep_scenes.hpp"
+#include "tests/support/line_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::adjoint::stepper::sweep_matrix_test {
 

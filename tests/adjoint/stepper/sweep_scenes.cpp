@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
+#include "tests/adjoint/stepper/sweep_scenes.hpp"
 
 #include <functional>
 
-#include "fettle/adjoint/contact/contact_pair_adjoint.hpp"
-#include "fettle/adjoint/model/body_mass_adjoint.hpp"
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/model/body_mass.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "adjoint/contact/contact_pair_adjoint.hpp"
+#include "adjoint/model/body_mass_adjoint.hpp"
+#include "core/contact/contact_set.hpp"
+#include "core/model/body_mass.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::tests::adjoint {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/adjoint/model_gradient.hpp"
-#include "fettle/core/stepper/trajectory.hpp"
+#include "adjoint/model_gradient.hpp"
+#include "core/stepper/trajectory.hpp"
 
 namespace fettle::tests::adjoint {
 

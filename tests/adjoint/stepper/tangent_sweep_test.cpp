@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Whole simulations against central differences: contact active, every kind of parameter, step sizes swept.
-#include "fettle/adjoint/stepper/tangent_sweep.hpp"
+#include "adjoint/stepper/tangent_sweep.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/adjoint/stepper/reverse_sweep.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/adjoint/stepper/sweep_scenes.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
+#include "adjoint/stepper/reverse_sweep.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/adjoint/stepper/sweep_scenes.hpp"
+#include "tests/support/derivative_check.hpp"
 
 namespace fettle::adjoint::stepper::tangent_sweep_test {
 

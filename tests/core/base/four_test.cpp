@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/four.hpp"
+#include "core/base/four.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>

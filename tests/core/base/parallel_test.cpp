@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/tests/support/skip.hpp"
+#include "core/base/parallel.hpp"
+#include "tests/support/skip.hpp"
 
 #include <array>
 #include <atomic>

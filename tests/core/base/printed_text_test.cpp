@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/printed_text.hpp"
+#include "core/base/printed_text.hpp"
 
 #include <catch2/catch.hpp>
 

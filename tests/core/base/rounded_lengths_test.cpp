@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/rounded_lengths.hpp"
+#include "core/base/rounded_lengths.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/stop.hpp"
+#include "core/base/stop.hpp"
 
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/tests/support/skip.hpp"
+#include "core/base/parallel.hpp"
+#include "tests/support/skip.hpp"
 
 namespace fettle::core::base::stop_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/text.hpp"
+#include "core/base/text.hpp"
 
 #include <catch2/catch.hpp>
 

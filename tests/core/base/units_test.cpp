@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/base/units.hpp"
+#include "core/base/units.hpp"
 
 #include <catch2/catch.hpp>
 

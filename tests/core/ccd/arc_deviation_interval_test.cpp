@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "fettle/core/ccd/chord_deviation.hpp"
-#include "fettle/core/geometry/interval.hpp"
+#include "core/ccd/chord_deviation.hpp"
+#include "core/geometry/interval.hpp"
 
 namespace fettle::core::ccd::arc_deviation_interval_test {
 

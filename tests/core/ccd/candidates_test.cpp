@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The broad phase against all pairs of primitives: nothing that comes within the activation distance is missing, and stored distances are
 // bounds.
-#include "fettle/core/ccd/candidates.hpp"
+#include "core/ccd/candidates.hpp"
 
 #include <catch2/catch.hpp>
 #include <map>
@@ -9,10 +9,10 @@
 #include <set>
 #include <tuple>
 
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/contact/contact_set.hpp"
+#include "core/geometry/body_hierarchy.hpp"
+#include "core/geometry/predicates.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::ccd::candidates_test {
 

@@ -3,11 +3,11 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "fettle/core/ccd/curved_ccd.hpp"
-#include "fettle/tests/support/ccd_queries.hpp"
-#include "fettle/tests/support/exact_ccd.hpp"
-#include "fettle/tests/support/inclusion_ccd.hpp"
-#include "fettle/tests/support/shared_files.hpp"
+#include "core/ccd/curved_ccd.hpp"
+#include "tests/support/ccd_queries.hpp"
+#include "tests/support/exact_ccd.hpp"
+#include "tests/support/inclusion_ccd.hpp"
+#include "tests/support/shared_files.hpp"
 
 namespace fettle::core::ccd::ccd_ground_truth_test {
 

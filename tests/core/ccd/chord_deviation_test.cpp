@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Oracle: dense sampling of curve and chord in 200-bit arithmetic (MPFR).
-#include "fettle/core/ccd/chord_deviation.hpp"
+#include "core/ccd/chord_deviation.hpp"
 
 #include <boost/multiprecision/mpfr.hpp>
 #include <catch2/catch.hpp>
@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "fettle/core/ccd/curved_ccd.hpp"
+#include "core/ccd/curved_ccd.hpp"
 
 namespace fettle::core::ccd::chord_deviation_test {
 

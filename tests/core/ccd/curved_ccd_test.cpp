@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Oracle: paths built so that they touch at a known time, dense sampling, and motions with a closed form.
-#include "fettle/core/ccd/curved_ccd.hpp"
+#include "core/ccd/curved_ccd.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "fettle/core/geometry/distance.hpp"
+#include "core/geometry/distance.hpp"
 
 namespace fettle::core::ccd::curved_ccd_test {
 

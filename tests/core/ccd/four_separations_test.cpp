@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Four bounds at a time against distances along the motion, and against the planes that are found one by one.
-#include "fettle/core/ccd/four_separations.hpp"
+#include "core/ccd/four_separations.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
-#include "fettle/core/ccd/separating_plane.hpp"
-#include "fettle/core/geometry/distance.hpp"
+#include "core/ccd/separating_plane.hpp"
+#include "core/geometry/distance.hpp"
 
 namespace fettle::core::ccd::four_separations_test {
 

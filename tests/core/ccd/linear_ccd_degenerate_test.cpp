@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/ccd/linear_ccd.hpp"
-#include "fettle/tests/support/exact_ccd.hpp"
-#include "fettle/tests/support/inclusion_ccd.hpp"
+#include "core/ccd/linear_ccd.hpp"
+#include "tests/support/exact_ccd.hpp"
+#include "tests/support/inclusion_ccd.hpp"
 
 namespace fettle::core::ccd::linear_ccd_degenerate_test {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Oracle: exact rational arithmetic (tests/support/exact_ccd.hpp). A false negative or a toi too late is a bug, whatever the input.
-#include "fettle/core/ccd/linear_ccd.hpp"
+#include "core/ccd/linear_ccd.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
-#include "fettle/tests/support/exact_ccd.hpp"
-#include "fettle/tests/support/inclusion_ccd.hpp"
+#include "tests/support/exact_ccd.hpp"
+#include "tests/support/inclusion_ccd.hpp"
 
 namespace fettle::core::ccd::linear_ccd_test {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "fettle/core/ccd/curved_ccd.hpp"
-#include "fettle/core/ccd/linear_ccd.hpp"
-#include "fettle/tests/support/exact_ccd.hpp"
+#include "core/ccd/curved_ccd.hpp"
+#include "core/ccd/linear_ccd.hpp"
+#include "tests/support/exact_ccd.hpp"
 
 namespace fettle::core::ccd::narrow_gap_test {
 

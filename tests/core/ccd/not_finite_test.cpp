@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/ccd/curved_ccd.hpp"
-#include "fettle/core/ccd/swept_pair.hpp"
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/tests/support/inclusion_ccd.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/ccd/curved_ccd.hpp"
+#include "core/ccd/swept_pair.hpp"
+#include "core/contact/contact_set.hpp"
+#include "tests/support/inclusion_ccd.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::ccd::not_finite_test {
 

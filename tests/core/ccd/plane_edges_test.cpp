@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Edges within plane faces have nothing to say that other pairs do not say too: against the distances of all pairs.
-#include "fettle/core/ccd/plane_edges.hpp"
+#include "core/ccd/plane_edges.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,9 +8,9 @@
 #include <limits>
 #include <random>
 
-#include "fettle/core/ccd/safe_step.hpp"
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/ccd/safe_step.hpp"
+#include "core/geometry/distance.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::ccd::plane_edges_test {
 

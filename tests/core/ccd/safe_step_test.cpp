@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The longest safe step against exact distances along the path: nothing comes within dmin on [0, fraction], and what stops the step is
 // near.
-#include "fettle/core/ccd/safe_step.hpp"
+#include "core/ccd/safe_step.hpp"
 
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -9,11 +9,11 @@
 #include <limits>
 #include <random>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/stop.hpp"
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/tests/support/exact_ccd.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/stop.hpp"
+#include "core/contact/contact_set.hpp"
+#include "tests/support/exact_ccd.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::ccd::safe_step_test {
 

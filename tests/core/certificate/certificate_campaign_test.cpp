@@ -4,10 +4,10 @@
 // through each other, searches that end early, with and without what else a search can be asked for.
 #include <catch2/catch.hpp>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/tests/core/clearance/mechanism_samples.hpp"
+#include "core/base/parallel.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/clearance/clearance.hpp"
+#include "tests/core/clearance/mechanism_samples.hpp"
 
 namespace fettle::core::certificate::certificate_campaign_test {
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <set>
 
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/tests/core/certificate/certificate_case.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "tests/core/certificate/certificate_case.hpp"
 
 namespace fettle::core::certificate::certificate_damage_test {
 

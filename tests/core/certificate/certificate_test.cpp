@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Certificates: every one of ours is accepted, also after a round through a file. Damaged ones: certificate_damage_test.cpp.
-#include "fettle/core/certificate/certificate.hpp"
+#include "core/certificate/certificate.hpp"
 
 #include <atomic>
 #include <catch2/catch.hpp>
 
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/certificate/interval_motion.hpp"
-#include "fettle/tests/core/certificate/certificate_case.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/certificate/interval_motion.hpp"
+#include "tests/core/certificate/certificate_case.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::core::certificate::certificate_test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/certificate/disjoint_solids.hpp"
+#include "core/certificate/disjoint_solids.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/tests/core/certificate/certificate_case.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "tests/core/certificate/certificate_case.hpp"
 
 namespace fettle::core::certificate::disjoint_solids_test {
 

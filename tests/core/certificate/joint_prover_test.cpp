@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // How far a stored path is from where joints and motors have the bodies: against trigonometry, at many instants between the nodes.
-#include "fettle/core/certificate/joint_prover.hpp"
+#include "core/certificate/joint_prover.hpp"
 
 #include <random>
 
-#include "fettle/core/clearance/jointed_clearance.hpp"
-#include "fettle/core/constraint/assembly.hpp"
-#include "fettle/tests/core/clearance/four_bar_motion.hpp"
+#include "core/clearance/jointed_clearance.hpp"
+#include "core/constraint/assembly.hpp"
+#include "tests/core/clearance/four_bar_motion.hpp"
 
 namespace fettle::core::certificate::joint_prover_test {
 

@@ -2,11 +2,11 @@
 // Certificates over ranges of joints: ours are accepted, damaged ones rejected, every one; written and read back.
 #include <functional>
 
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/clearance/range_bound.hpp"
-#include "fettle/tests/core/clearance/random_trees.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/clearance/range_bound.hpp"
+#include "tests/core/clearance/random_trees.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::core::certificate::range_certificate_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Taylor models of random formulas against samples in extended precision; what they lose of smooth ones is of second order.
-#include "fettle/core/certificate/taylor_model.hpp"
+#include "core/certificate/taylor_model.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/expression/parse_formula.hpp"
+#include "core/expression/parse_formula.hpp"
 
 namespace fettle::core::certificate::taylor_model_test {
 

@@ -3,10 +3,10 @@
 // undecided, never "contact" or "clear".
 #include <catch2/catch.hpp>
 
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/core/clearance/clearance_models.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/core/clearance/clearance_models.hpp"
 
 namespace fettle::core::clearance::clash_test {
 

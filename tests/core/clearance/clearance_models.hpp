@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
+#include "core/clearance/clearance.hpp"
+#include "tests/core/clearance/clearance_oracle.hpp"
 
 namespace fettle::tests::clearance {
 

@@ -14,9 +14,9 @@
 #include <random>
 #include <vector>
 
-#include "fettle/core/clearance/pair_search.hpp"
-#include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/clearance/pair_search.hpp"
+#include "core/geometry/body_hierarchy.hpp"
+#include "core/geometry/mesh.hpp"
 
 namespace fettle::tests::clearance {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/clearance.hpp"
+#include "core/clearance/clearance.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/tests/core/clearance/clearance_models.hpp"
+#include "core/base/parallel.hpp"
+#include "tests/core/clearance/clearance_models.hpp"
 
 namespace fettle::core::clearance::clearance_test {
 

@@ -13,7 +13,7 @@
 
 #include <vector>
 
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
+#include "tests/core/clearance/clearance_oracle.hpp"
 
 namespace fettle::tests::clearance {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/element_pair.hpp"
+#include "core/clearance/element_pair.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
+#include "tests/core/clearance/clearance_oracle.hpp"
 
 namespace fettle::core::clearance::element_pair_test {
 

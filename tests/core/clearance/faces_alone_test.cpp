@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/faces_alone.hpp"
+#include "core/clearance/faces_alone.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/support/box_mesh.hpp"
 
 namespace fettle::core::clearance::faces_alone_test {
 

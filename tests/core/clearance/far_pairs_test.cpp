@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Pairs that are left unmeasured are as far apart as is said, by the whole search for the least distance; all others have the very answer
 // that they have without; and what a certificate says of both is proven to its checker.
-#include "fettle/core/clearance/far_pairs.hpp"
+#include "core/clearance/far_pairs.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/tests/core/clearance/tumbling_boxes.hpp"
+#include "core/base/parallel.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/clearance/clearance.hpp"
+#include "tests/core/clearance/tumbling_boxes.hpp"
 
 namespace fettle::core::clearance::far_pairs_test {
 

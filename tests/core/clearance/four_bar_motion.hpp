@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "fettle/core/stepper/jointed_motion.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "core/stepper/jointed_motion.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::tests::four_bar {
 

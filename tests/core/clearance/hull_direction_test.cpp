@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/hull_direction.hpp"
+#include "core/clearance/hull_direction.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
+#include "tests/core/clearance/clearance_oracle.hpp"
 
 namespace fettle::core::clearance::hull_direction_test {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Joints as trees with ranges: against the rows that the simulation holds them by, and what is refused.
-#include "fettle/core/clearance/joint_ranges.hpp"
+#include "core/clearance/joint_ranges.hpp"
 
-#include "fettle/core/clearance/range_bound.hpp"
-#include "fettle/tests/core/clearance/random_trees.hpp"
+#include "core/clearance/range_bound.hpp"
+#include "tests/core/clearance/random_trees.hpp"
 
 namespace fettle::core::clearance::joint_ranges_test {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Clearance of a closed loop that a motor turns, charged with what its joints part by between the nodes: against trigonometry; and its
 // certificate, which is rejected where the charge is too small.
-#include "fettle/core/clearance/jointed_clearance.hpp"
+#include "core/clearance/jointed_clearance.hpp"
 
 #include <filesystem>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/tests/core/clearance/four_bar_motion.hpp"
+#include "core/base/limits.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "tests/core/clearance/four_bar_motion.hpp"
 
 namespace fettle::core::clearance::jointed_clearance_test {
 

@@ -5,9 +5,9 @@
 
 #include <atomic>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/clearance/pair_search.hpp"
-#include "fettle/tests/core/clearance/mechanism_samples.hpp"
+#include "core/base/parallel.hpp"
+#include "core/clearance/pair_search.hpp"
+#include "tests/core/clearance/mechanism_samples.hpp"
 
 namespace fettle::core::clearance::mechanism_campaign_test {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "fettle/tests/core/clearance/dense_sampling.hpp"
+#include "tests/core/clearance/dense_sampling.hpp"
 
 namespace fettle::tests::clearance {
 

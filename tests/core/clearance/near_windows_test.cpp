@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Pairs that the broad phase over time leaves out are far: against the least distance of each pair in each segment, searched by itself; and
 // the least distance of all at once against each pair alone.
-#include "fettle/core/clearance/near_windows.hpp"
+#include "core/clearance/near_windows.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/tests/core/clearance/tumbling_boxes.hpp"
+#include "core/clearance/clearance.hpp"
+#include "tests/core/clearance/tumbling_boxes.hpp"
 
 namespace fettle::core::clearance::near_windows_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/overlap.hpp"
+#include "core/clearance/overlap.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/parts/common_part.hpp"
-#include "fettle/tests/core/clearance/clearance_models.hpp"
-#include "fettle/tests/support/skip.hpp"
+#include "core/parts/common_part.hpp"
+#include "tests/core/clearance/clearance_models.hpp"
+#include "tests/support/skip.hpp"
 
 namespace fettle::core::clearance::overlap_test {
 

@@ -3,9 +3,9 @@
 /// joint coordinates: in extended precision, sharing nothing with Taylor models.
 #pragma once
 
-#include "fettle/core/certificate/toleranced.hpp"
-#include "fettle/core/expression/tape.hpp"
-#include "fettle/tests/core/clearance/random_trees.hpp"
+#include "core/certificate/toleranced.hpp"
+#include "core/expression/tape.hpp"
+#include "tests/core/clearance/random_trees.hpp"
 
 namespace fettle::tests::tolerances {
 

@@ -5,9 +5,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/clearance/range_clearance.hpp"
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "core/clearance/range_clearance.hpp"
+#include "tests/core/clearance/clearance_oracle.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::tests::trees {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Clearance over all positions of joints: closed forms, samples of random trees in extended precision.
-#include "fettle/core/clearance/range_clearance.hpp"
+#include "core/clearance/range_clearance.hpp"
 
 #include <chrono>
 #include <sstream>
 
-#include "fettle/core/clearance/range_bound.hpp"
-#include "fettle/tests/core/clearance/random_trees.hpp"
+#include "core/clearance/range_bound.hpp"
+#include "tests/core/clearance/random_trees.hpp"
 
 namespace fettle::core::clearance::range_clearance_test {
 

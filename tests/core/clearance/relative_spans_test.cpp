@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/relative_spans.hpp"
+#include "core/clearance/relative_spans.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/clearance/hull_direction.hpp"
-#include "fettle/core/clearance/witness_instant.hpp"
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
+#include "core/clearance/hull_direction.hpp"
+#include "core/clearance/witness_instant.hpp"
+#include "tests/core/clearance/clearance_oracle.hpp"
 
 namespace fettle::core::clearance::relative_spans_test {
 

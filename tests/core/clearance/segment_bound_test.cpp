@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/clearance/segment_bound.hpp"
+#include "core/clearance/segment_bound.hpp"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <catch2/catch.hpp>
 
-#include "fettle/core/clearance/witness_instant.hpp"
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
+#include "core/clearance/witness_instant.hpp"
+#include "tests/core/clearance/clearance_oracle.hpp"
 
 namespace fettle::core::clearance::segment_bound_test {
 

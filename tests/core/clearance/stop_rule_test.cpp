@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Searches that end where the answer is known: the answers are those of searches to the tolerance, the bounds are true, and so are the
 // certificates.
-#include "fettle/core/clearance/stop_rule.hpp"
+#include "core/clearance/stop_rule.hpp"
 
 #include <functional>
 
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/clearance/range_clearance.hpp"
-#include "fettle/core/clearance/toleranced_clearance.hpp"
-#include "fettle/tests/core/clearance/random_tolerances.hpp"
-#include "fettle/tests/core/clearance/tumbling_boxes.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/clearance/range_clearance.hpp"
+#include "core/clearance/toleranced_clearance.hpp"
+#include "tests/core/clearance/random_tolerances.hpp"
+#include "tests/core/clearance/tumbling_boxes.hpp"
 
 namespace fettle::core::clearance::stop_rule_test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Clearance over a box of tolerances and all positions of joints: samples of random trees in extended precision, certificates.
-#include "fettle/core/clearance/toleranced_clearance.hpp"
+#include "core/clearance/toleranced_clearance.hpp"
 
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/tests/core/clearance/random_tolerances.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/clearance/clearance.hpp"
+#include "tests/core/clearance/random_tolerances.hpp"
 
 namespace fettle::core::clearance::toleranced_clearance_test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Faces that lie on each other: neither a gap nor a clash. How much, how deep at most, and what is a clash all the same.
-#include "fettle/core/clearance/touching.hpp"
+#include "core/clearance/touching.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/core/clearance/clearance_models.hpp"
+#include "tests/core/clearance/clearance_models.hpp"
 
 namespace fettle::core::clearance::touching_test {
 

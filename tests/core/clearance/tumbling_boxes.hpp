@@ -6,8 +6,8 @@
 #include <random>
 #include <string>
 
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/clearance/clearance.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::tests::clearance {
 

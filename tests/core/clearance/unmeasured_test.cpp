@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "fettle/core/clearance/search_front.hpp"
-#include "fettle/tests/core/clearance/clearance_models.hpp"
+#include "core/clearance/search_front.hpp"
+#include "tests/core/clearance/clearance_models.hpp"
 
 namespace fettle::core::clearance::unmeasured_test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/constraint/whole_turns.hpp"
+#include "core/constraint/whole_turns.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/stepper/jointed_motion.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "core/stepper/jointed_motion.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::core::constraint::whole_turns_test {
 

@@ -5,11 +5,11 @@
 #include <map>
 #include <random>
 
-#include "fettle/core/contact/contact_areas.hpp"
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/contact/contact_areas.hpp"
+#include "core/contact/contact_set.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::contact::area_weight_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Known values, derivatives, invariants and the ends of the barrier's range; the same for the mollifier.
-#include "fettle/core/contact/barrier.hpp"
+#include "core/contact/barrier.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "fettle/tests/support/derivative_check.hpp"
+#include "tests/support/derivative_check.hpp"
 
 namespace fettle::core::contact::barrier_test {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/contact/contact_damping.hpp"
+#include "core/contact/contact_damping.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/energy/start_history.hpp"
-#include "fettle/core/linear/factorisations.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/base/parallel.hpp"
+#include "core/energy/incremental_potential.hpp"
+#include "core/energy/start_history.hpp"
+#include "core/linear/factorisations.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::contact::contact_damping_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Derivatives of one pair's potential against central differences, for every kind of closest feature, with and without mollifier.
-#include "fettle/core/contact/contact_pair.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/contact/contact_pair.hpp"
+#include "core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/kinematics/rotation.hpp"
+#include "core/kinematics/rotation.hpp"
 
 namespace fettle::core::contact::contact_pair_test {
 

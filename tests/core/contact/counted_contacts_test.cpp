@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // A plane face is one contact however it is cut: against the distance to the polygon, differences, and other ways to cut it.
-#include "fettle/core/contact/counted_contacts.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/contact/counted_contacts.hpp"
+#include "core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/model/choose_kappa.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/contact/contact_set.hpp"
+#include "core/model/choose_kappa.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::contact::counted_contacts_test {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Friction: the mollifier against its formula and its limits, the potential's derivatives against differences, and the force against
 // Coulomb's law for a contact that slides and for one that sticks.
-#include "fettle/core/contact/friction.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/contact/friction.hpp"
+#include "core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/energy/incremental_potential.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::contact::friction_test {
 

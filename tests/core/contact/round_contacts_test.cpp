@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Contacts of round surfaces against closed forms and an independent section, differences, and themselves: sliding, anew, in threads.
-#include "fettle/core/contact/round_contacts.hpp"
+#include "core/contact/round_contacts.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>
 #include <map>
 #include <random>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/contact/contact_set.hpp"
-#include "fettle/core/linear/factorisations.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/prisms.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/base/parallel.hpp"
+#include "core/contact/contact_set.hpp"
+#include "core/linear/factorisations.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/prisms.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::contact::round_contacts_test {
 

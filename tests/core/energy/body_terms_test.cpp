@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/energy/body_terms.hpp"
+#include "core/energy/body_terms.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/energy/start_history.hpp"
-#include "fettle/core/kinematics/mass_matrix.hpp"
-#include "fettle/core/linear/factorisations.hpp"
-#include "fettle/tests/core/stepper/physics_models.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/energy/incremental_potential.hpp"
+#include "core/energy/start_history.hpp"
+#include "core/kinematics/mass_matrix.hpp"
+#include "core/linear/factorisations.hpp"
+#include "tests/core/stepper/physics_models.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::energy::body_terms_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Gradient and Hessian of a whole step's potential in chart coordinates, away from the chart's origin, against central differences.
-#include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/energy/incremental_potential.hpp"
+#include "core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/support/test_models.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::energy::incremental_potential_test {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Laws of measures, and the term that they make, against central differences; a damped oscillation against its exponential.
-#include "fettle/core/energy/measure_terms.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/energy/measure_terms.hpp"
+#include "core/linear/factorisations.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/energy/incremental_potential.hpp"
-#include "fettle/core/energy/start_history.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "core/energy/incremental_potential.hpp"
+#include "core/energy/start_history.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::core::energy::measure_terms_test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What acts on bodies at the start, by hand; and that Newmark's first step knows it: energy and order of a mass on a spring.
-#include "fettle/core/energy/start_history.hpp"
+#include "core/energy/start_history.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/support/mechanisms.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::core::energy::start_history_test {
 

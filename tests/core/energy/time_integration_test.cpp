@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // P_hat, weights and rates of the integrators, against their formulas and against motions that they must reproduce exactly.
-#include "fettle/core/energy/time_integration.hpp"
+#include "core/energy/time_integration.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/energy/start_history.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/energy/start_history.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::energy::time_integration_test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/expression/parse_formula.hpp"
+#include "core/expression/parse_formula.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/tests/support/derivative_check.hpp"
+#include "tests/support/derivative_check.hpp"
 
 namespace fettle::core::expression::parse_formula_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/atomic_file.hpp"
+#include "core/files/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -14,7 +14,7 @@
 #include <string_view>
 #include <thread>
 
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::core::files::atomic_file_test {
 

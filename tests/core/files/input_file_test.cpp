@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/input_file.hpp"
+#include "core/files/input_file.hpp"
 
 #include <sys/stat.h>
 
@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/base/read_record.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/files/json_keys.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/base/parallel.hpp"
+#include "core/base/read_record.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/files/json_keys.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::core::files::input_file_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/json_document.hpp"
-#include "fettle/core/files/json_text.hpp"
+#include "core/files/json_document.hpp"
+#include "core/files/json_text.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "fettle/core/files/nearest_word.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/files/nearest_word.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::files::json_document_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The kind of a file by a key of its outermost object, wherever it stands, and by nothing that only looks like it.
-#include "fettle/core/files/json_keys.hpp"
+#include "core/files/json_keys.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <string>
 
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::core::files::json_keys_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/json_lines.hpp"
+#include "core/files/json_lines.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>

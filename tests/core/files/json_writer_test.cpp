@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What is written is JSON, and reads back as it was: strings by their characters, numbers by their bits.
-#include "fettle/core/files/json_writer.hpp"
+#include "core/files/json_writer.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
-#include "fettle/core/files/json_document.hpp"
+#include "core/files/json_document.hpp"
 
 namespace fettle::core::files::json_writer_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/files/unique_names.hpp"
+#include "core/files/unique_names.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

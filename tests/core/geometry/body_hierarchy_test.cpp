@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/body_hierarchy.hpp"
+#include "core/geometry/body_hierarchy.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,8 +7,8 @@
 #include <numeric>
 #include <random>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "core/base/parallel.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::core::geometry::body_hierarchy_test {
 

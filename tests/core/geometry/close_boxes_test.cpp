@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/close_boxes.hpp"
+#include "core/geometry/close_boxes.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
 
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::core::geometry::close_boxes_test {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/tests/support/exact_ccd.hpp"
+#include "core/geometry/distance.hpp"
+#include "tests/support/exact_ccd.hpp"
 
 namespace fettle::core::geometry::distance_campaign_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Oracle: exact rational arithmetic (tests/support/exact_ccd.hpp), on random, degenerate and distant pairs.
-#include "fettle/core/geometry/distance.hpp"
+#include "core/geometry/distance.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "fettle/tests/support/exact_ccd.hpp"
+#include "tests/support/exact_ccd.hpp"
 
 namespace fettle::core::geometry::distance_test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/flat_features.hpp"
+#include "core/geometry/flat_features.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/tests/support/test_models.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::geometry::flat_features_test {
 

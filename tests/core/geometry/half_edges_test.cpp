@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/half_edges.hpp"
+#include "core/geometry/half_edges.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,7 +7,7 @@
 #include <random>
 #include <tuple>
 
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::core::geometry::half_edges_test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Oracle: the same operations at sampled points in 50-digit arithmetic (MPFR).
-#include "fettle/core/geometry/interval.hpp"
+#include "core/geometry/interval.hpp"
 
 #include <boost/multiprecision/mpfr.hpp>
 #include <catch2/catch.hpp>

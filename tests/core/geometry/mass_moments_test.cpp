@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/mass_moments.hpp"
+#include "core/geometry/mass_moments.hpp"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::core::geometry::mass_moments_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/mesh.hpp"
+#include "core/geometry/mesh.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>
 #include <set>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "core/base/contract.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::core::geometry::mesh_test {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/named_faces.hpp"
+#include "core/geometry/named_faces.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/support/box_mesh.hpp"
+#include "tests/support/box_mesh.hpp"
 
 namespace fettle::core::geometry::named_faces_test {
 

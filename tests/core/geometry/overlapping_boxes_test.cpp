@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Tree and sweep against all pairs.
-#include "fettle/core/geometry/overlapping_boxes.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/base/parallel.hpp"
+#include "core/base/parallel.hpp"
 
 namespace fettle::core::geometry::overlapping_boxes_test {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/predicates.hpp"
+#include "core/geometry/predicates.hpp"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <random>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "core/base/contract.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::core::geometry::predicates_test {
 

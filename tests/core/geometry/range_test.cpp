@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Ranges contain what formulas give for any numbers of their operands, by sampling; where nothing is known they say so.
-#include "fettle/core/geometry/range.hpp"
+#include "core/geometry/range.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "fettle/core/expression/parse_formula.hpp"
+#include "core/expression/parse_formula.hpp"
 
 namespace fettle::core::geometry::range_test {
 

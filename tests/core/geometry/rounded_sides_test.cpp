@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/geometry/rounded_sides.hpp"
+#include "core/geometry/rounded_sides.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -10,10 +10,10 @@
 #include <set>
 #include <string>
 
-#include "fettle/core/parts/extrude.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
-#include "fettle/tests/core/parts/part_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/parts/extrude.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
+#include "tests/core/parts/part_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::geometry::rounded_sides_test {
 

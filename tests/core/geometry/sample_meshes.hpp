@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/core/geometry/mesh.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
+#include "core/base/types.hpp"
+#include "core/geometry/mesh.hpp"
+#include "tests/support/box_mesh.hpp"
 
 namespace fettle::tests {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Oracle: the same functions in 50-digit arithmetic, differentiated by central differences there (step 1e-12, error 1e-24).
-#include "fettle/core/kinematics/rotation.hpp"
+#include "core/kinematics/rotation.hpp"
 
 #include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The factor by blocks against a dense one, on random graphs of bodies with prescribed coordinates.
-#include "fettle/core/linear/block_cholesky.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/linear/block_cholesky.hpp"
+#include "core/linear/factorisations.hpp"
 
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
@@ -9,8 +9,8 @@
 #include <limits>
 #include <random>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/linear/matrices.hpp"
+#include "core/base/parallel.hpp"
+#include "core/linear/matrices.hpp"
 
 namespace fettle::core::linear::block_cholesky_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/linear/linear_system.hpp"
+#include "core/linear/linear_system.hpp"
 
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The saddle-point system against a dense solution, definiteness on the rows, dependent rows.
-#include "fettle/core/linear/quasi_definite_factor.hpp"
-#include "fettle/core/linear/factorisations.hpp"
+#include "core/linear/quasi_definite_factor.hpp"
+#include "core/linear/factorisations.hpp"
 
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/constraint/dependent_rows.hpp"
-#include "fettle/core/linear/linear_system.hpp"
+#include "core/constraint/dependent_rows.hpp"
+#include "core/linear/linear_system.hpp"
 
 namespace fettle::core::linear::quasi_definite_factor_test {
 

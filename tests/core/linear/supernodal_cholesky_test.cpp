@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // CHOLMOD's factor against the one by blocks, on grids in which every body touches all its neighbours; what the linear system takes for
 // them. Without CHOLMOD on OpenBLAS there is nothing to compare.
-#include "fettle/core/linear/supernodal_cholesky.hpp"
+#include "core/linear/supernodal_cholesky.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>
 #include <random>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/linear/block_cholesky.hpp"
-#include "fettle/core/linear/linear_system.hpp"
-#include "fettle/tests/support/skip.hpp"
+#include "core/base/parallel.hpp"
+#include "core/linear/block_cholesky.hpp"
+#include "core/linear/linear_system.hpp"
+#include "tests/support/skip.hpp"
 
 namespace fettle::core::linear::supernodal_cholesky_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Values by hand, and every derivative against central differences.
-#include "fettle/core/measure/measure.hpp"
+#include "core/measure/measure.hpp"
 
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::measure::measure_test {
 

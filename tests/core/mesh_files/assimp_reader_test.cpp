@@ -9,15 +9,15 @@
 #include <new>
 #include <thread>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/mesh_files/import_format.hpp"
-#include "fettle/core/mesh_files/import_process.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/mesh_files/mesh_writer.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/mesh_files/import_format.hpp"
+#include "core/mesh_files/import_process.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::mesh_files::assimp_reader_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/mesh_files/mesh_reader.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
 
 #include <minizip/zip.h>
 #include <algorithm>
@@ -10,14 +10,14 @@
 #include <map>
 #include <sstream>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/mesh_files/raw_mesh.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
-#include "fettle/tests/support/intersection_oracle.hpp"
-#include "fettle/tests/support/shared_files.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/mesh_files/raw_mesh.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
+#include "tests/support/intersection_oracle.hpp"
+#include "tests/support/shared_files.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::mesh_files::mesh_reader_test {
 

@@ -9,14 +9,14 @@
 #include <fstream>
 #include <random>
 
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/mesh_files/mesh_writer.hpp"
-#include "fettle/core/mesh_files/millimetres.hpp"
-#include "fettle/core/mesh_files/zip_archive.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
+#include "core/mesh_files/millimetres.hpp"
+#include "core/mesh_files/zip_archive.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::mesh_files::mesh_writer_test {
 

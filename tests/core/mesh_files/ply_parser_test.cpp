@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <cstring>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::mesh_files::ply_parser_test {
 

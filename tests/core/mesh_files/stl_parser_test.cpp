@@ -4,11 +4,11 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
 
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/mesh_files/mesh_writer.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::mesh_files::stl_parser_test {
 

@@ -5,13 +5,13 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/mesh_files/mesh_reader.hpp"
-#include "fettle/core/mesh_files/raw_mesh.hpp"
-#include "fettle/core/mesh_files/xml_reader.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
+#include "core/mesh_files/raw_mesh.hpp"
+#include "core/mesh_files/xml_reader.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::mesh_files::threemf_parser_test {
 

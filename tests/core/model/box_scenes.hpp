@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/base/result.hpp"
-#include "fettle/core/scene/scene.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "core/base/result.hpp"
+#include "core/scene/scene.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::tests {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Closed linkages are assembled on the branch that a joint says: against closed forms, from poses that lead to another or to none.
-#include "fettle/core/model/branch_of_joint.hpp"
+#include "core/model/branch_of_joint.hpp"
 
-#include "fettle/core/stepper/branch_warnings.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "core/stepper/branch_warnings.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::core::model::branch_of_joint_test {
 

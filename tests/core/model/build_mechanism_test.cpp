@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What becomes of joints at the start: assembly, dependent and contradictory joints, velocities.
-#include "fettle/core/model/build_mechanism.hpp"
+#include "core/model/build_mechanism.hpp"
 
 #include <numbers>
 
-#include "fettle/tests/support/mechanisms.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::core::model::build_mechanism_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/check_scene.hpp"
+#include "core/model/check_scene.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,10 +7,10 @@
 #include <limits>
 #include <optional>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/core/model/box_scenes.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/base/text.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/core/model/box_scenes.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::model::check_scene_test {
 

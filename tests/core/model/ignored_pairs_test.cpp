@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/ignored_pairs.hpp"
+#include "core/model/ignored_pairs.hpp"
 
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/core/model/box_scenes.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/core/model/box_scenes.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::model::ignored_pairs_test {
 

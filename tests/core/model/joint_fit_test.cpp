@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Which overlaps a joint explains: pins and bores about its axis, balls about its point, and nothing else.
-#include "fettle/core/model/joint_fit.hpp"
+#include "core/model/joint_fit.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
-#include "fettle/tests/support/skip.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/core/clearance/clearance_oracle.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
+#include "tests/support/skip.hpp"
 
 namespace fettle::core::model::joint_fit_test {
 

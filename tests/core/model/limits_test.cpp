@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Limits are closed: every kind of joint that has them x where it starts against them x what is asked. docs/method/joints.md.
-#include "fettle/core/model/limits.hpp"
+#include "core/model/limits.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/clearance/joint_ranges.hpp"
-#include "fettle/core/stepper/jointed_motion.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "core/base/text.hpp"
+#include "core/clearance/joint_ranges.hpp"
+#include "core/stepper/jointed_motion.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::core::model::limits_test {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Linkages of ordinary hinges along motions on which rows that are independent at the start depend on one another: by dynamics, without,
 // and assembled at many places, against trigonometry.
-#include "fettle/core/model/row_choice.hpp"
+#include "core/model/row_choice.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/stepper/jointed_motion.hpp"
-#include "fettle/tests/support/linkages.hpp"
+#include "core/base/text.hpp"
+#include "core/stepper/jointed_motion.hpp"
+#include "tests/support/linkages.hpp"
 
 namespace fettle::core::model::row_choice_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/model/start_check.hpp"
+#include "core/model/start_check.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::model::start_check_test {
 

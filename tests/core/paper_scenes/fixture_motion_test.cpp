@@ -5,8 +5,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "fettle/core/scene_files/scene_motion.hpp"
-#include "fettle/tests/core/paper_scenes/fixture_texts.hpp"
+#include "core/scene_files/scene_motion.hpp"
+#include "tests/core/paper_scenes/fixture_texts.hpp"
 
 namespace fettle::core::paper_scenes::fixture_motion_test {
 

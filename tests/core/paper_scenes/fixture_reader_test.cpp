@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/paper_scenes/fixture_reader.hpp"
+#include "core/paper_scenes/fixture_reader.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <numbers>
 
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/core/paper_scenes/fixture_texts.hpp"
-#include "fettle/tests/support/shared_files.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/core/paper_scenes/fixture_texts.hpp"
+#include "tests/support/shared_files.hpp"
 
 namespace fettle::core::paper_scenes::fixture_reader_test {
 

@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::paper_scenes::test_support {
 

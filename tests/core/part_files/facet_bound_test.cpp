@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // A bound of the facets of a part's solids before they are drawn: never more than what is drawn, and a part that multiplies them is refused
 // at once.
-#include "fettle/core/part_files/facet_bound.hpp"
+#include "core/part_files/facet_bound.hpp"
 
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <string>
 #include <vector>
 
-#include "fettle/core/part_files/part_file.hpp"
+#include "core/part_files/part_file.hpp"
 
 namespace fettle::core::part_files::facet_bound_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/part_files/part_file.hpp"
+#include "core/part_files/part_file.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

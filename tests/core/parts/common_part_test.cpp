@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/common_part.hpp"
+#include "core/parts/common_part.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
-#include "fettle/tests/support/skip.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
+#include "tests/support/skip.hpp"
 
 namespace fettle::core::parts::common_part_test {
 

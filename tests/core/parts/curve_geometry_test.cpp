@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/curve_geometry.hpp"
+#include "core/parts/curve_geometry.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "fettle/core/parts/jet.hpp"
+#include "core/parts/jet.hpp"
 
 namespace fettle::core::parts::curve_geometry_test {
 

@@ -4,12 +4,12 @@
 #include <numbers>
 #include <random>
 
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/parts/extrude.hpp"
-#include "fettle/core/parts/helix.hpp"
-#include "fettle/core/parts/revolve.hpp"
-#include "fettle/core/solids/point_in_solid.hpp"
-#include "fettle/tests/core/parts/part_check.hpp"
+#include "core/geometry/distance.hpp"
+#include "core/parts/extrude.hpp"
+#include "core/parts/helix.hpp"
+#include "core/parts/revolve.hpp"
+#include "core/solids/point_in_solid.hpp"
+#include "tests/core/parts/part_check.hpp"
 
 namespace fettle::core::parts::deviation_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/extrude.hpp"
+#include "core/parts/extrude.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/tests/core/parts/part_check.hpp"
+#include "tests/core/parts/part_check.hpp"
 
 namespace fettle::core::parts::extrude_test {
 

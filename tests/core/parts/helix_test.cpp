@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/helix.hpp"
+#include "core/parts/helix.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "fettle/tests/core/parts/part_check.hpp"
+#include "tests/core/parts/part_check.hpp"
 
 namespace fettle::core::parts::helix_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/law_chords.hpp"
+#include "core/parts/law_chords.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "fettle/core/parts/curve_geometry.hpp"
+#include "core/parts/curve_geometry.hpp"
 
 namespace fettle::core::parts::law_chords_test {
 

@@ -6,10 +6,10 @@
 #include <functional>
 #include <vector>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/parts/drawn_part.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/solid_oracle.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/parts/drawn_part.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/solid_oracle.hpp"
 
 namespace fettle::core::parts::part_check {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/profile_booleans.hpp"
+#include "core/parts/profile_booleans.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "fettle/core/parts/extrude.hpp"
-#include "fettle/core/parts/sampled_loops.hpp"
-#include "fettle/tests/core/parts/part_check.hpp"
+#include "core/parts/extrude.hpp"
+#include "core/parts/sampled_loops.hpp"
+#include "tests/core/parts/part_check.hpp"
 
 namespace fettle::core::parts::profile_booleans_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/profile.hpp"
+#include "core/parts/profile.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "fettle/core/parts/extrude.hpp"
-#include "fettle/tests/core/parts/part_check.hpp"
+#include "core/parts/extrude.hpp"
+#include "tests/core/parts/part_check.hpp"
 
 namespace fettle::core::parts::profile_test {
 

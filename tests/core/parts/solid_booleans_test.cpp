@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/solid_booleans.hpp"
+#include "core/parts/solid_booleans.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "fettle/core/parts/extrude.hpp"
-#include "fettle/core/parts/revolve.hpp"
-#include "fettle/tests/core/parts/part_check.hpp"
-#include "fettle/tests/support/skip.hpp"
+#include "core/parts/extrude.hpp"
+#include "core/parts/revolve.hpp"
+#include "tests/core/parts/part_check.hpp"
+#include "tests/support/skip.hpp"
 
 namespace fettle::core::parts::solid_booleans_test {
 

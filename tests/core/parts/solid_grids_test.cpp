@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/part_files/part_file.hpp"
-#include "fettle/core/parts/solid_booleans.hpp"
-#include "fettle/tests/support/skip.hpp"
-#include "fettle/tests/support/solid_oracle.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/part_files/part_file.hpp"
+#include "core/parts/solid_booleans.hpp"
+#include "tests/support/skip.hpp"
+#include "tests/support/solid_oracle.hpp"
 
 namespace fettle::core::parts::solid_grids_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/triangulation.hpp"
+#include "core/parts/triangulation.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "fettle/core/geometry/predicates.hpp"
+#include "core/geometry/predicates.hpp"
 
 namespace fettle::core::parts::triangulation_test {
 

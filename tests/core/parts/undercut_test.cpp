@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/parts/undercut.hpp"
+#include "core/parts/undercut.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/tests/support/text.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::parts::undercut_test {
 

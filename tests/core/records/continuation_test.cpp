@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // A simulation that is cut and taken up again ends with the same bits as one that was not, with every integrator, with friction and with a
 // kappa that moves, in memory and through a file; what does not belong to the scene is refused.
-#include "fettle/core/records/continuation.hpp"
+#include "core/records/continuation.hpp"
 
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::records::continuation_test {
 

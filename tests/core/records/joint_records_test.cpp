@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "fettle/core/records/continuation.hpp"
-#include "fettle/core/records/scene_parts.hpp"
-#include "fettle/core/records/step_tables.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/core/records/trajectory_reader.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/records/continuation.hpp"
+#include "core/records/scene_parts.hpp"
+#include "core/records/step_tables.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "core/records/trajectory_reader.hpp"
+#include "tests/support/mechanisms.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::core::records::joint_records_test {
 

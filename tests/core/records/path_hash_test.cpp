@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/path_hash.hpp"
+#include "core/records/path_hash.hpp"
 
 #include <catch2/catch.hpp>
 #include <functional>

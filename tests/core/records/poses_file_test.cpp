@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/poses_file.hpp"
+#include "core/records/poses_file.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::core::records::poses_file_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/records/trajectory_io.hpp"
+#include "core/records/trajectory_io.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,14 +8,14 @@
 #include <functional>
 #include <random>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/kinematics/rotation.hpp"
-#include "fettle/core/records/trajectory_lines.hpp"
-#include "fettle/core/records/trajectory_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/step.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/kinematics/rotation.hpp"
+#include "core/records/trajectory_lines.hpp"
+#include "core/records/trajectory_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/step.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::core::records::trajectory_io_test {
 

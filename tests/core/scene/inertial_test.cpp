@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Given mass and inertia: against those of solids, values that no body has, and from a file to a motion.
-#include "fettle/core/scene/inertial.hpp"
+#include "core/scene/inertial.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/kinematics/rotation.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/core/scene_files/scene_workshop.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/kinematics/rotation.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/core/scene_files/scene_workshop.hpp"
 
 namespace fettle::core::scene::inertial_test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/place.hpp"
+#include "core/scene/place.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/core/scene_files/scene_reader.hpp"
+#include "core/scene_files/scene_reader.hpp"
 
 namespace fettle::core::scene::place_test {
 

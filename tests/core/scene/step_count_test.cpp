@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene/step_count.hpp"
+#include "core/scene/step_count.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "fettle/core/stepper/simulate.hpp"
+#include "core/stepper/simulate.hpp"
 
 namespace fettle::core::scene::step_count_test {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Joints, springs, dampers, motors and loads of scene files: as they are read, and refused.
-#include "fettle/core/scene_files/mechanism_reader.hpp"
+#include "core/scene_files/mechanism_reader.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "fettle/core/scene/curve.hpp"
-#include "fettle/tests/core/scene_files/scene_workshop.hpp"
+#include "core/scene/curve.hpp"
+#include "tests/core/scene_files/scene_workshop.hpp"
 
 namespace fettle::core::scene_files::mechanism_reader_test {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/core/scene_files/scene_workshop.hpp"
+#include "tests/core/scene_files/scene_workshop.hpp"
 
 namespace fettle::core::scene_files::scene_faults_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene_files/scene_formulas.hpp"
+#include "core/scene_files/scene_formulas.hpp"
 
 #include <catch2/catch.hpp>
 #include <map>
 #include <set>
 
-#include "fettle/core/scene/place.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
+#include "core/scene/place.hpp"
+#include "core/scene_files/scene_reader.hpp"
 
 namespace fettle::core::scene_files::scene_formulas_test {
 

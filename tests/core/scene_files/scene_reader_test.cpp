@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/scene_files/scene_reader.hpp"
+#include "core/scene_files/scene_reader.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -10,9 +10,9 @@
 #include <set>
 #include <sstream>
 
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
-#include "fettle/tests/core/scene_files/scene_workshop.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
+#include "tests/core/scene_files/scene_workshop.hpp"
 
 namespace fettle::core::scene_files::scene_reader_test {
 

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::scene_files::test_support {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/setup/build_model.hpp"
+#include "core/setup/build_model.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "fettle/core/geometry/body_hierarchy.hpp"
-#include "fettle/core/kinematics/rotation.hpp"
-#include "fettle/tests/core/model/box_scenes.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/geometry/body_hierarchy.hpp"
+#include "core/kinematics/rotation.hpp"
+#include "tests/core/model/box_scenes.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::setup::build_model_test {
 

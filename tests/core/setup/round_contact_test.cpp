@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/setup/round_contact.hpp"
+#include "core/setup/round_contact.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/core/model/box_scenes.hpp"
-#include "fettle/tests/support/prisms.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/core/model/box_scenes.hpp"
+#include "tests/support/prisms.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::core::setup::round_contact_test {
 

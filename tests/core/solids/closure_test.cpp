@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solids/closure.hpp"
+#include "core/solids/closure.hpp"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <utility>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/solids/point_in_solid.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/solids/point_in_solid.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::core::solids::closure_test {
 

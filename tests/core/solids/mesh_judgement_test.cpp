@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Sound meshes, damaged in the ways in which real files are, mended, judged and weighed.
-#include "fettle/core/solids/mesh_judgement.hpp"
+#include "core/solids/mesh_judgement.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/solids/mesh_repair.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/core/solids/overlap_bound.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/solids/mesh_repair.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "core/solids/overlap_bound.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::core::solids::mesh_judgement_test {
 

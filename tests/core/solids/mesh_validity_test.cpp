@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solids/mesh_validity.hpp"
+#include "core/solids/mesh_validity.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,9 +8,9 @@
 #include <limits>
 #include <random>
 
-#include "fettle/core/geometry/overlapping_boxes.hpp"
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "core/geometry/overlapping_boxes.hpp"
+#include "core/geometry/predicates.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::core::solids::mesh_validity_test {
 

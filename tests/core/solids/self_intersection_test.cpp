@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solids/self_intersection.hpp"
+#include "core/solids/self_intersection.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/geometry/predicates.hpp"
-#include "fettle/core/solids/simple_fan.hpp"
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
+#include "core/base/parallel.hpp"
+#include "core/geometry/predicates.hpp"
+#include "core/solids/simple_fan.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
 
 namespace fettle::core::solids::self_intersection_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solver/caution.hpp"
+#include "core/solver/caution.hpp"
 
 #include <catch2/catch.hpp>
 

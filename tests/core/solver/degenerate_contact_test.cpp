@@ -7,12 +7,12 @@
 #include <cmath>
 #include <sstream>
 
-#include "fettle/core/energy/start_history.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/solver/newton.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/intersection_oracle.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/energy/start_history.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/solver/newton.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/intersection_oracle.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::solver::degenerate_contact_test {
 

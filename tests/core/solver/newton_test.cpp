@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // One solve: known answers, the promises of its result, and what it says when it fails. Physics: stepper/*_physics_test.cpp.
-#include "fettle/core/solver/newton.hpp"
+#include "core/solver/newton.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "fettle/core/energy/start_history.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/solver/failure.hpp"
-#include "fettle/core/solver/newton_direction.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/energy/start_history.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/solver/failure.hpp"
+#include "core/solver/newton_direction.hpp"
+#include "tests/support/derivative_check.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::solver::newton_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solver/prescribed_drive.hpp"
+#include "core/solver/prescribed_drive.hpp"
 
 #include <catch2/catch.hpp>
 

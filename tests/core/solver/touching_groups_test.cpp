@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/solver/touching_groups.hpp"
+#include "core/solver/touching_groups.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/model/choose_kappa.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/model/choose_kappa.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::solver::touching_groups_test {
 

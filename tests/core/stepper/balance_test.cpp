@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The balance of a simulation tells nothing where all is kept, the work of forces where they did it, an error where there is one.
-#include "fettle/core/stepper/balance.hpp"
+#include "core/stepper/balance.hpp"
 
 #include <numbers>
 
-#include "fettle/tests/support/mechanisms.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::core::stepper::balance_test {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Bodies in contact without friction, or with it between free bodies: what no force between bodies can change, and how energy behaves.
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/tests/core/stepper/physics_models.hpp"
-#include "fettle/tests/support/intersection_oracle.hpp"
+#include "core/clearance/clearance.hpp"
+#include "tests/core/stepper/physics_models.hpp"
+#include "tests/support/intersection_oracle.hpp"
 
 namespace fettle::core::stepper::contact_physics_test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What damping of contacts does to a motion: impacts lose energy, rest and sliding are as without it, momentum is kept.
-#include "fettle/tests/core/stepper/physics_models.hpp"
-#include "fettle/tests/support/intersection_oracle.hpp"
+#include "tests/core/stepper/physics_models.hpp"
+#include "tests/support/intersection_oracle.hpp"
 
 namespace fettle::core::stepper::damped_contact_physics_test {
 

@@ -5,9 +5,9 @@
 #include <functional>
 #include <numbers>
 
-#include "fettle/tests/core/stepper/physics_models.hpp"
-#include "fettle/tests/support/integrated.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "tests/core/stepper/physics_models.hpp"
+#include "tests/support/integrated.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::core::stepper::default_accuracy_test {
 

@@ -2,7 +2,7 @@
 // Motion without contact, by each integrator, against closed forms and against Euler's equations solved to rounding level.
 #include <complex>
 
-#include "fettle/tests/core/stepper/physics_models.hpp"
+#include "tests/core/stepper/physics_models.hpp"
 
 namespace fettle::core::stepper::free_motion_physics_test {
 

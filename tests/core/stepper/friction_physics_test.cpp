@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Coulomb friction against closed forms.
-#include "fettle/tests/core/stepper/physics_models.hpp"
+#include "tests/core/stepper/physics_models.hpp"
 
 namespace fettle::core::stepper::friction_physics_test {
 

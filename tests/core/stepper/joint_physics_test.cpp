@@ -2,8 +2,8 @@
 // Joints, springs and motors against closed forms.
 #include <numbers>
 
-#include "fettle/core/kinematics/mass_matrix.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "core/kinematics/mass_matrix.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::core::stepper::joint_physics_test {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Bodies that joints hold and motors drive, followed without dynamics: closed forms, turns, what is refused.
-#include "fettle/core/stepper/jointed_motion.hpp"
+#include "core/stepper/jointed_motion.hpp"
 
-#include "fettle/tests/support/mechanisms.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::core::stepper::jointed_motion_test {
 

@@ -5,10 +5,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/mechanisms.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::tests::physics {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Motion that a time step cannot see at its ends: scripts and tables with several entries in one step, followed as they are, without
 // dynamics and with, and judged as they are.
-#include "fettle/core/stepper/prescribed_path.hpp"
+#include "core/stepper/prescribed_path.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/scripted_motion.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/intersection_oracle.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/scripted_motion.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/intersection_oracle.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::stepper::prescribed_path_test {
 

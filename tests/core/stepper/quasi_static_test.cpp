@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Quasi-static steps against statics in closed form, and bodies that nothing holds.
-#include "fettle/core/model/choose_proximal_weight.hpp"
-#include "fettle/tests/core/stepper/physics_models.hpp"
+#include "core/model/choose_proximal_weight.hpp"
+#include "tests/core/stepper/physics_models.hpp"
 
 namespace fettle::core::stepper::quasi_static_test {
 

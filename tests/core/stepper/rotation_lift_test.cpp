@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/rotation_lift.hpp"
+#include "core/stepper/rotation_lift.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "fettle/core/kinematics/rotation.hpp"
+#include "core/kinematics/rotation.hpp"
 
 namespace fettle::core::stepper::rotation_lift_test {
 

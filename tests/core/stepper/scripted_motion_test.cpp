@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/core/stepper/scripted_motion.hpp"
+#include "core/stepper/scripted_motion.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::stepper::scripted_motion_test {
 

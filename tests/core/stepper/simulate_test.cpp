@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Whole simulations with an answer known in closed form, and what a run must report when it cannot go on.
-#include "fettle/core/stepper/simulate.hpp"
+#include "core/stepper/simulate.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/tests/support/intersection_oracle.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/setup/build_model.hpp"
+#include "tests/support/intersection_oracle.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::stepper::simulate_test {
 

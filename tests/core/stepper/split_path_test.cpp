@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Nodes between which joints hold: measured gaps, ends that stay, what cannot be done.
-#include "fettle/core/stepper/split_path.hpp"
+#include "core/stepper/split_path.hpp"
 
-#include "fettle/tests/support/mechanisms.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::core::stepper::split_path_test {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Energies, momenta, contact forces and drive forces of a step against what mechanics says they are.
-#include "fettle/core/stepper/step_outputs.hpp"
+#include "core/stepper/step_outputs.hpp"
 
 #include <catch2/catch.hpp>
 #include <sstream>
 
-#include "fettle/core/records/step_tables.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "core/records/step_tables.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::core::stepper::step_outputs_test {
 

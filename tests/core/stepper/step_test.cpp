@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // One step: where it ends, its path, how the barrier's stiffness goes on, and what is left after a failure.
-#include "fettle/core/stepper/step.hpp"
+#include "core/stepper/step.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/ccd/safe_step.hpp"
-#include "fettle/tests/core/stepper/physics_models.hpp"
+#include "core/ccd/safe_step.hpp"
+#include "tests/core/stepper/physics_models.hpp"
 
 namespace fettle::core::stepper::step_test {
 

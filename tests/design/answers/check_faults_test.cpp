@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The verdict on an audit of gradients names every cause.
-#include "fettle/design/answers/check_faults.hpp"
+#include "design/answers/check_faults.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

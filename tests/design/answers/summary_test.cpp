@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/answers/summary.hpp"
+#include "design/answers/summary.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "fettle/design/description/design.hpp"
+#include "design/description/design.hpp"
 
 namespace fettle::design::answers::summary_test {
 

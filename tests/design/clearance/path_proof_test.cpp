@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/clearance/path_proof.hpp"
+#include "design/clearance/path_proof.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::design::clearance::path_proof_test {
 

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Clearance within tolerances, from design files: closed forms, designs that are made anew at samples of deviations and positions, and
 // what is refused.
-#include "fettle/core/clearance/toleranced_clearance.hpp"
+#include "core/clearance/toleranced_clearance.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/design/clearance/certificate_claims.hpp"
-#include "fettle/design/clearance/read_subject.hpp"
-#include "fettle/design/clearance/report_json.hpp"
-#include "fettle/design/problem/toleranced_bodies.hpp"
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
-#include "fettle/tests/design/two_bars.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "design/clearance/certificate_claims.hpp"
+#include "design/clearance/read_subject.hpp"
+#include "design/clearance/report_json.hpp"
+#include "design/problem/toleranced_bodies.hpp"
+#include "tests/core/clearance/clearance_oracle.hpp"
+#include "tests/design/two_bars.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::clearance::toleranced_clearance_test {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <random>
 
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/design/clearance/read_subject.hpp"
-#include "fettle/tests/core/clearance/clearance_oracle.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "core/clearance/clearance.hpp"
+#include "design/clearance/read_subject.hpp"
+#include "tests/core/clearance/clearance_oracle.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::clearance::toleranced_loops_test {
 

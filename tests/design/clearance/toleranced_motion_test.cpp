@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "fettle/core/certificate/certificate_checker.hpp"
-#include "fettle/design/clearance/read_subject.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/certificate/certificate_checker.hpp"
+#include "design/clearance/read_subject.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::clearance::toleranced_motion_test {
 

@@ -2,11 +2,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/design/clearance/report.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "design/clearance/report.hpp"
+#include "design/reading/scene_shapes.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::clearance::true_bounds_test {
 

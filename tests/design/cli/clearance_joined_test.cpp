@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/parts/solid_cut.hpp"
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/skip.hpp"
+#include "core/parts/solid_cut.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/skip.hpp"
 
 namespace fettle::design::cli::clearance_joined_test {
 

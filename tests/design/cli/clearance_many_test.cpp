@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::cli::clearance_many_test {
 

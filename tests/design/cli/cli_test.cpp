@@ -4,9 +4,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "fettle/tests/design/pin_in_bore.hpp"
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/program.hpp"
+#include "tests/design/pin_in_bore.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/program.hpp"
 
 namespace fettle::design::cli::cli_test {
 

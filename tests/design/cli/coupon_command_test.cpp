@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/program.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/program.hpp"
 
 namespace fettle::design::cli::coupon_command_test {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/program.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/program.hpp"
 
 namespace fettle::design::cli::extreme_numbers_test {
 

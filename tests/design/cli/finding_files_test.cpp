@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What was found, as JUnit XML, SARIF, Markdown and annotations: the same verdict as the exit code, whatever stands in names.
-#include "fettle/design/cli/finding_files.hpp"
+#include "design/cli/finding_files.hpp"
 
 #include <sys/stat.h>
 
@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "fettle/core/mesh_files/mesh_writer.hpp"
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::cli::finding_files_test {
 

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/program.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/program.hpp"
 
 namespace fettle::design::cli::gradient_command_test {
 

@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "fettle/core/base/printed_text.hpp"
-#include "fettle/core/base/text.hpp"
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/base/printed_text.hpp"
+#include "core/base/text.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::cli::hostile_input_test {
 

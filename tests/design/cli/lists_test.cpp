@@ -4,14 +4,14 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/scene/joint_kind.hpp"
-#include "fettle/design/cli/starters.hpp"
-#include "fettle/design/optimisers/optimisation.hpp"
-#include "fettle/design/reading/quantity_reader.hpp"
-#include "fettle/design/shapes/part_library.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/scene/joint_kind.hpp"
+#include "design/cli/starters.hpp"
+#include "design/optimisers/optimisation.hpp"
+#include "design/reading/quantity_reader.hpp"
+#include "design/shapes/part_library.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::cli::lists_test {
 

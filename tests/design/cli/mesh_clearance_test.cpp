@@ -4,11 +4,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/mesh_files/mesh_writer.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::cli::mesh_clearance_test {
 

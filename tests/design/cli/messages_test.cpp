@@ -5,15 +5,15 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/text.hpp"
-#include "fettle/core/mesh_files/mesh_writer.hpp"
-#include "fettle/design/cli/optimise_answer.hpp"
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/design/small_problem.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/base/text.hpp"
+#include "core/mesh_files/mesh_writer.hpp"
+#include "design/cli/optimise_answer.hpp"
+#include "design/description/requirement_text.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/design/small_problem.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::cli::messages_test {
 

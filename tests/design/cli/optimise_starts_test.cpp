@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Many starts: which is the best one, and the program from outside.
-#include "fettle/design/cli/optimise_starts.hpp"
+#include "design/cli/optimise_starts.hpp"
 
 #include <signal.h>
 #include <sys/wait.h>
@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::cli::optimise_starts_test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/cli/program_memory.hpp"
-#include "fettle/tests/support/skip.hpp"
+#include "design/cli/program_memory.hpp"
+#include "tests/support/skip.hpp"
 
 #include <sys/wait.h>
 #include <unistd.h>

@@ -5,9 +5,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::cli::unwritable_output_test {
 

@@ -4,11 +4,11 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "fettle/tests/core/geometry/sample_meshes.hpp"
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "tests/core/geometry/sample_meshes.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::cli::validate_command_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/coupons/coupon_form.hpp"
+#include "design/coupons/coupon_form.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/coupons/coupon_solid.hpp"
+#include "design/coupons/coupon_solid.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/coupons/coupon.hpp"
+#include "design/coupons/coupon.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
-#include "fettle/design/coupons/coupon_form.hpp"
+#include "design/coupons/coupon_form.hpp"
 
 namespace fettle::design::coupons::coupon_test {
 

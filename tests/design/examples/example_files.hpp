@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
 
 namespace fettle::tests::design_support {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "fettle/design/quantities/marker.hpp"
-#include "fettle/tests/design/examples/example_files.hpp"
+#include "design/quantities/marker.hpp"
+#include "tests/design/examples/example_files.hpp"
 
 namespace fettle::design::examples::follower_test {
 

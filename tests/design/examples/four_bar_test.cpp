@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "fettle/design/quantities/marker.hpp"
-#include "fettle/tests/design/examples/example_files.hpp"
+#include "design/quantities/marker.hpp"
+#include "tests/design/examples/example_files.hpp"
 
 namespace fettle::design::examples::four_bar_test {
 

@@ -5,10 +5,10 @@
 #include <complex>
 #include <numbers>
 
-#include "fettle/design/studies/optimise_design.hpp"
-#include "fettle/tests/design/examples/example_files.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "design/studies/optimise_design.hpp"
+#include "tests/design/examples/example_files.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::examples::path_synthesis_test {
 

@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/design/gradient_audit/difference_check.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/random_start.hpp"
+#include "design/gradient_audit/difference_check.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/studies/random_start.hpp"
 
 namespace fettle::design::examples::random_designs_test {
 

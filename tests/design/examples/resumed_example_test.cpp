@@ -5,10 +5,10 @@
 #include <set>
 #include <sstream>
 
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/optimise_file.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/studies/optimise_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::examples::resumed_example_test {
 

@@ -3,11 +3,11 @@
 // program returns, and as good as the best that is known.
 #include <catch2/catch.hpp>
 
-#include "fettle/design/optimisers/optimisation.hpp"
-#include "fettle/design/problem/optimiser_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "design/optimisers/optimisation.hpp"
+#include "design/problem/optimiser_problem.hpp"
+#include "design/reading/design_reader.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::examples::tuned_examples_test {
 

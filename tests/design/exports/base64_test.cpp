@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Base64: the examples of RFC 4648, and bytes beyond ASCII.
-#include "fettle/design/exports/base64.hpp"
+#include "design/exports/base64.hpp"
 
 #include <catch2/catch.hpp>
 

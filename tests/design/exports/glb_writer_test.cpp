@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Binary glTF as written, read by assimp: the animation has the bodies where the curved path has them.
-#include "fettle/design/exports/glb_writer.hpp"
+#include "design/exports/glb_writer.hpp"
 
 #include <assimp/cimport.h>
 #include <assimp/material.h>
@@ -10,10 +10,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "fettle/design/exports/palette.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/test_models.hpp"
+#include "design/exports/palette.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::design::exports::glb_writer_test {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Pictures: which parts hide others, which edges are drawn, where things are; PNG decoded by a reader of its own, SVG by an XML reader.
-#include "fettle/design/exports/picture.hpp"
+#include "design/exports/picture.hpp"
 
 #include <zlib.h>
 
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "fettle/core/mesh_files/xml_reader.hpp"
-#include "fettle/design/exports/png_writer.hpp"
-#include "fettle/design/exports/svg_writer.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/mesh_files/xml_reader.hpp"
+#include "design/exports/png_writer.hpp"
+#include "design/exports/svg_writer.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::exports::picture_test {
 

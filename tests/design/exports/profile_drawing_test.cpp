@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/exports/profile_drawing.hpp"
+#include "design/exports/profile_drawing.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
 
-#include "fettle/core/parts/profile_booleans.hpp"
-#include "fettle/design/shapes/part_library.hpp"
+#include "core/parts/profile_booleans.hpp"
+#include "design/shapes/part_library.hpp"
 
 namespace fettle::design::exports::profile_drawing_test {
 

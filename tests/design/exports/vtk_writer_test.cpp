@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // VTU as written, decoded by a reader of its own: header, offsets, blocks, numbers.
-#include "fettle/design/exports/vtk_writer.hpp"
+#include "design/exports/vtk_writer.hpp"
 
 #include <zlib.h>
 
@@ -8,9 +8,9 @@
 #include <cstring>
 #include <map>
 
-#include "fettle/core/mesh_files/xml_reader.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/mesh_files/xml_reader.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::exports::vtk_writer_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Contacts made to change at moves of a parameter that are known beforehand.
-#include "fettle/design/gradient_audit/contact_changes.hpp"
+#include "design/gradient_audit/contact_changes.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/design/gradient_audit/difference_check.hpp"
-#include "fettle/tests/design/small_problem.hpp"
+#include "design/gradient_audit/difference_check.hpp"
+#include "tests/design/small_problem.hpp"
 
 namespace fettle::design::gradient_audit::contact_changes_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/gradient_audit/contact_states.hpp"
+#include "design/gradient_audit/contact_states.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/tests/support/test_models.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace fettle::design::gradient_audit::contact_states_test {
 

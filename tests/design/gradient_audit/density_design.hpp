@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/tests/design/linear_numbers.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
+#include "design/problem/design_problem.hpp"
+#include "tests/design/linear_numbers.hpp"
+#include "tests/support/box_mesh.hpp"
 
 namespace fettle::tests::design_support {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/gradient_audit/difference_check.hpp"
+#include "design/gradient_audit/difference_check.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/tests/design/gradient_audit/density_design.hpp"
-#include "fettle/tests/design/small_problem.hpp"
+#include "tests/design/gradient_audit/density_design.hpp"
+#include "tests/design/small_problem.hpp"
 
 namespace fettle::design::gradient_audit::difference_check_test {
 

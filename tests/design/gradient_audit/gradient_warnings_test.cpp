@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What values and gradients say before a search: of numbers that are given.
-#include "fettle/design/gradient_audit/gradient_warnings.hpp"
+#include "design/gradient_audit/gradient_warnings.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/design/small_problem.hpp"
+#include "tests/design/small_problem.hpp"
 
 namespace fettle::design::gradient_audit::gradient_warnings_test {
 

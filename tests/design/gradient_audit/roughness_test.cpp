@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/gradient_audit/roughness.hpp"
+#include "design/gradient_audit/roughness.hpp"
 
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/tests/design/gradient_audit/density_design.hpp"
-#include "fettle/tests/design/small_problem.hpp"
+#include "core/base/parallel.hpp"
+#include "tests/design/gradient_audit/density_design.hpp"
+#include "tests/design/small_problem.hpp"
 
 namespace fettle::design::gradient_audit::roughness_test {
 

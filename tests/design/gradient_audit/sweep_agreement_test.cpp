@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/gradient_audit/sweep_agreement.hpp"
+#include "design/gradient_audit/sweep_agreement.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/design/small_problem.hpp"
+#include "tests/design/small_problem.hpp"
 
 namespace fettle::design::gradient_audit::sweep_agreement_test {
 

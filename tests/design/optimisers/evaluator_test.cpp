@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/evaluator.hpp"
+#include "design/optimisers/evaluator.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

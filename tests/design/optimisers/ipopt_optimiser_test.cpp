@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/ipopt_optimiser.hpp"
+#include "design/optimisers/ipopt_optimiser.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,8 +8,8 @@
 #include <thread>
 #include <vector>
 
-#include "fettle/design/optimisers/quadratic_program.hpp"
-#include "fettle/tests/design/optimisers/known_problems.hpp"
+#include "design/optimisers/quadratic_program.hpp"
+#include "tests/design/optimisers/known_problems.hpp"
 
 namespace fettle::design::optimisers::ipopt_optimiser_test {
 

@@ -6,8 +6,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/design/optimisers/optimisation.hpp"
+#include "core/base/limits.hpp"
+#include "design/optimisers/optimisation.hpp"
 
 namespace fettle::tests::design_support {
 

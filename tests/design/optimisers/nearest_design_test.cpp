@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Repair: the nearest point that meets the constraints, against points known in closed form.
-#include "fettle/design/optimisers/nearest_design.hpp"
+#include "design/optimisers/nearest_design.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/core/base/limits.hpp"
-#include "fettle/design/optimisers/optimisation.hpp"
+#include "core/base/limits.hpp"
+#include "design/optimisers/optimisation.hpp"
 
 namespace fettle::design::optimisers::nearest_design_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/noise.hpp"
+#include "design/optimisers/noise.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/optimality.hpp"
+#include "design/optimisers/optimality.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "fettle/tests/design/optimisers/known_problems.hpp"
+#include "tests/design/optimisers/known_problems.hpp"
 
 namespace fettle::design::optimisers::optimality_test {
 

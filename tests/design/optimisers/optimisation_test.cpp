@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/optimisation.hpp"
+#include "design/optimisers/optimisation.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <map>
 
-#include "fettle/tests/design/optimisers/known_problems.hpp"
+#include "tests/design/optimisers/known_problems.hpp"
 
 namespace fettle::design::optimisers::optimisation_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/quadratic_program.hpp"
+#include "design/optimisers/quadratic_program.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "fettle/design/optimisers/projection.hpp"
+#include "design/optimisers/projection.hpp"
 
 namespace fettle::design::optimisers::quadratic_program_test {
 

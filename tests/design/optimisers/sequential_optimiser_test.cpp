@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/sequential_optimiser.hpp"
+#include "design/optimisers/sequential_optimiser.hpp"
 
 #include <cmath>
 
-#include "fettle/tests/design/optimisers/known_problems.hpp"
+#include "tests/design/optimisers/known_problems.hpp"
 
 namespace fettle::design::optimisers::sequential_optimiser_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/optimisers/unexplored.hpp"
+#include "design/optimisers/unexplored.hpp"
 
 #include <catch2/catch.hpp>
 

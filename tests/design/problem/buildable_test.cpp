@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/buildable.hpp"
+#include "design/problem/buildable.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/design/small_problem.hpp"
+#include "tests/design/small_problem.hpp"
 
 namespace fettle::design::problem::buildable_test {
 

@@ -4,12 +4,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/core/contact/barrier.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/quantities/energy.hpp"
-#include "fettle/design/quantities/joint_load.hpp"
-#include "fettle/tests/design/linear_numbers.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "core/contact/barrier.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/quantities/energy.hpp"
+#include "design/quantities/joint_load.hpp"
+#include "tests/design/linear_numbers.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::design::problem::closed_forms_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/design_problem.hpp"
+#include "design/problem/design_problem.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/problem/optimiser_problem.hpp"
-#include "fettle/tests/design/small_problem.hpp"
+#include "core/stepper/simulate.hpp"
+#include "design/problem/optimiser_problem.hpp"
+#include "tests/design/small_problem.hpp"
 
 namespace fettle::design::problem::design_problem_test {
 

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
 // Every place of the table, moved by a deviation, in every question about clearances within tolerances: refused by name, or the bound of
 // the box holds for the scene that is made anew at both ends of the deviation; what is told to have no influence has none.
-#include "fettle/design/problem/deviating_places.hpp"
+#include "design/problem/deviating_places.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <set>
 
-#include "fettle/core/certificate/toleranced.hpp"
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/clearance/driven_ranges.hpp"
-#include "fettle/core/clearance/range_clearance.hpp"
-#include "fettle/core/clearance/toleranced_clearance.hpp"
-#include "fettle/core/stepper/jointed_motion.hpp"
-#include "fettle/core/stepper/scripted_motion.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/problem/toleranced_bodies.hpp"
-#include "fettle/design/shapes/file_part.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "core/certificate/toleranced.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/clearance/driven_ranges.hpp"
+#include "core/clearance/range_clearance.hpp"
+#include "core/clearance/toleranced_clearance.hpp"
+#include "core/stepper/jointed_motion.hpp"
+#include "core/stepper/scripted_motion.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/problem/toleranced_bodies.hpp"
+#include "design/shapes/file_part.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::design::problem::deviating_places_test {
 

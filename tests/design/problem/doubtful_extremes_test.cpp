@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Which extremes are hardly meant: of series that are given.
-#include "fettle/design/problem/doubtful_extremes.hpp"
+#include "design/problem/doubtful_extremes.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/design/quantities/expression.hpp"
-#include "fettle/design/quantities/in_scenario.hpp"
-#include "fettle/design/quantities/step_series.hpp"
-#include "fettle/design/quantities/worst.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
+#include "design/quantities/expression.hpp"
+#include "design/quantities/in_scenario.hpp"
+#include "design/quantities/step_series.hpp"
+#include "design/quantities/worst.hpp"
+#include "tests/support/box_mesh.hpp"
 
 namespace fettle::design::problem::doubtful_extremes_test {
 

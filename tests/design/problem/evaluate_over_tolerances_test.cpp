@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Robust designs: formulas with closed forms, a part's mass, and a box that falls on a table.
-#include "fettle/design/problem/evaluate_over_tolerances.hpp"
+#include "design/problem/evaluate_over_tolerances.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/design/description/made_design.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/optimise_design.hpp"
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/base/parallel.hpp"
+#include "design/description/made_design.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/studies/optimise_design.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::problem::evaluate_over_tolerances_test {
 

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/design/gradient_audit/difference_check.hpp"
-#include "fettle/tests/design/small_problem.hpp"
+#include "design/gradient_audit/difference_check.hpp"
+#include "tests/design/small_problem.hpp"
 
 namespace fettle::design::problem::expressions_test {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/fits.hpp"
+#include "design/problem/fits.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/problem/smoother_models.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
-#include "fettle/design/studies/optimise_design.hpp"
-#include "fettle/tests/design/small_problem.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/simulate.hpp"
+#include "design/problem/smoother_models.hpp"
+#include "design/reading/scene_shapes.hpp"
+#include "design/studies/optimise_design.hpp"
+#include "tests/design/small_problem.hpp"
 
 namespace fettle::design::problem::fits_test {
 

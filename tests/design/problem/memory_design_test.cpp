@@ -4,17 +4,17 @@
 #include <cmath>
 #include <cstring>
 
-#include "fettle/design/gradient_audit/difference_check.hpp"
-#include "fettle/design/problem/buildable.hpp"
-#include "fettle/design/problem/check_design.hpp"
-#include "fettle/design/quantities/clearance.hpp"
-#include "fettle/design/quantities/marker_path.hpp"
-#include "fettle/design/quantities/mass.hpp"
-#include "fettle/design/quantities/stroke.hpp"
-#include "fettle/design/shapes/file_part.hpp"
-#include "fettle/design/studies/optimise_design.hpp"
-#include "fettle/tests/design/small_problem.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
+#include "design/gradient_audit/difference_check.hpp"
+#include "design/problem/buildable.hpp"
+#include "design/problem/check_design.hpp"
+#include "design/quantities/clearance.hpp"
+#include "design/quantities/marker_path.hpp"
+#include "design/quantities/mass.hpp"
+#include "design/quantities/stroke.hpp"
+#include "design/shapes/file_part.hpp"
+#include "design/studies/optimise_design.hpp"
+#include "tests/design/small_problem.hpp"
+#include "tests/support/box_mesh.hpp"
 
 namespace fettle::design::problem::memory_design_test {
 

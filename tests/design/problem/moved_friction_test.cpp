@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/design_problem.hpp"
+#include "design/problem/design_problem.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/tests/design/linear_numbers.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "tests/design/linear_numbers.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::design::problem::moved_friction_test {
 

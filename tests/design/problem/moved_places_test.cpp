@@ -4,19 +4,19 @@
 #include <random>
 #include <set>
 
-#include "fettle/core/model/row_choice.hpp"
-#include "fettle/design/problem/check_design.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/problem/moved_scene.hpp"
-#include "fettle/design/quantities/energy.hpp"
-#include "fettle/design/quantities/expression.hpp"
-#include "fettle/design/quantities/joint_load.hpp"
-#include "fettle/design/quantities/marker_speed.hpp"
-#include "fettle/design/quantities/mass.hpp"
-#include "fettle/design/quantities/stroke.hpp"
-#include "fettle/design/shapes/file_part.hpp"
-#include "fettle/tests/design/linear_numbers.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "core/model/row_choice.hpp"
+#include "design/problem/check_design.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/problem/moved_scene.hpp"
+#include "design/quantities/energy.hpp"
+#include "design/quantities/expression.hpp"
+#include "design/quantities/joint_load.hpp"
+#include "design/quantities/marker_speed.hpp"
+#include "design/quantities/mass.hpp"
+#include "design/quantities/stroke.hpp"
+#include "design/shapes/file_part.hpp"
+#include "tests/design/linear_numbers.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::design::problem::moved_places_test {
 

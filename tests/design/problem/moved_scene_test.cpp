@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/moved_scene.hpp"
+#include "design/problem/moved_scene.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
+#include "core/setup/build_model.hpp"
+#include "design/reading/design_reader.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/derivative_check.hpp"
 
 namespace fettle::design::problem::moved_scene_test {
 

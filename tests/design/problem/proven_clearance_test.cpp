@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // A clearance that is proven over the tolerances, as a requirement: two bars and a post, against the closed form, its derivative and the
 // optimum.
-#include "fettle/design/problem/proven_clearance.hpp"
+#include "design/problem/proven_clearance.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/optimise_design.hpp"
-#include "fettle/tests/design/two_bars.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/studies/optimise_design.hpp"
+#include "tests/design/two_bars.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::problem::proven_clearance_test {
 

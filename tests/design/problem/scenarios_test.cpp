@@ -3,13 +3,13 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/design/gradient_audit/sweep_agreement.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/studies/optimise_design.hpp"
-#include "fettle/tests/design/small_design.hpp"
+#include "core/base/parallel.hpp"
+#include "core/files/atomic_file.hpp"
+#include "design/gradient_audit/sweep_agreement.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/studies/optimise_design.hpp"
+#include "tests/design/small_design.hpp"
 
 namespace fettle::design::problem::scenarios_test {
 

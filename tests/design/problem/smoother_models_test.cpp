@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/smoother_models.hpp"
+#include "design/problem/smoother_models.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/design/problem/optimiser_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
+#include "design/problem/optimiser_problem.hpp"
+#include "design/reading/design_reader.hpp"
 
 namespace fettle::design::problem::smoother_models_test {
 

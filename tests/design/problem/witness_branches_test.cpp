@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/problem/witness_branches.hpp"
+#include "design/problem/witness_branches.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/design/optimisers/optimisation.hpp"
-#include "fettle/design/problem/optimiser_problem.hpp"
-#include "fettle/design/quantities/clearance.hpp"
-#include "fettle/design/studies/optimise_design.hpp"
-#include "fettle/tests/design/pin_in_bore.hpp"
-#include "fettle/tests/design/small_problem.hpp"
+#include "design/optimisers/optimisation.hpp"
+#include "design/problem/optimiser_problem.hpp"
+#include "design/quantities/clearance.hpp"
+#include "design/studies/optimise_design.hpp"
+#include "tests/design/pin_in_bore.hpp"
+#include "tests/design/small_problem.hpp"
 
 namespace fettle::design::problem::witness_branches_test {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The module `fettle_for_tests`: what the tests of the Python package ask the library beside it, with the package's own conversions:
 // records that pass through the library, its defaults of all of them, and a design evaluated without passing through Python.
-#include "fettle/design/python/errors.hpp"
-#include "fettle/design/python/studies_records.hpp"
+#include "design/python/errors.hpp"
+#include "design/python/studies_records.hpp"
 
 namespace fettle::tests::python {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/clearance.hpp"
+#include "design/quantities/clearance.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/clearance/clearance.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/design/description/constraint.hpp"
-#include "fettle/tests/design/quantities/file_problem.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/clearance/clearance.hpp"
+#include "core/setup/build_model.hpp"
+#include "design/description/constraint.hpp"
+#include "tests/design/quantities/file_problem.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::quantities::clearance_test {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // How far bodies are from touching, in place of a least force that they have lost: a ram that a motor drives against a pad on a spring.
 // Closed forms, differences of whole simulations, and a search that begins without contact.
-#include "fettle/design/quantities/contact_force.hpp"
+#include "design/quantities/contact_force.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 
-#include "fettle/design/problem/optimiser_problem.hpp"
-#include "fettle/design/studies/optimise_design.hpp"
-#include "fettle/tests/design/quantities/file_problem.hpp"
+#include "design/problem/optimiser_problem.hpp"
+#include "design/studies/optimise_design.hpp"
+#include "tests/design/quantities/file_problem.hpp"
 
 namespace fettle::design::quantities::contact_force_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/curve_slope.hpp"
+#include "design/quantities/curve_slope.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/extreme.hpp"
+#include "design/quantities/extreme.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/marker_path.hpp"
+#include "design/quantities/marker_path.hpp"
 
-#include "fettle/design/quantities/marker.hpp"
-#include "fettle/tests/design/quantities/quantity_fixture.hpp"
+#include "design/quantities/marker.hpp"
+#include "tests/design/quantities/quantity_fixture.hpp"
 
 namespace fettle::design::quantities::marker_path_test {
 

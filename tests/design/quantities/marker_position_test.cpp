@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/marker_position.hpp"
+#include "design/quantities/marker_position.hpp"
 
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "fettle/tests/design/quantities/file_problem.hpp"
-#include "fettle/tests/design/quantities/quantity_fixture.hpp"
+#include "tests/design/quantities/file_problem.hpp"
+#include "tests/design/quantities/quantity_fixture.hpp"
 
 namespace fettle::design::quantities::marker_position_test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/mass.hpp"
+#include "design/quantities/mass.hpp"
 
-#include "fettle/tests/design/quantities/quantity_fixture.hpp"
+#include "tests/design/quantities/quantity_fixture.hpp"
 
 namespace fettle::design::quantities::mass_test {
 

@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "fettle/design/reading/quantity_reader.hpp"
-#include "fettle/tests/design/quantities/file_problem.hpp"
+#include "design/reading/quantity_reader.hpp"
+#include "tests/design/quantities/file_problem.hpp"
 
 namespace fettle::design::quantities::own_points_test {
 

@@ -6,9 +6,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/design/description/quantity.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/derivative_check.hpp"
+#include "design/description/quantity.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/derivative_check.hpp"
 
 namespace fettle::tests::design_support {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Closed forms of sines, lines and parabolas; weights against differences.
-#include "fettle/design/quantities/reduction.hpp"
+#include "design/quantities/reduction.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

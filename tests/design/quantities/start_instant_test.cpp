@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "fettle/design/quantities/step_series.hpp"
-#include "fettle/tests/design/quantities/file_problem.hpp"
+#include "design/quantities/step_series.hpp"
+#include "tests/design/quantities/file_problem.hpp"
 
 namespace fettle::design::quantities::start_instant_test {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/quantities/step_expression.hpp"
+#include "design/quantities/step_expression.hpp"
 
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "fettle/design/quantities/body_turn.hpp"
-#include "fettle/design/quantities/clearance.hpp"
-#include "fettle/design/quantities/in_scenario.hpp"
-#include "fettle/design/quantities/marker_position.hpp"
-#include "fettle/tests/design/quantities/file_problem.hpp"
-#include "fettle/tests/design/quantities/quantity_fixture.hpp"
+#include "design/quantities/body_turn.hpp"
+#include "design/quantities/clearance.hpp"
+#include "design/quantities/in_scenario.hpp"
+#include "design/quantities/marker_position.hpp"
+#include "tests/design/quantities/file_problem.hpp"
+#include "tests/design/quantities/quantity_fixture.hpp"
 
 namespace fettle::design::quantities::step_expression_test {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 // The loads and energies of joints, motors and springs as quantities of a design: values against what the simulation reports, derivatives
 // against differences of designs.
-#include "fettle/design/quantities/step_series.hpp"
+#include "design/quantities/step_series.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/quantities/contact_force.hpp"
-#include "fettle/design/quantities/energy.hpp"
-#include "fettle/design/quantities/joint_load.hpp"
-#include "fettle/design/quantities/marker_speed.hpp"
-#include "fettle/design/shapes/file_part.hpp"
-#include "fettle/tests/design/linear_numbers.hpp"
-#include "fettle/tests/support/mechanisms.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/quantities/contact_force.hpp"
+#include "design/quantities/energy.hpp"
+#include "design/quantities/joint_load.hpp"
+#include "design/quantities/marker_speed.hpp"
+#include "design/shapes/file_part.hpp"
+#include "tests/design/linear_numbers.hpp"
+#include "tests/support/mechanisms.hpp"
 
 namespace fettle::design::quantities::step_series_test {
 

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "fettle/tests/design/quantities/file_problem.hpp"
-#include "fettle/tests/design/small_design.hpp"
+#include "tests/design/quantities/file_problem.hpp"
+#include "tests/design/small_design.hpp"
 
 namespace fettle::design::quantities::turns_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/design_reader.hpp"
+#include "design/reading/design_reader.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "fettle/tests/design/small_design.hpp"
+#include "tests/design/small_design.hpp"
 
 namespace fettle::design::reading::design_reader_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/design_text.hpp"
+#include "design/reading/design_text.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "fettle/tests/design/small_design.hpp"
+#include "tests/design/small_design.hpp"
 
 namespace fettle::design::reading::design_text_test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/process_file.hpp"
+#include "design/reading/process_file.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/design/tolerances/known_processes.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "design/tolerances/known_processes.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::reading::process_file_test {
 

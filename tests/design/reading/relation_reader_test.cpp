@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/relation_reader.hpp"
+#include "design/reading/relation_reader.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <tuple>
 
-#include "fettle/design/description/requirement_text.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/tests/design/small_design.hpp"
+#include "design/description/requirement_text.hpp"
+#include "design/reading/design_reader.hpp"
+#include "tests/design/small_design.hpp"
 
 namespace fettle::design::reading::relation_reader_test {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/reading/scene_shapes.hpp"
+#include "design/reading/scene_shapes.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <numbers>
 
-#include "fettle/core/scene/place.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/scene/place.hpp"
+#include "design/reading/design_reader.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::reading::scene_shapes_test {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // A design that leaves as a scene has the numbers and the parts that the design has; that it can be simulated, and leave as a robot.
-#include "fettle/design/reading/scene_text.hpp"
+#include "design/reading/scene_text.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/program.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/program.hpp"
 
 namespace fettle::design::reading::scene_text_test {
 

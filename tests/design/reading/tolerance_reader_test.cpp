@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // What a process, or a general class, makes of the numbers of a design.
-#include "fettle/design/reading/tolerance_reader.hpp"
+#include "design/reading/tolerance_reader.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/design/description/independent_inputs.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/reading/design_text.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "design/description/independent_inputs.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/reading/design_text.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::reading::tolerance_reader_test {
 

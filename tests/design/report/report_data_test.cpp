@@ -2,7 +2,7 @@
 // The contents of a report, against what was computed: meshes and poses read back, curves of tables, certified bands against known
 // distances,
 // the rows of a design, a page that users' names cannot break out of; and the command, from outside.
-#include "fettle/design/report/report_data.hpp"
+#include "design/report/report_data.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -11,23 +11,23 @@
 #include <functional>
 #include <iterator>
 
-#include "fettle/core/records/trajectory_io.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/core/stepper/scripted_motion.hpp"
-#include "fettle/design/exports/palette.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/report/design_rows.hpp"
-#include "fettle/design/report/moving_parts.hpp"
-#include "fettle/design/report/packed_numbers.hpp"
-#include "fettle/design/report/pair_rows.hpp"
-#include "fettle/design/report/report_folder.hpp"
-#include "fettle/design/report/report_page.hpp"
-#include "fettle/design/report/search_curves.hpp"
-#include "fettle/design/report/table_rows.hpp"
-#include "fettle/tests/design/small_design.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/records/trajectory_io.hpp"
+#include "core/setup/build_model.hpp"
+#include "core/stepper/scripted_motion.hpp"
+#include "design/exports/palette.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/report/design_rows.hpp"
+#include "design/report/moving_parts.hpp"
+#include "design/report/packed_numbers.hpp"
+#include "design/report/pair_rows.hpp"
+#include "design/report/report_folder.hpp"
+#include "design/report/report_page.hpp"
+#include "design/report/search_curves.hpp"
+#include "design/report/table_rows.hpp"
+#include "tests/design/small_design.hpp"
+#include "tests/support/box_mesh.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::report::report_data_test {
 

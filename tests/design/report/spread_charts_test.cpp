@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/report/spread_charts.hpp"
+#include "design/report/spread_charts.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -10,10 +10,10 @@
 
 #include <Eigen/Geometry>
 
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/design/shapes/file_part.hpp"
-#include "fettle/tests/design/shapes/example_parts.hpp"
+#include "core/geometry/distance.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "design/shapes/file_part.hpp"
+#include "tests/design/shapes/example_parts.hpp"
 
 namespace fettle::design::shapes::engine_assembly_test {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/parts/solid_booleans.hpp"
+#include "core/parts/solid_booleans.hpp"
 
 namespace fettle::tests::design_support {
 

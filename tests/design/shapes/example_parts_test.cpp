@@ -6,12 +6,12 @@
 #include <numbers>
 #include <random>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/solids/mesh_validity.hpp"
-#include "fettle/design/shapes/file_part.hpp"
-#include "fettle/design/shapes/part_library.hpp"
-#include "fettle/tests/design/shapes/example_parts.hpp"
-#include "fettle/tests/design/shapes/part_campaign.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/solids/mesh_validity.hpp"
+#include "design/shapes/file_part.hpp"
+#include "design/shapes/part_library.hpp"
+#include "tests/design/shapes/example_parts.hpp"
+#include "tests/design/shapes/part_campaign.hpp"
 
 namespace fettle::design::shapes::example_parts_test {
 

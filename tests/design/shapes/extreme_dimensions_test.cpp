@@ -5,9 +5,9 @@
 #include <limits>
 #include <random>
 
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/design/shapes/part_library.hpp"
-#include "fettle/tests/design/shapes/part_campaign.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "design/shapes/part_library.hpp"
+#include "tests/design/shapes/part_campaign.hpp"
 
 namespace fettle::design::shapes::extreme_dimensions_test {
 

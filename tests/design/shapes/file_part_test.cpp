@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/shapes/file_part.hpp"
+#include "design/shapes/file_part.hpp"
 
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::shapes::file_part_test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Parts from other programs: what a command must name, how one is run, which are refused, and that none runs unasked. The program here is
 /// a script of the shell's, which writes a box.
-#include "fettle/design/shapes/mesh_program.hpp"
+#include "design/shapes/mesh_program.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -9,12 +9,12 @@
 #include <fstream>
 #include <iterator>
 
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/reading/model_file.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/reading/model_file.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::shapes::mesh_program_test {
 

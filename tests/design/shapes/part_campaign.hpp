@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "fettle/core/geometry/distance.hpp"
-#include "fettle/core/part_files/part_file.hpp"
-#include "fettle/core/solids/point_in_solid.hpp"
+#include "core/geometry/distance.hpp"
+#include "core/part_files/part_file.hpp"
+#include "core/solids/point_in_solid.hpp"
 
 namespace fettle::design::shapes::part_campaign {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/shapes/part_library.hpp"
+#include "design/shapes/part_library.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -10,10 +10,10 @@
 #include <optional>
 #include <random>
 
-#include "fettle/core/parts/solid_booleans.hpp"
-#include "fettle/design/shapes/file_part.hpp"
-#include "fettle/tests/design/shapes/part_campaign.hpp"
-#include "fettle/tests/support/solid_oracle.hpp"
+#include "core/parts/solid_booleans.hpp"
+#include "design/shapes/file_part.hpp"
+#include "tests/design/shapes/part_campaign.hpp"
+#include "tests/support/solid_oracle.hpp"
 
 namespace fettle::design::shapes::part_library_test {
 

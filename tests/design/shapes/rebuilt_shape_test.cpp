@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Parts from anything that makes meshes: velocities against the exact ones of files, rounding, another cut of triangles, refusals.
-#include "fettle/design/shapes/rebuilt_shape.hpp"
+#include "design/shapes/rebuilt_shape.hpp"
 
 #include <array>
 #include <atomic>
@@ -9,14 +9,14 @@
 #include <cmath>
 #include <thread>
 
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/quantities/clearance.hpp"
-#include "fettle/design/quantities/mass.hpp"
-#include "fettle/design/shapes/file_part.hpp"
-#include "fettle/design/shapes/mesh_rounding.hpp"
-#include "fettle/design/shapes/mesh_velocity.hpp"
-#include "fettle/tests/design/shapes/example_parts.hpp"
-#include "fettle/tests/support/box_mesh.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/quantities/clearance.hpp"
+#include "design/quantities/mass.hpp"
+#include "design/shapes/file_part.hpp"
+#include "design/shapes/mesh_rounding.hpp"
+#include "design/shapes/mesh_velocity.hpp"
+#include "tests/design/shapes/example_parts.hpp"
+#include "tests/support/box_mesh.hpp"
 
 namespace fettle::design::shapes::rebuilt_shape_test {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Allocations against Lagrange's closed forms, and of the one-way clutch.
-#include "fettle/design/studies/allocation.hpp"
+#include "design/studies/allocation.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/design/tolerances/normal_distribution.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "design/reading/design_reader.hpp"
+#include "design/tolerances/normal_distribution.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::studies::allocation_test {
 

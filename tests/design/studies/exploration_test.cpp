@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/exploration.hpp"
+#include "design/studies/exploration.hpp"
 
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <map>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/tests/design/small_problem.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/base/parallel.hpp"
+#include "core/files/atomic_file.hpp"
+#include "tests/design/small_problem.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::studies::exploration_test {
 

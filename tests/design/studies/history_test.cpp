@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/history.hpp"
+#include "design/studies/history.hpp"
 
 #include <sys/resource.h>
 
@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "fettle/design/optimisers/optimisation.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "design/optimisers/optimisation.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::studies::history_test {
 

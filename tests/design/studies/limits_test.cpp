@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/limits.hpp"
+#include "design/studies/limits.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "fettle/design/studies/optimise_design.hpp"
-#include "fettle/tests/design/small_problem.hpp"
+#include "design/studies/optimise_design.hpp"
+#include "tests/design/small_problem.hpp"
 
 namespace fettle::design::studies::limits_test {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/made_sample.hpp"
+#include "design/studies/made_sample.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "fettle/core/stepper/simulate.hpp"
-#include "fettle/design/description/independent_inputs.hpp"
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/studies/tolerance_file.hpp"
-#include "fettle/tests/design/small_design.hpp"
+#include "core/stepper/simulate.hpp"
+#include "design/description/independent_inputs.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/studies/tolerance_file.hpp"
+#include "tests/design/small_design.hpp"
 
 namespace fettle::design::studies::made_sample_test {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/optimise_file.hpp"
+#include "design/studies/optimise_file.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "fettle/design/reading/design_text.hpp"
-#include "fettle/tests/design/small_problem.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "design/reading/design_text.hpp"
+#include "tests/design/small_problem.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::studies::optimise_file_test {
 

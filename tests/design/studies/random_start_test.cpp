@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/random_start.hpp"
+#include "design/studies/random_start.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 
-#include "fettle/tests/design/small_problem.hpp"
+#include "tests/design/small_problem.hpp"
 
 namespace fettle::design::studies::random_start_test {
 

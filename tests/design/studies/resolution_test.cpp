@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/resolution.hpp"
+#include "design/studies/resolution.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/design/problem/design_problem.hpp"
-#include "fettle/design/studies/optimise_file.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "design/problem/design_problem.hpp"
+#include "design/studies/optimise_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::studies::resolution_test {
 

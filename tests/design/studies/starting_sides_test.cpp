@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/studies/starting_sides.hpp"
+#include "design/studies/starting_sides.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "fettle/design/reading/design_text.hpp"
-#include "fettle/design/studies/random_start.hpp"
-#include "fettle/tests/design/small_problem.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "design/reading/design_text.hpp"
+#include "design/studies/random_start.hpp"
+#include "tests/design/small_problem.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::studies::starting_sides_test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Published stacks as designs, and a part whose mass and fall have closed forms.
-#include "fettle/design/studies/tolerance_study.hpp"
+#include "design/studies/tolerance_study.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -8,9 +8,9 @@
 #include <map>
 #include <numbers>
 
-#include "fettle/core/base/parallel.hpp"
-#include "fettle/design/reading/design_reader.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
+#include "core/base/parallel.hpp"
+#include "design/reading/design_reader.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::studies::tolerance_study_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/capability.hpp"
+#include "design/tolerances/capability.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/tolerances/normal_distribution.hpp"
+#include "core/base/contract.hpp"
+#include "design/tolerances/normal_distribution.hpp"
 
 namespace fettle::design::tolerances::capability_test {
 

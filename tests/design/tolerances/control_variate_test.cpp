@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/control_variate.hpp"
+#include "design/tolerances/control_variate.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "fettle/design/tolerances/normal_distribution.hpp"
+#include "design/tolerances/normal_distribution.hpp"
 
 namespace fettle::design::tolerances::control_variate_test {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/distribution.hpp"
+#include "design/tolerances/distribution.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/tests/design/tolerances/quadrature.hpp"
+#include "core/base/contract.hpp"
+#include "tests/design/tolerances/quadrature.hpp"
 
 namespace fettle::design::tolerances::distribution_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/iso2768.hpp"
+#include "design/tolerances/iso2768.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/iso286.hpp"
+#include "design/tolerances/iso286.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/process_clearance.hpp"
+#include "design/tolerances/process_clearance.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/design/tolerances/known_processes.hpp"
+#include "design/tolerances/known_processes.hpp"
 
 namespace fettle::design::tolerances::process_clearance_test {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Coupons are made up from a process whose bias and spread are known; the intervals hold these in 95 of 100.
-#include "fettle/design/tolerances/process_fit.hpp"
+#include "design/tolerances/process_fit.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
-#include "fettle/design/tolerances/known_processes.hpp"
+#include "design/tolerances/known_processes.hpp"
 
 namespace fettle::design::tolerances::process_fit_test {
 

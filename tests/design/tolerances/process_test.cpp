@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/process.hpp"
+#include "design/tolerances/process.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "fettle/design/tolerances/known_processes.hpp"
+#include "design/tolerances/known_processes.hpp"
 
 namespace fettle::design::tolerances::process_test {
 

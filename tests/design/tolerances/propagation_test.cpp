@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/propagation.hpp"
+#include "design/tolerances/propagation.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/tolerances/distribution.hpp"
-#include "fettle/design/tolerances/sobol.hpp"
-#include "fettle/design/tolerances/yield.hpp"
-#include "fettle/tests/design/tolerances/quadrature.hpp"
+#include "core/base/contract.hpp"
+#include "design/tolerances/distribution.hpp"
+#include "design/tolerances/sobol.hpp"
+#include "design/tolerances/yield.hpp"
+#include "tests/design/tolerances/quadrature.hpp"
 
 namespace fettle::design::tolerances::propagation_test {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <functional>
 
-#include "fettle/core/base/types.hpp"
-#include "fettle/design/tolerances/moments.hpp"
+#include "core/base/types.hpp"
+#include "design/tolerances/moments.hpp"
 
 namespace fettle::tests::design_support {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/robust_offset.hpp"
+#include "design/tolerances/robust_offset.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

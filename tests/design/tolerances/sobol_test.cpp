@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/sobol.hpp"
+#include "design/tolerances/sobol.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,8 +7,8 @@
 #include <functional>
 #include <random>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/core/files/hash.hpp"
+#include "core/base/contract.hpp"
+#include "core/files/hash.hpp"
 
 namespace fettle::design::tolerances::sobol_test {
 

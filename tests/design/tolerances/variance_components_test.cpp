@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Against tables, restricted likelihood, and how often made-up groups have the truth within the intervals.
-#include "fettle/design/tolerances/variance_components.hpp"
+#include "design/tolerances/variance_components.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

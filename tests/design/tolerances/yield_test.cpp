@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "fettle/design/tolerances/yield.hpp"
+#include "design/tolerances/yield.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "fettle/core/base/contract.hpp"
-#include "fettle/design/tolerances/normal_distribution.hpp"
+#include "core/base/contract.hpp"
+#include "design/tolerances/normal_distribution.hpp"
 
 namespace fettle::design::tolerances::yield_test {
 

@@ -6,17 +6,17 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "fettle/core/files/atomic_file.hpp"
-#include "fettle/core/geometry/mass_moments.hpp"
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
-#include "fettle/design/urdf/urdf_parser.hpp"
-#include "fettle/design/urdf/urdf_scene.hpp"
-#include "fettle/design/urdf/urdf_writer.hpp"
-#include "fettle/tests/support/program.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/files/atomic_file.hpp"
+#include "core/geometry/mass_moments.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "design/reading/scene_shapes.hpp"
+#include "design/urdf/urdf_parser.hpp"
+#include "design/urdf/urdf_scene.hpp"
+#include "design/urdf/urdf_writer.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::urdf::urdf_test {
 

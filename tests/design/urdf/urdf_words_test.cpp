@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
 // Every word of the table in and out: what is read changes the robot, the scene that is made of it, and the file that is written of that; a
 // scene or file that it does not reach says so. What is passed over is told by its name.
-#include "fettle/design/urdf/urdf_words.hpp"
+#include "design/urdf/urdf_words.hpp"
 
 #include <catch2/catch.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "fettle/core/scene_files/scene_reader.hpp"
-#include "fettle/core/setup/build_model.hpp"
-#include "fettle/design/reading/scene_shapes.hpp"
-#include "fettle/design/urdf/robot_notes_json.hpp"
-#include "fettle/design/urdf/urdf_parser.hpp"
-#include "fettle/design/urdf/urdf_scene.hpp"
-#include "fettle/design/urdf/urdf_writer.hpp"
-#include "fettle/tests/support/temporary_folder.hpp"
-#include "fettle/tests/support/text.hpp"
+#include "core/scene_files/scene_reader.hpp"
+#include "core/setup/build_model.hpp"
+#include "design/reading/scene_shapes.hpp"
+#include "design/urdf/robot_notes_json.hpp"
+#include "design/urdf/urdf_parser.hpp"
+#include "design/urdf/urdf_scene.hpp"
+#include "design/urdf/urdf_writer.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/text.hpp"
 
 namespace fettle::design::urdf::urdf_words_test {
 
