@@ -134,8 +134,9 @@ int end_of(const LinkageCoordinate& coordinate, double at) {
 
 class RangeAdjoint {
 public:
-    RangeAdjoint(const Model& model, const JointRanges& ranges, const PairClearance& pair, double scale, ModelGradient& bar)
-        : model_(model), ranges_(ranges), pair_(pair), scale_(scale), bar_(bar) {
+    /// @param held  a coordinate whose value stays what it is; -1: none
+    RangeAdjoint(const Model& model, const JointRanges& ranges, const PairClearance& pair, double scale, ModelGradient& bar, int held = -1)
+        : model_(model), ranges_(ranges), pair_(pair), scale_(scale), bar_(bar), held_(held) {
         for (const core::model::Body& body : model.bodies) start_.push_back(body.pose_start);
         frames_ = core::measure::placed(model.mechanism.set.frames, start_);
         coordinate_bar_.assign(pair.at.size(), 0.0);
@@ -205,16 +206,17 @@ private:
     // d = at - start: at an end of the range `at` is that of the limit.
     void reverse_coordinate(std::size_t k) {
         const LinkageCoordinate& coordinate = ranges_.linkage.coordinates[pair_.coordinates[k]];
+        const bool is_held = pair_.coordinates[k] == held_;
         const int end = end_of(coordinate, pair_.at[k]);
         const double d_bar = coordinate_bar_[k];
-        if (end == 0 || d_bar == 0) return;  // the distance is stationary there
+        if ((end == 0 && !is_held) || d_bar == 0) return;  // the distance is stationary there
         const auto named = [&](const Joint& joint) { return !joint.is_motor && joint.name == coordinate.joints.front().joint; };
         const auto& joints = model_.mechanism.joints;
         const auto joint = std::find_if(joints.begin(), joints.end(), named);
         if (joint == joints.end() || joint->coordinate < 0) return;  // the turn of a cylindrical joint, which has no limits
         const auto& terms = model_.mechanism.terms;
         const double limit = end < 0 ? coordinate.low : coordinate.high;
-        for (std::size_t t = 0; t < terms.size(); ++t) {
+        for (std::size_t t = 0; t < terms.size() && !is_held; ++t) {
             // The range of what starts at its limit begins where it starts, which is that to within rounding.
             const bool is_it = terms[t].kind == core::model::LawKind::stop && terms[t].measure == joint->coordinate &&
                                terms[t].sign * end < 0 &&
@@ -248,6 +250,7 @@ private:
     const PairClearance& pair_;
     const double scale_;
     ModelGradient& bar_;
+    const int held_;
     std::vector<Pose> start_;
     std::vector<core::measure::PlacedFrame> frames_;
     std::vector<double> coordinate_bar_;
@@ -336,6 +339,21 @@ PairClearance settled_witness(const Model& model, const JointRanges& ranges, Pai
 std::string range_clearance_adjoint(const Model& model, const JointRanges& ranges, const PairClearance& pair, double scale,
                                     ModelGradient& bar) {
     return RangeAdjoint(model, ranges, pair, scale, bar).run();
+}
+
+WitnessSlope witness_slope(const Model& model, const JointRanges& ranges, const PairClearance& pair, int coordinate) {
+    const Evaluated here = evaluated(model, ranges, pair);
+    const auto place = std::find(pair.coordinates.begin(), pair.coordinates.end(), coordinate);
+    return {here.distance, place == pair.coordinates.end() ? 0 : here.slope[place - pair.coordinates.begin()]};
+}
+
+std::string range_end_adjoint(const Model& model, const JointRanges& ranges, const PairClearance& pair, int coordinate, double scale,
+                              ModelGradient& bar) {
+    const WitnessSlope here = witness_slope(model, ranges, pair, coordinate);
+    if (!(std::abs(here.slope) > 0))
+        return "the end of a free range has no derivative: `" + model.bodies[pair.a].name + "` and `" + model.bodies[pair.b].name +
+               "` come no nearer as the joint moves on";
+    return RangeAdjoint(model, ranges, pair, -scale / here.slope, bar, coordinate).run();
 }
 
 }  // namespace fettle::adjoint::clearance

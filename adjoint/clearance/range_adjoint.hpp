@@ -30,4 +30,18 @@ core::stepper::Trajectory at_witness(const core::model::Model& model, const core
 [[nodiscard]] std::string range_clearance_adjoint(const core::model::Model& model, const core::clearance::JointRanges& ranges,
                                                   const core::clearance::PairClearance& pair, double scale, ModelGradient& bar);
 
+/// The distance of the witness's primitives where the pair is (`pair.at`), and its derivative in one of the linkage's coordinates, the
+/// others held.
+struct WitnessSlope {
+    double distance = 0;  ///< [m]; 0: they meet, and there is no slope
+    double slope = 0;     ///< [m] per unit of the coordinate
+};
+WitnessSlope witness_slope(const core::model::Model& model, const core::clearance::JointRanges& ranges,
+                           const core::clearance::PairClearance& pair, int coordinate);
+
+/// Adds scale * d(u) of the value u of a coordinate at which the distance at pair.witness is what it is (the end of a free range,
+/// core/clearance/free_ranges.hpp): du = -(d(distance) with u held) / slope. @return as range_clearance_adjoint; also where the slope is 0
+[[nodiscard]] std::string range_end_adjoint(const core::model::Model& model, const core::clearance::JointRanges& ranges,
+                                            const core::clearance::PairClearance& pair, int coordinate, double scale, ModelGradient& bar);
+
 }  // namespace fettle::adjoint::clearance

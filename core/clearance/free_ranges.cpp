@@ -17,21 +17,12 @@ using Kind = FreeRangeEnd::Kind;
 
 constexpr double meet = 1e-9;  // surfaces that are closer meet, as far as this asks [m]
 
-// The coordinate alone moves, or the others do within their limits, too.
-JointRanges moved_by(const JointRanges& ranges, int coordinate, bool others_anywhere) {
-    JointRanges out = ranges;
-    if (others_anywhere) return out;
-    for (certificate::LinkedBody& body : out.linkage.bodies)
-        std::erase_if(body.screws, [&](const certificate::Screw& screw) { return screw.coordinate != coordinate; });
-    return out;
-}
-
 class OneCoordinate {
 public:
     OneCoordinate(const model::Model& model, const JointRanges& ranges, int coordinate, const std::vector<std::pair<int, int>>& pairs,
                   double reach, const FreeRangeOptions& options)
         : model_(model),
-          ranges_(moved_by(ranges, coordinate, options.others_anywhere)),
+          ranges_(options.others_anywhere ? ranges : alone(ranges, coordinate)),
           own_(ranges_.linkage.coordinates[coordinate]),
           asked_(options),
           coordinate_(coordinate) {
@@ -58,13 +49,10 @@ public:
     FreeRange run() {
         std::vector<int> upwards, downwards;
         look_at_start(upwards, downwards);
-        out_.above = way(out_.start + reach_, upwards, beside_above_);
-        out_.turns_freely = turns_ && out_.above.kind == Kind::open;
-        if (out_.turns_freely) {
-            out_.below.free = out_.start;
-            return std::move(out_);
-        }
-        out_.below = way(out_.start - reach_, downwards, beside_below_);
+        out_.above.free = out_.below.free = out_.start;
+        if (asked_.above) out_.above = way(out_.start + reach_, upwards, beside_above_);
+        out_.turns_freely = asked_.above && turns_ && out_.above.kind == Kind::open;
+        if (asked_.below && !out_.turns_freely) out_.below = way(out_.start - reach_, downwards, beside_below_);
         return std::move(out_);
     }
 
@@ -212,6 +200,29 @@ private:
 };
 
 }  // namespace
+
+std::vector<std::pair<int, int>> searched_pairs(const model::Model& model) {
+    std::vector<std::pair<int, int>> out;
+    for (int a = 0; a < count_of(model.bodies); ++a)
+        for (int b = a + 1; b < count_of(model.bodies); ++b) {
+            const model::NoContact why = model::why_no_contact(model, a, b);
+            if (why != model::NoContact::ignored && why != model::NoContact::one_group) out.emplace_back(a, b);
+        }
+    return out;
+}
+
+std::optional<int> coordinate_of(const JointRanges& ranges, const std::string& joint) {
+    for (int k = 0; k < count_of(ranges.linkage.coordinates); ++k)
+        for (const certificate::JointCoordinate& each : ranges.linkage.coordinates[k].joints)
+            if (each.joint == joint) return k;
+    return std::nullopt;
+}
+
+JointRanges alone(JointRanges ranges, int coordinate) {
+    for (certificate::LinkedBody& body : ranges.linkage.bodies)
+        std::erase_if(body.screws, [&](const certificate::Screw& screw) { return screw.coordinate != coordinate; });
+    return ranges;
+}
 
 std::vector<FreeRange> free_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<int>& coordinates,
                                    const std::vector<std::pair<int, int>>& pairs, double reach, const FreeRangeOptions& options) {

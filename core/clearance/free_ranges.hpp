@@ -22,6 +22,7 @@ struct FreeRangeOptions {
     double minimum = 0;                      ///< clearance that is kept [m]; 0: the surfaces do not meet
     double angle = 1.7e-4;                   ///< how near the end of a turn is found [rad]
     double length = 1e-5;                    ///< the same of a slide [m]
+    bool above = true, below = true;         ///< which ways are looked along; the other end is then the start
     bool others_anywhere = false;            ///< the other coordinates anywhere within their limits; false: where they start
     std::function<bool()> should_stop = {};  ///< optional
     std::function<void(const std::string& joint, double free)> on_progress = {};  ///< optional; called after each question
@@ -55,6 +56,15 @@ struct FreeRange {
     std::vector<NotSearched> not_searched{};
     bool is_decided() const { return below.kind != FreeRangeEnd::Kind::undecided && above.kind != FreeRangeEnd::Kind::undecided; }
 };
+
+/// The pairs that matter by default: all, but those of one group and those that the scene ignores; the lesser body first.
+std::vector<std::pair<int, int>> searched_pairs(const model::Model& model);
+
+/// The coordinate that a joint moves by itself or by gears; nothing: no joint that moves is called so. A cylindrical joint's is its slide.
+std::optional<int> coordinate_of(const JointRanges& ranges, const std::string& joint);
+
+/// The linkage in which `coordinate` alone moves.
+JointRanges alone(JointRanges ranges, int coordinate);
 
 /// The ranges of some coordinates of `ranges`, in their order.
 /// @param ranges  The model's (joint_ranges): starts and screws are taken from it, and with others_anywhere the limits.

@@ -32,13 +32,10 @@ Result<std::vector<int>> coordinates_of(const JointRanges& ranges, const std::ve
     if (names.empty())
         for (int k = 0; k < count_of(ranges.linkage.coordinates); ++k) out.push_back(k);
     for (const std::string& name : names) {
+        const std::optional<int> found = core::clearance::coordinate_of(ranges, name);
         std::vector<std::string_view> known;
-        std::optional<int> found;
-        for (int k = 0; k < count_of(ranges.linkage.coordinates); ++k)
-            for (const auto& joint : ranges.linkage.coordinates[k].joints) {
-                known.emplace_back(joint.joint);
-                if (joint.joint == name) found = k;
-            }
+        for (const auto& coordinate : ranges.linkage.coordinates)
+            for (const auto& joint : coordinate.joints) known.emplace_back(joint.joint);
         if (!found)
             return Error{ErrorCode::out_of_range, "--joint",
                          "no joint that moves is called \"" + name + "\"; " + core::files::did_you_mean(name, known)};

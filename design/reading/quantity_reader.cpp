@@ -10,6 +10,7 @@
 #include "design/quantities/contact_force.hpp"
 #include "design/quantities/energy.hpp"
 #include "design/quantities/expression.hpp"
+#include "design/quantities/free_range_end.hpp"
 #include "design/quantities/joint_load.hpp"
 #include "design/quantities/joint_position.hpp"
 #include "design/quantities/law.hpp"
@@ -233,6 +234,19 @@ std::shared_ptr<const Quantity> read_joint_position(const JsonNode& node, const 
                                                        read_reduction(node, dimension));
 }
 
+std::shared_ptr<const Quantity> read_free_range(const JsonNode& node, const ReadContext& context) {
+    const core::scene::Joint* joint = read_part(node.require("joint"), context.scene.mechanism.joints, "joint");
+    const auto end = node.require("end").choice({"above", "below"});
+    quantities::FreeRangeEnd::Of of;
+    if (const auto kept = node["clearance"].quantity(Dimension::length, context.length_unit, core::files::positive)) of.clearance = *kept;
+    of.others_anywhere = node["anywhere"].boolean().value_or(false);
+    if (joint == nullptr || !end) return nullptr;
+    of.joint = joint->name;
+    of.dimension = turns(*joint) ? Dimension::angle : Dimension::length;
+    of.is_above = *end == "above";
+    return std::make_shared<quantities::FreeRangeEnd>(of);
+}
+
 std::shared_ptr<const Quantity> read_turn(const JsonNode& node, const ReadContext& context) {
     const auto body = context.body(node.require("body"));
     const auto axis = context.axis(node.require("axis"));
@@ -422,6 +436,7 @@ std::string mass_name(const JsonNode& node) {
 std::string joint_force_name(const JsonNode& node) { return "joint_force " + text(node["joint"]); }
 std::string joint_torque_name(const JsonNode& node) { return "joint_torque " + text(node["joint"]); }
 std::string joint_position_name(const JsonNode& node) { return "joint_position " + text(node["joint"]); }
+std::string free_range_name(const JsonNode& node) { return "free_range " + text(node["joint"]) + " " + text(node["end"]); }
 std::string turn_name(const JsonNode& node) { return "turn " + text(node["body"]); }
 std::string motor_effort_name(const JsonNode& node) { return "motor_effort " + text(node["motor"]); }
 std::string contact_of(const JsonNode& node) { return text(node["body"]) + (node["of"].is_string() ? ":" + text(node["of"]) : ""); }
@@ -501,6 +516,12 @@ const std::vector<QuantityType>& quantity_table() {
          "torque that a joint carries about its point: along an `axis`, else its magnitude"},
         {"joint_position", with_reduction({"joint"}), read_joint_position, joint_position_name, "rad or m",
          "angle of a joint that turns, travel of one that slides, at the start and the steps' ends; angles count turns"},
+        {"free_range",
+         {"joint", "end", "clearance", "anywhere"},
+         read_free_range,
+         free_range_name,
+         "rad or m",
+         "how far a joint is proven free from its start on, `above` or `below`, before bodies come closer than a clearance"},
         {"turn", with_reduction({"body", "axis"}), read_turn, turn_name, "rad",
          "how far a body has turned about an axis since the start, at the steps' ends: of a part that a real pin holds"},
         {"motor_effort", with_reduction({"motor"}), read_motor_effort, motor_effort_name, "N m or N",
