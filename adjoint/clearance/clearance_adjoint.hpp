@@ -15,6 +15,14 @@
 /// exp(theta_n) phi_t). Nodes between them move by a share of the ends' motions where that is known (path_nodes.hpp):
 ///   dq_k = (1 - share) dq_t + share dq_{t+1},   dtheta_k = share dtheta_n   (entry by entry).
 /// Where it is not known there is no derivative, and that is said with the step.
+///
+///     const auto& trajectory = simulation.trajectory;  // simulated with for_gradient
+///     auto seeds = adjoint::zero_seeds(model, count_of(trajectory.steps));
+///     const auto refusal = adjoint::clearance::clearance_adjoint(model, trajectory, pair, 1, seeds.trajectory_bar, seeds.model_bar);
+///     auto gradients = adjoint::stepper::reverse_sweep(model, trajectory, {seeds.trajectory_bar});
+///     if (!refusal.empty() || !gradients) return 2;
+///     adjoint::ModelGradient gradient = std::move(gradients).value().front();
+///     adjoint::add(gradient, seeds.model_bar);  // d clearance / d everything in the model
 #pragma once
 
 #include <array>

@@ -17,6 +17,15 @@
 /// ones,
 ///   delta'_bar = J_l^-T (increment_bar_theta + C lambda_theta) + 1/2 phi x tau,   C_ab = <1/2 [tau], d2R/dtheta_a dtheta_b R^T>,
 /// because the derivative of the torque along a rotation psi is the symmetric tangent Hessian plus 1/2 psi x tau.
+///
+///     core::stepper::SimulationOptions options;
+///     options.for_gradient = true;
+///     const auto simulation = core::stepper::simulate(model, options);
+///     const int steps = count_of(simulation.trajectory.steps);
+///     auto seed = adjoint::zero_trajectory_gradient(steps, count_of(model.bodies));
+///     seed.pose_bar[steps][1](2, 3) = 1;  // J is the height of body 1 at the end
+///     const auto gradients = adjoint::stepper::reverse_sweep(model, simulation.trajectory, {seed});
+///     if (gradients) std::printf("dJ/d(density of body 1) = %g\n", gradients->front().bodies[1].density_bar);
 #pragma once
 
 #include <vector>

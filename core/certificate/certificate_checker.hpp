@@ -40,6 +40,13 @@
 ///   body turns by more than 100 rad: e |N'| <= 16u, e^2 <= 8u. (Where s has no digits left for so many, the leaf is so much shorter.)
 /// That depth is for the proof: along the normal the rests of prove() are of third order, as the search's are, and its leaves are hardly
 /// ever halved at all (tests/core/clearance/certificate_campaign_test.cpp).
+///
+///     const auto certificate = core::certificate::read_certificate("fit.certificate.json");
+///     const auto stored = core::records::read_trajectory("trajectory.json");  // that it is about
+///     if (!certificate || !stored) return 3;
+///     const auto check = core::certificate::check_certificate(*certificate, *stored);
+///     for (const auto& fault : check.faults) std::printf("%s: %s\n", fault.where.c_str(), fault.message.c_str());
+///     if (check.accepted()) std::printf("all is proven, in %ld leaves\n", check.leaves);
 #pragma once
 
 #include <string>

@@ -2,6 +2,13 @@
 /// Certified clearance: proven bounds of the least distance of pairs of bodies, over the continuous curved path.
 ///   lower <= min over the time range of dist(A(t), B(t)) <= upper,   rounding error charged to `lower`.
 /// A theorem about the meshes as stored and the path as stored (docs/method/clearance.md), not about samples.
+///
+///     const std::vector<core::clearance::PairRequest> pairs{{.a = 0, .b = 1, .minimum = 0.3e-3}};  // bodies by number, lengths in m
+///     auto options = core::clearance::usual_options(pairs);
+///     options.motion = true;  // false: as assembled
+///     for (const auto& pair : core::clearance::certify_clearance(model, simulation.trajectory, pairs, options))
+///         std::printf("%s: from %g to %g m, nearest at %g s\n", core::clearance::to_string(pair.status), pair.lower, pair.upper,
+///                     pair.witness.time);
 #pragma once
 
 #include <vector>

@@ -6,6 +6,13 @@
 /// minimum apart (certify_ranges over the interval), and `stop`, where a pair was found closer; it asks about the half between them until
 /// they are as near as is wanted. Everything from q0 to `free` is proven, nothing is said of what lies beyond `stop`, where it may be free
 /// again. docs/method/clearance.md#free-ranges.
+///
+///     const auto ranges = core::clearance::joint_ranges(model, model.diagonal);  // joints without limits, too
+///     if (!ranges) return 3;
+///     const std::vector<std::pair<int, int>> pairs{{0, 1}, {0, 2}};
+///     for (const auto& range : core::clearance::free_ranges(model, *ranges, {0}, pairs, model.diagonal, {.minimum = 0.3e-3}))
+///         std::printf("%s: free from %g to %g\n", ranges->linkage.coordinates[range.coordinate].joints.front().joint.c_str(),
+///                     range.below.free, range.above.free);
 #pragma once
 
 #include <functional>

@@ -2,6 +2,15 @@
 /// Clearance of bodies that joints hold and motors drive, at all times and not only at the nodes of a path (stepper/jointed_motion.hpp):
 /// bounds along the path as stored, charged with how far joints and motors would have the bodies from it between its nodes
 /// (certificate/ideal_joints.hpp), which is proven.
+///
+///     const auto motion = core::stepper::follow_joints(model, -1, core::stepper::default_joint_gap(model));
+///     if (!motion) return 3;
+///     const std::vector<core::clearance::PairRequest> pairs{{.a = 0, .b = 1, .minimum = 0.3e-3}};
+///     auto options = core::clearance::usual_options(pairs);
+///     options.motion = true;
+///     const auto path = core::clearance::jointed_path(model, *motion);
+///     for (const auto& pair : core::clearance::certify_jointed(model, motion->trajectory, pairs, options, path))
+///         std::printf("%s: from %g to %g m\n", core::clearance::to_string(pair.status), pair.lower, pair.upper);
 #pragma once
 
 #include <optional>

@@ -3,6 +3,13 @@
 ///   lower <= min over every combination of the coordinates in their ranges of dist(A(u), B(u)) <= upper,
 /// rounding charged to `lower`. A theorem about the meshes as stored and the joints as the linkage has them, not about samples.
 /// docs/method/clearance.md#ranges-of-joints.
+///
+///     const auto ranges = core::clearance::joint_ranges(model);
+///     for (const auto& error : ranges.errors()) std::printf("%s: %s\n", error.where.c_str(), error.message.c_str());
+///     if (!ranges) return 3;
+///     const std::vector<core::clearance::PairRequest> pairs{{.a = 0, .b = 1, .minimum = 0.3e-3}};
+///     for (const auto& pair : core::clearance::certify_ranges(model, *ranges, pairs, core::clearance::usual_options(pairs)))
+///         std::printf("%s: from %g to %g m\n", core::clearance::to_string(pair.status), pair.lower, pair.upper);
 #pragma once
 
 #include <memory>

@@ -2,6 +2,14 @@
 /// Plain description of a scene, SI units, meshes resolved: what a file said, before anything is computed from it.
 /// Readers: scene_files/scene_reader.hpp (*.scene.json), paper_scenes/fixture_reader.hpp (the source paper's files). Next stage:
 /// setup/build_model.hpp.
+///
+///     core::scene::Scene scene;
+///     scene.gravity = {0, 0, -9.81};
+///     scene.end_time = 0.5;
+///     core::scene::Body& ball = scene.bodies.emplace_back();
+///     ball.name = "ball";
+///     ball.density = 1240;
+///     if (auto mesh = core::mesh_files::read_mesh("ball.stl", {.unit = 1e-3})) ball.mesh = std::move(mesh).value();
 #pragma once
 
 #include <array>

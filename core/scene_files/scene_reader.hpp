@@ -2,6 +2,12 @@
 /// Reads scene files: our own (*.scene.json, described by scene.schema.json and README.md beside this file) and, detected by their keys,
 /// the source paper's (paper_scenes/fixture_reader.hpp). Everything in the returned Scene is SI. Whether the bodies can be simulated:
 /// setup/build_model.hpp.
+///
+///     const auto options = design::reading::scene_read_options();  // makes the parts that the file names; else meshes alone
+///     const auto scene = core::scene_files::read_scene("hinge.scene.json", options);
+///     for (const auto& error : scene.errors()) std::printf("%s: %s\n", error.where.c_str(), error.message.c_str());
+///     if (!scene) return 3;
+///     for (const auto& body : scene->bodies) std::printf("%s\n", body.name.c_str());
 #pragma once
 
 #include <string>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// Scene -> Model: validity of the meshes, mass, hierarchies, defaults; refuses a scene whose bodies intersect at the start.
+///
+///     const auto model = core::setup::build_model(scene);  // read by read_scene, or made in memory
+///     for (const auto& error : model.errors()) std::printf("%s: %s\n", error.where.c_str(), error.message.c_str());
+///     if (!model) return 3;
+///     for (const auto& warning : model->warnings) std::printf("%s\n", warning.c_str());
 #pragma once
 
 #include <optional>

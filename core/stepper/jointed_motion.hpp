@@ -8,6 +8,12 @@
 ///
 /// Between nodes the path is straight in each body's chart, and joints part by at most `joint_gap` (joint_outputs.hpp). Steps are halved,
 /// all of them, until that is at most what is asked for and no body turns by more than 0.5 rad, or a step is 1/256 of the model's.
+///
+///     const auto motion = core::stepper::follow_joints(model, -1, core::stepper::default_joint_gap(model));
+///     for (const auto& error : motion.errors()) std::printf("%s: %s\n", error.where.c_str(), error.message.c_str());
+///     if (!motion) return 3;
+///     for (const auto& name : motion->held) std::printf("%s is driven by nothing\n", name.c_str());
+///     std::printf("%zu steps; between them joints part by at most %g m\n", motion->trajectory.steps.size(), motion->joint_gap);
 #pragma once
 
 #include <string>

@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: MIT
 /// The one question about clearance, over a path and over ranges of joints alike: which pairs are judged, what becomes of each, and the
 /// report: pairs worst first, and against an earlier one. As JSON: report_json.hpp.
+///
+///     design::clearance::SubjectOptions options;
+///     options.path = "arm.scene.json", options.ranges = true;
+///     const auto subject = design::clearance::read_subject(options, {});
+///     if (!subject) return 3;
+///     design::clearance::Question question;
+///     question.pairs.minimum = 0.3e-3;
+///     const auto report = design::clearance::judge_clearances(*subject, question);
+///     if (!report) return 3;
+///     for (const auto& pair : report->pairs)
+///         std::printf("%s:%s %s, at least %g m\n", pair.spec.a.name.c_str(), pair.spec.b.name.c_str(),
+///                     design::clearance::to_string(pair.finding), pair.least.lower);
 #pragma once
 
 #include <functional>

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// Audit of a design's gradients: central differences of whole simulations. How the differences are weighed goes by themselves and by the
 /// noise of the quantities, never by comparing them with the adjoint. The same simulations show which contacts are about to change.
+///
+///     const VectorX p = design::description::values_of(problem.design().parameters);
+///     const auto check = design::gradient_audit::check_gradients(problem, p, problem.evaluate(p));
+///     for (const auto& row : check.rows)
+///         std::printf("d %s / d %s = %g, by differences %g\n", row.quantity.c_str(), row.parameter.c_str(), row.adjoint, row.difference);
+///     for (const auto& parameter : check.failures) std::printf("%s is not checked\n", parameter.c_str());
 #pragma once
 
 #include <functional>

@@ -7,6 +7,14 @@
 /// design has the same numbers, bit for bit, whether a program made it or a file.
 /// A robust design (description/made_design.hpp) is simulated as made, without deviations, which is the same motion, bit for
 /// bit; what is asked for over the tolerances follows (evaluate_over_tolerances.hpp).
+///
+///     const auto problem = design::problem::DesignProblem::create(file->design);  // of read_design
+///     for (const auto& error : problem.errors()) std::printf("%s: %s\n", error.where.c_str(), error.message.c_str());
+///     if (!problem) return 3;
+///     const auto at = problem->evaluate(design::description::values_of(problem->design().parameters));
+///     if (!at.usable) std::printf("%s\n", at.reason.c_str());
+///     for (int k = 0; at.usable && k < problem->parameter_count(); ++k)
+///         std::printf("d objective / d %s = %g\n", problem->design().parameters[k].name.c_str(), at.gradient[k]);
 #pragma once
 
 #include <memory>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// Reads design files (*.design.json), described by design.schema.json beside this file. Rewriting: design_text.hpp.
+///
+///     const auto file = design::reading::read_design("hinge.design.json");
+///     for (const auto& error : file.errors()) std::printf("%s: %s\n", error.where.c_str(), error.message.c_str());
+///     if (!file) return 3;
+///     for (const auto& p : file->design.parameters) std::printf("%s: %g, from %g to %g\n", p.name.c_str(), p.value, p.lower, p.upper);
 #pragma once
 
 #include <memory>

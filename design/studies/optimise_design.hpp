@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// Optimises a design: optimiser, final evaluation with certificates, what limits it. In memory: nothing is read or written but the
 /// history, if one is given. For a design file, with its files: optimise_file.hpp.
+///
+///     const auto problem = design::problem::DesignProblem::create(std::move(made));  // a design from a file, or made in memory
+///     if (!problem) return 3;
+///     const auto outcome = design::studies::optimise_design(*problem);
+///     if (!outcome) return 3;
+///     std::printf("%s: %s\n", to_string(outcome->report.status), outcome->report.message.c_str());
+///     for (int k = 0; k < problem->parameter_count(); ++k)
+///         std::printf("%s = %g\n", problem->design().parameters[k].name.c_str(), outcome->report.point[k]);
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// Optimises the design of a file into a folder: optimise_design.hpp with its history, and the final design and trajectory as files.
 /// `fettle optimise` is this and its printing.
+///
+///     const auto file = design::reading::read_design("hinge.design.json");
+///     const auto problem = file ? design::problem::DesignProblem::create(file->design) : file.errors();
+///     if (!problem) return 3;
+///     const auto done = design::studies::optimise_file(*file, *problem, {.directory = "out", .resume = true}, {});
+///     if (!done) return 3;
+///     std::printf("%s: out/design.final.json\n", to_string(done->outcome.report.status));
 #pragma once
 
 #include <functional>

@@ -12,6 +12,16 @@
 /// - **Contacts**: where predictions miss the samples, which contacts of the farthest one are not those of the design as drawn.
 ///
 /// All of it is computed. Nothing here is proven, but the clearance of each sample by itself.
+///
+///     const auto file = design::reading::read_design("fit.design.json", {.as_made = true});  // a design with `tolerances`
+///     const auto problem = file ? design::problem::DesignProblem::create(file->design) : file.errors();
+///     if (!problem) return 3;
+///     design::studies::ToleranceOptions options;
+///     options.samples = 64;
+///     const auto report = design::studies::study_tolerances(*problem, file->tolerances, options);
+///     for (const auto& response : report.responses)
+///         std::printf("%s: mean %g, sigma %g, worst case %g to %g\n", response.name.c_str(), response.linear.mean,
+///                     response.linear.standard_deviation, response.worst.least, response.worst.most);
 #pragma once
 
 #include <cstdint>

@@ -27,6 +27,7 @@
 #include "design/gradient_audit/difference_check.hpp"
 #include "design/studies/optimise_design.hpp"
 #include "design/studies/optimise_file.hpp"
+#include "design/studies/tolerance_study.hpp"
 // What `fettle clearance` asks: which pairs count, groups, findings.
 #include "design/clearance/read_subject.hpp"
 #include "design/clearance/report.hpp"
