@@ -140,21 +140,20 @@ public:
         for (const core::model::Body& body : model.bodies) start_.push_back(body.pose_start);
         frames_ = core::measure::placed(model.mechanism.set.frames, start_);
         coordinate_bar_.assign(pair.at.size(), 0.0);
+        for (const int k : pair.coordinates) scale_bar_.emplace_back(ranges.linkage.coordinates[k].joints.size(), 0.0);
     }
 
     std::string run() {
-        for (const int k : pair_.coordinates)
-            if (const auto& joints = ranges_.linkage.coordinates[k].joints; joints.size() > 1)
-                return "the clearance of `" + model_.bodies[pair_.a].name + "` and `" + model_.bodies[pair_.b].name +
-                       "` over the ranges of the joints has no derivative: gears couple `" + joints[0].joint + "` and `" + joints[1].joint +
-                       "`";
         const Trajectory posed = at_witness(model_, ranges_, pair_);
         const ClearanceGradient gradient = clearance_gradient(model_, posed, pair_.a, pair_.b, pair_.witness);
         if (!gradient.refusal.empty()) return gradient.refusal;
         for (const auto& part : gradient.vertices) bar_.bodies[part.body].vertices_bar.col(part.vertex) += scale_ * part.bar;
         const auto loads = wrenches(posed, pair_, gradient);
         for (int i = 0; i < 2; ++i) reverse(i == 0 ? pair_.a : pair_.b, loads[i]);
-        for (std::size_t k = 0; k < coordinate_bar_.size(); ++k) reverse_coordinate(k);
+        for (std::size_t k = 0; k < coordinate_bar_.size(); ++k) {
+            reverse_coordinate(k);
+            reverse_couplings(k);
+        }
         return {};
     }
 
@@ -169,8 +168,11 @@ private:
             const Matrix3 jacobian = core::kinematics::left_jacobian(s.turn * link.d * s.axis);
             reverse_frame(link, w.force - turn.transpose() * w.force,
                           s.turn * link.d * (jacobian.transpose() * moment) + s.slide * link.d * w.force);
-            reverse_pitch(link, link.d * s.axis.dot(w.force));
-            coordinate_bar_[link.k] += coordinate_bar(link, w);
+            const std::size_t joint = joint_of(link);
+            const double scale = coordinate_at(link.k).joints[joint].scale, d_bar = coordinate_bar(link, w);
+            reverse_pitch(link, scale * link.d * s.axis.dot(w.force));
+            coordinate_bar_[link.k] += d_bar;
+            scale_bar_[link.k][joint] += link.d * d_bar / scale;  // the screw's turn and slide have it as a factor
             w = before(link, turn, w);
         }
         add_to_start(body, w.force, w.torque);
@@ -194,6 +196,23 @@ private:
         add_to_start(body, point_bar, placed.arm.cross(point_bar) + Vector3(placed.axes.col(2)).cross(axis_bar));
     }
 
+    const LinkageCoordinate& coordinate_at(std::size_t k) const { return ranges_.linkage.coordinates[pair_.coordinates[k]]; }
+
+    const Joint* joint_called(const std::string& name) const {
+        const auto& joints = model_.mechanism.joints;
+        const auto found =
+            std::find_if(joints.begin(), joints.end(), [&](const Joint& each) { return !each.is_motor && each.name == name; });
+        return found == joints.end() ? nullptr : &*found;
+    }
+
+    // The place, among those that its coordinate moves, of the joint whose screw it is.
+    std::size_t joint_of(const Link& link) const {
+        const auto& joints = coordinate_at(link.k).joints;
+        const std::string& name = model_.mechanism.joints[ranges_.joint_of[link.body]].name;
+        const auto found = std::find_if(joints.begin(), joints.end(), [&](const auto& each) { return each.joint == name; });
+        return found == joints.end() ? 0 : static_cast<std::size_t>(found - joints.begin());  // the turn of a cylindrical joint is alone
+    }
+
     // slide = -sense * factor of the row slide + factor angle = constant.
     void reverse_pitch(const Link& link, double slide_bar) {
         const int joint = ranges_.joint_of[link.body];
@@ -203,29 +222,90 @@ private:
             if (row.owner == joint && row.parts.size() == 2) bar_.mechanism.row_factors[row.number][1] -= sense * slide_bar;
     }
 
-    // d = at - start: at an end of the range `at` is that of the limit.
+    // d = at - start. At an end of the range `at` is that of a joint's limit, d = (limit - start of that joint) / its scale.
     void reverse_coordinate(std::size_t k) {
-        const LinkageCoordinate& coordinate = ranges_.linkage.coordinates[pair_.coordinates[k]];
+        const LinkageCoordinate& coordinate = coordinate_at(k);
         const bool is_held = pair_.coordinates[k] == held_;
         const int end = end_of(coordinate, pair_.at[k]);
         const double d_bar = coordinate_bar_[k];
         if ((end == 0 && !is_held) || d_bar == 0) return;  // the distance is stationary there
-        const auto named = [&](const Joint& joint) { return !joint.is_motor && joint.name == coordinate.joints.front().joint; };
-        const auto& joints = model_.mechanism.joints;
-        const auto joint = std::find_if(joints.begin(), joints.end(), named);
-        if (joint == joints.end() || joint->coordinate < 0) return;  // the turn of a cylindrical joint, which has no limits
+        for (std::size_t j = 0; j < coordinate.joints.size() && !is_held; ++j)
+            if (reverse_limit(k, j, end)) return;
+        // The range of what starts at its limit begins where it starts, which is that to within rounding; the turn of a cylindrical joint
+        // has no limits.
+        if (const Joint* first = joint_called(coordinate.joints.front().joint); first != nullptr && first->coordinate >= 0)
+            reverse_value(first->coordinate, -d_bar);
+    }
+
+    // @return does that joint's limit end the range?
+    bool reverse_limit(std::size_t k, std::size_t j, int end) {
+        const LinkageCoordinate& coordinate = coordinate_at(k);
+        const auto& [name, is_angle, scale, offset] = coordinate.joints[j];
+        const Joint* joint = joint_called(name);
+        if (joint == nullptr || joint->coordinate < 0) return false;
+        const double u = end < 0 ? coordinate.low : coordinate.high, d_bar = coordinate_bar_[k];
         const auto& terms = model_.mechanism.terms;
-        const double limit = end < 0 ? coordinate.low : coordinate.high;
-        for (std::size_t t = 0; t < terms.size() && !is_held; ++t) {
-            // The range of what starts at its limit begins where it starts, which is that to within rounding.
+        for (std::size_t t = 0; t < terms.size(); ++t) {
             const bool is_it = terms[t].kind == core::model::LawKind::stop && terms[t].measure == joint->coordinate &&
-                               terms[t].sign * end < 0 &&
-                               std::abs(core::model::room_within(terms[t], limit)) <= core::model::at_limit * model_.dhat;
+                               terms[t].sign * scale * end < 0 &&
+                               std::abs(core::model::room_within(terms[t], scale * u + offset)) <= core::model::at_limit * model_.dhat;
             if (!is_it) continue;
-            bar_.mechanism.term_reference[t] += d_bar;
-            break;
+            bar_.mechanism.term_reference[t] += d_bar / scale;
+            reverse_value(joint->coordinate, -d_bar / scale);
+            scale_bar_[k][j] -= d_bar * (pair_.at[k] - coordinate.start) / scale;
+            return true;
         }
-        reverse_value(joint->coordinate, -d_bar);
+        return false;
+    }
+
+    // A coupling's row, from the joint whose scale is known before to the other: their places, those of their parts, and their factors.
+    struct Coupling {
+        int row = 0;
+        std::size_t from = 0, to = 0, part_from = 0, part_to = 0;
+        double factor_from = 1, factor_to = 1;
+    };
+
+    // f_from scale_from + f_to scale_to = 0, from the first joint on, whose scale is 1.
+    void reverse_couplings(std::size_t k) {
+        const auto& joints = coordinate_at(k).joints;
+        const std::vector<Coupling> couplings = couplings_of(k);
+        for (auto each = couplings.rbegin(); each != couplings.rend(); ++each) {
+            const double bar = scale_bar_[k][each->to] / each->factor_to;
+            std::vector<double>& factors_bar = bar_.mechanism.row_factors[each->row];
+            factors_bar[each->part_from] -= bar * joints[each->from].scale;
+            factors_bar[each->part_to] -= bar * joints[each->to].scale;
+            scale_bar_[k][each->from] -= bar * each->factor_from;
+        }
+    }
+
+    std::vector<Coupling> couplings_of(std::size_t k) const {
+        const auto& joints = coordinate_at(k).joints;
+        std::vector<int> measures;
+        for (const auto& each : joints) {
+            const Joint* joint = joint_called(each.joint);
+            measures.push_back(joint == nullptr ? -1 : joint->coordinate);
+        }
+        std::vector<Coupling> out;
+        std::vector<bool> known(joints.size(), false);
+        if (!known.empty()) known[0] = true;
+        const auto place = [&](int measure) {
+            return static_cast<std::size_t>(std::find(measures.begin(), measures.end(), measure) - measures.begin());
+        };
+        const std::vector<core::constraint::Row> rows = all_rows(model_.mechanism);
+        for (std::size_t found = 1, before = 0; found > before;) {  // until none is reached any more
+            before = found;
+            for (const core::constraint::Row& row : rows) {
+                if (!couples_joints(model_.mechanism.joints[row.owner].kind) || row.parts.size() != 2) continue;
+                const auto& [first, second] = std::pair(row.parts[0], row.parts[1]);
+                const std::size_t a = place(first.measure), b = place(second.measure);
+                if (a == joints.size() || b == joints.size() || known[a] == known[b]) continue;
+                out.push_back(known[a] ? Coupling{row.number, a, b, 0, 1, first.factor, second.factor}
+                                       : Coupling{row.number, b, a, 1, 0, second.factor, first.factor});
+                known[a] = known[b] = true;
+                ++found;
+            }
+        }
+        return out;
     }
 
     // Reverses a measure's value at the start.
@@ -254,6 +334,7 @@ private:
     std::vector<Pose> start_;
     std::vector<core::measure::PlacedFrame> frames_;
     std::vector<double> coordinate_bar_;
+    std::vector<std::vector<double>> scale_bar_;  // of each coordinate's joints
 };
 
 constexpr int most_settling_steps = 30;

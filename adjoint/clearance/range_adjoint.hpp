@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Derivative of a clearance over all positions of the joints (core/clearance/range_clearance.hpp): with respect to shapes, poses at the
-/// start, places and axes of joints, their limits, pitches of screws.
+/// start, places and axes of joints, their limits, pitches of screws, ratios of gears and mimics.
 ///
 /// The distance is a minimum over the coordinates too, so (envelope theorem) those at its witness are held; one that is at the end of its
 /// range moves with that end. With a screw d = u - start (core/certificate/linkage.hpp), E = exp([turn d z]), of a force F and a torque M
@@ -25,8 +25,7 @@ core::clearance::PairClearance settled_witness(const core::model::Model& model, 
 core::stepper::Trajectory at_witness(const core::model::Model& model, const core::clearance::JointRanges& ranges,
                                      const core::clearance::PairClearance& pair);
 
-/// Adds scale * d(distance at pair.witness) to `bar`. @return why it has none, and nothing was added: coordinates that gears couple, whose
-/// ratio it would depend on. Empty: it was added.
+/// Adds scale * d(distance at pair.witness) to `bar`. @return why it has none, and nothing was added; empty: it was added
 [[nodiscard]] std::string range_clearance_adjoint(const core::model::Model& model, const core::clearance::JointRanges& ranges,
                                                   const core::clearance::PairClearance& pair, double scale, ModelGradient& bar);
 

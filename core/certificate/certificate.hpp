@@ -130,6 +130,8 @@ struct Certificate {
     std::uint64_t path_hash = 0;       ///< of the trajectory (same)
     double length_unit = 1;            ///< of the scene [m]: what its lengths are shown in
     std::string source;                ///< the file whose bodies these are, as it was named; empty: none
+    std::string scenario;              ///< of a design: in which of its scenarios; empty: the first
+    std::string process;               ///< within tolerances: what makes the parts in place of the design's; a name or a file; empty: none
     bool motion = false;               ///< over the trajectory; false: at its first poses, or from there on over the joints' ranges
     std::optional<Linkage> linkage{};  ///< of one over ranges of joints
     std::vector<BodyPieces> bodies;    ///< one per body of the model; empty lists for those of no pair
@@ -147,7 +149,8 @@ struct Certificate {
 std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, int bodies);
 
 /// One JSON object (*.certificate.json), SI, with the names used here; every number reads back to the same bits.
-///   fettle_certificate 3, geometry_hash, path_hash (hexadecimal), length_unit, source, motion, bodies [{elements, cuts}],
+///   fettle_certificate 3, geometry_hash, path_hash (hexadecimal), length_unit, source, scenario, process (both optional), motion,
+///   bodies [{elements, cuts}],
 ///   exports (optional) [{file, hash, rounding}], joints (optional, ideal_joints.hpp), path_as_stored (optional, is_of_path),
 ///   over ranges of joints coordinates [{start, low, high, is_whole_turn, joints [{joint, is_angle, scale, offset}]}] and
 ///   links [{parent, screws [{coordinate, point, axis, turn, slide}]}],

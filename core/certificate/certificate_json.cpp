@@ -124,6 +124,8 @@ std::string text_of(const Certificate& certificate) {
     write_text(out, "path_hash", files::hexadecimal(certificate.path_hash));
     write_number(out, "length_unit", certificate.length_unit);
     write_text(out, "source", certificate.source);
+    if (!certificate.scenario.empty()) write_text(out, "scenario", certificate.scenario);
+    if (!certificate.process.empty()) write_text(out, "process", certificate.process);
     write_flag(out, "motion", certificate.motion);
     if (certificate.linkage) {
         const Linkage& linkage = *certificate.linkage;
@@ -262,6 +264,8 @@ Certificate read_root(const JsonNode& root, Format format) {
     certificate.path_hash = read_hash(root.require("path_hash"));
     certificate.length_unit = root.require("length_unit").number(files::positive).value_or(1);
     certificate.source = read_text(root["source"]);
+    certificate.scenario = read_text(root["scenario"]);
+    certificate.process = read_text(root["process"]);
     if (format != Format::old_range) certificate.motion = read_flag(root.require("motion"));
     if (format == Format::old_range || root["coordinates"].exists() || root["links"].exists()) {
         certificate.linkage.emplace();
@@ -299,8 +303,8 @@ base::Result<Certificate> read_certificate(const std::filesystem::path& path) {
     auto document = files::JsonDocument::read(path.string());
     if (!document) return document.errors();
     const JsonNode root = document->root();
-    root.allow_keys({version_key, old_range_key, "geometry_hash", "path_hash", "length_unit", "source", "motion", "coordinates", "links",
-                     "bodies", "exports", "tolerances", "joints", "path_as_stored", "pairs"});
+    root.allow_keys({version_key, old_range_key, "geometry_hash", "path_hash", "length_unit", "source", "scenario", "process", "motion",
+                     "coordinates", "links", "bodies", "exports", "tolerances", "joints", "path_as_stored", "pairs"});
     const Format format = read_format(root);
     if (!document->errors().empty()) return document->errors();
     Certificate certificate = read_root(root, format);

@@ -12,7 +12,7 @@ namespace fettle::design::answers {
 
 struct RangesAnswer {
     const core::model::Model& model;
-    const core::clearance::JointRanges& ranges;  ///< of the model, with its limits
+    core::clearance::JointRanges ranges;  ///< of the model, with its limits
     std::vector<core::clearance::FreeRange> found;
     core::clearance::FreeRangeOptions asked;
     double reach = 0;                        ///< of slides [m]

@@ -79,10 +79,13 @@ void doubt_domain(CheckedCertificate& checked) {
 }
 
 // The design as made, over what the certificate is.
-SourceCheck check_toleranced_source(const Certificate& certificate, const std::string& source, const std::string& name,
-                                    const reading::InputOptions& input) {
+SourceCheck check_toleranced_source(const Certificate& certificate, const std::string& path, const std::string& source,
+                                    const std::string& name, const reading::InputOptions& input) {
     SubjectOptions options;
     options.path = source;
+    const std::filesystem::path process = file_of_certificate(path, certificate.process);
+    std::error_code ignored;
+    options.process = std::filesystem::is_regular_file(process, ignored) ? process.string() : certificate.process;
     options.tolerances = true;
     options.kinematic = certificate.toleranced->duration > 0;
     options.time = options.kinematic ? certificate.toleranced->duration : -1;
@@ -111,7 +114,8 @@ SourceCheck check_source(const Certificate& certificate, const std::string& path
     const std::string untold = ": it cannot be determined whether its meshes have changed since";
     if (!std::filesystem::exists(source)) return {.note = name + ", which it was made from, is not there" + untold};
     input.check_start = false;
-    if (certificate.toleranced) return check_toleranced_source(certificate, source.string(), name, input);
+    if (input.scenario.empty()) input.scenario = certificate.scenario;
+    if (certificate.toleranced) return check_toleranced_source(certificate, path, source.string(), name, input);
     const Result<reading::LoadedModel> loaded = reading::load_model(source.string(), input);
     if (!loaded) {
         const Error& error = loaded.errors().front();
@@ -137,9 +141,9 @@ SourceCheck check_source(const Certificate& certificate, const std::string& path
     return {name, "stale: the joints of " + name + ", their limits or the start poses have changed since"};
 }
 
-// A certificate does not say of which of a design's scenarios it is; the first is read unless another one is asked for.
-std::string other_scenarios(const std::string& source, const reading::InputOptions& input) {
-    if (!input.scenario.empty() || !reading::is_design_file(source)) return {};
+// A certificate of an older version does not say of which of a design's scenarios it is; the first is read unless another one is asked for.
+std::string other_scenarios(const std::string& source, const Certificate& certificate, const reading::InputOptions& input) {
+    if (!input.scenario.empty() || !certificate.scenario.empty() || !reading::is_design_file(source)) return {};
     const Result<reading::DesignFile> file = reading::read_design(source, {.mesh_dirs = input.mesh_dirs, .programs = input.programs});
     if (!file || file->design.scenarios.size() < 2) return {};
     std::vector<std::string> names;
@@ -227,7 +231,7 @@ CheckedCertificate check_certificate_file(const std::string& path, const core::r
     checked.source = source.source;
     if (!source.fault.empty()) {
         const std::string file = asked_source.empty() ? file_of_certificate(path, certificate.source).string() : asked_source;
-        add_stale("/source", source.fault + other_scenarios(file, input));
+        add_stale("/source", source.fault + other_scenarios(file, certificate, input));
     }
     if (!source.note.empty()) checked.notes.push_back(source.note);
     if (source.source.empty() && states_its_domain(certificate)) doubt_domain(checked);

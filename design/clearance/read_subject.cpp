@@ -223,6 +223,7 @@ Result<Subject> from_tolerances(const SubjectOptions& options, const reading::In
             "goes as assembled, with --ranges or with --kinematic: over a motion that depends on the parts nothing can be proven of "
             "all of them"};
     reading::DesignReadOptions read{.mesh_dirs = input.mesh_dirs, .programs = input.programs, .as_made = true};
+    read.process = options.process;
     Result<reading::DesignFile> file = reading::read_design(options.path, read);
     if (!file) return file.errors();
     if (watch.on_warnings) watch.on_warnings(file->warnings);

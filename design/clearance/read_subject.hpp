@@ -23,6 +23,7 @@ struct SubjectOptions {
     bool kinematic = false;         ///< follow scripts, no dynamics
     bool ranges = false;            ///< all positions of the joints, in place of a path
     bool tolerances = false;        ///< all parts within the design's tolerances; beside `ranges` over these together
+    std::string process;            ///< within tolerances: what makes the parts, in place of the design's; empty: the design's
     int steps = -1;                 ///< of the motion; negative: the scene's
     double time = -1;               ///< [s], instead of steps
 };

@@ -54,8 +54,8 @@ Result<AskedLengths> read_lengths(const ClearanceArguments& options) {
     return lengths;
 }
 
-ClearanceFiles files_of(const ClearanceArguments& options) {
-    return {options.subject.path, options.csv, options.certificate, options.out, options.no_report};
+ClearanceFiles files_of(const ClearanceArguments& options, const CommonOptions& common) {
+    return {options.subject.path, options.csv, options.certificate, options.out, options.no_report, common.scenario, options.pairs.process};
 }
 
 /// Says why meshes that are one body are not two parts.
@@ -70,7 +70,7 @@ std::string why_not_two(const Subject& subject) {
 int run_clearance(const ClearanceArguments& options, const CommonOptions& common, Console& console) {
     const Result<AskedLengths> lengths = read_lengths(options);
     if (!lengths) return console.input_errors(lengths.errors());
-    if (const Errors errors = try_files(files_of(options)); !errors.empty()) return console.input_errors(errors);
+    if (const Errors errors = try_files(files_of(options, common)); !errors.empty()) return console.input_errors(errors);
     std::optional<Baseline> baseline;
     if (!options.baseline.empty()) {
         Result<Baseline> read = Baseline::read(options.baseline);
@@ -101,7 +101,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     if (baseline) compare_with(*std::move(baseline), report);
     Json json = report_json(report, *subject);
     std::string text = report_text(report, *subject, options.explain, console);
-    console.unwritten(leave_files(files_of(options), *subject, report, common, console, json, text));
+    console.unwritten(leave_files(files_of(options, common), *subject, report, common, console, json, text));
     for (Check& check : report_checks(report, *subject, options.subject.path)) console.found(std::move(check));
     console.result(json, text);
     return exit_code(report.status);
@@ -111,8 +111,10 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("FILE", options.files, "Scene, design (at its values), or trajectory; or meshes and folders of meshes, in place").required();
     app.option("--unit", options.subject.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
     app.option("--minimum", options.minimum, "Required clearance per side, with its unit: 0.3mm (without any: distances and clashes)");
-    app.option("--process", options.pairs.process,
-               "Required clearance by process (below, or your own NAME.process.json) and size of the parts")
+    app.option(
+           "--process", options.pairs.process,
+           "Required clearance by process (below, or your own NAME.process.json) and size of the parts; with --tolerances also what makes "
+           "them, in place of the design's")
         .words_or(tolerances::known_process_names(), "NAME");
     app.option("--pairs", options.pairs.pairs,
                "Pairs A:B,C:D by names of bodies or groups, A:B=0.4mm with a minimum of its own; `*` for any letters, of the pairs that "
@@ -175,6 +177,7 @@ Command add_clearance(CommandLine& program, const CommonOptions& common) {
         "          fettle clearance examples/slider_crank/slider_crank.scene.json --process fdm --motion --steps 40 --explain");
     return {app, [options, &common](Console& console) {
                 options->subject.path = clearance::trajectory_in(options->files.front()).value_or(options->files.front());
+                if (options->subject.tolerances) options->subject.process = options->pairs.process;
                 options->subject.more.assign(options->files.begin() + 1, options->files.end());
                 return run_clearance(*options, common, console);
             }};

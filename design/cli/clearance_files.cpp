@@ -73,6 +73,8 @@ private:
             certificate.exports = std::move(*named);
         } else if (!judged_a_trajectory()) {
             certificate.source = clearance::name_from_certificate(file, wanted_.judged);
+            certificate.scenario = wanted_.scenario;
+            if (subject_.toleranced) certificate.process = process_named_from(file);
         }
         const std::string beside = clearance::certificate_trajectory(file), path = judged_a_trajectory() ? wanted_.judged : beside;
         if (!judged_a_trajectory()) {
@@ -83,6 +85,13 @@ private:
         told_ += "certificate: " + file + (subject_.ranges ? "" : ", of the path in " + path) + "; check it with fettle validate " + file +
                  (judged_a_trajectory() ? " --trajectory " + path : "") + "\n";
         return core::certificate::add_certificate(files_, file, certificate);
+    }
+
+    // A process is a name that all know, or a file.
+    std::string process_named_from(const std::string& certificate) const {
+        std::error_code ignored;
+        const bool is_file = std::filesystem::exists(wanted_.process, ignored);
+        return is_file ? clearance::name_from_certificate(certificate, wanted_.process) : wanted_.process;
     }
 
     // Where nothing is proven, the certificate of an earlier run must not stay, nor its trajectory, unless that is what was judged.

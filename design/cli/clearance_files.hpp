@@ -15,6 +15,7 @@ struct ClearanceFiles {
     std::string judged;                 ///< file that was judged; a trajectory stays where it is
     std::string csv, certificate, out;  ///< empty: not wanted
     bool no_report = false;             ///< leave the folder's report.html out
+    std::string scenario, process;      ///< for the certificate, of a design
 };
 
 /// What would be found out only after the work: files that cannot be written, or are somebody else's.

@@ -9,6 +9,7 @@
 #include "core/clearance/clearance.hpp"
 #include "core/clearance/range_clearance.hpp"
 #include "core/files/json_dump.hpp"
+#include "design/clearance/ask_ranges.hpp"
 #include "design/clearance/report_json.hpp"
 #include "design/python/arguments.hpp"
 #include "design/python/bindings.hpp"
@@ -298,6 +299,47 @@ void bind_question(py::module_& module) {
         "0.1% of the least minimum. witnesses: all that come as close. baseline: an earlier report's file. proof: with its certificate.");
 }
 
+void bind_ranges_question(py::module_& module) {
+    module.def(
+        "free_ranges",
+        [](const Model& model, const py::object& joints, const py::object& minimum, const py::object& ignore, bool anywhere,
+           const py::object& angle, const py::object& length, const py::object& reach, const py::object& progress) {
+            clearance::RangesQuestion question;
+            question.joints = texts_from(joints, "joints");
+            std::erase(question.joints, "");
+            question.ignore = listed(texts_from(ignore, "ignore"));
+            question.options.others_anywhere = anywhere;
+            const auto read = [](const py::object& given, Dimension dimension, const char* name, double& out) {
+                if (given.is_none()) return;
+                out = quantity_from(given, dimension, name);
+                check_above(name, out, 0);
+            };
+            if (!minimum.is_none()) {
+                question.options.minimum = quantity_from(minimum, Dimension::length, "minimum");
+                check_at_least("minimum", question.options.minimum, 0);
+            }
+            read(angle, Dimension::angle, "angle", question.options.angle);
+            read(length, Dimension::length, "length", question.options.length);
+            if (!reach.is_none()) read(reach, Dimension::length, "reach", question.reach.emplace());
+            Watch watch(progress);
+            const Result<answers::RangesAnswer> answer = [&] {
+                const py::gil_scoped_release unlocked;
+                question.on_joint = watch.on_count();
+                question.options.should_stop = watch.should_stop();
+                return clearance::ask_ranges(model, question);
+            }();
+            watch.end();
+            if (!answer) raise_if_any(with_arguments(answer.errors()));
+            return py::module_::import("json").attr("loads")(core::files::dumped(answers::ranges_json(*answer)));
+        },
+        py::arg("model"), py::arg("joints") = "", py::arg("minimum") = py::none(), py::arg("ignore") = "", py::arg("anywhere") = false,
+        py::arg("angle") = py::none(), py::arg("length") = py::none(), py::arg("reach") = py::none(), py::arg("progress") = py::none(),
+        "What `fettle ranges` asks and answers, a dict with the keys of its JSON (SI): from where to where each joint is proven free, and "
+        "what stops it, whatever its limits. joints: names, or a name; all by default. minimum: clearance that is kept. ignore: \"A:B\" or "
+        "a list of such. anywhere: the other joints anywhere within their limits, not where they start. angle, length: how near an end is "
+        "found (0.01 deg, 0.01 mm). reach: how far slides are looked at. progress(done, of).");
+}
+
 }  // namespace
 
 void bind_clearance(py::module_& module) {
@@ -353,6 +395,7 @@ void bind_clearance(py::module_& module) {
         py::arg("model"), "The start as a trajectory without steps.");
     bind_ranges(module);
     bind_question(module);
+    bind_ranges_question(module);
 }
 
 }  // namespace fettle::design::python

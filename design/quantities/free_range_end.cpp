@@ -53,7 +53,7 @@ std::string names_of(const Model& model, int a, int b) { return "`" + model.bodi
 }  // namespace
 
 Result<JointRanges> FreeRangeEnd::ranges_of(const Model& model) const {
-    return core::clearance::joint_ranges(model, of_.others_anywhere ? std::nullopt : std::optional(model.diagonal));
+    return core::clearance::joint_ranges(model, of_.others_anywhere ? std::nullopt : std::optional(of_.reach));
 }
 
 Measurement FreeRangeEnd::value(const Simulated& s) const {
@@ -66,7 +66,7 @@ Measurement FreeRangeEnd::value(const Simulated& s) const {
         return none;
     }
     const FreeRange found = core::clearance::free_ranges(s.model, *ranges, {*coordinate}, core::clearance::searched_pairs(s.model),
-                                                         s.model.diagonal, options_of(of_, s.model))
+                                                         of_.reach, options_of(of_, s.model))
                                 .front();
     const End& end = of_.is_above ? found.above : found.below;
     Measurement out{end.free, end.free, end.free, true, std::nullopt, {}, {}};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The value of a joint's coordinate up to which it is proven free, on one way from its start, with everything else as assembled
 /// (core/clearance/free_ranges.hpp): how far a lid opens before it meets its frame. The bodies keep a clearance on the way. Where nothing
-/// is met within a turn, or within the size of the scene for a slide, it is what was looked at, and changes with nothing.
+/// is met within a turn, or within the reach of a slide, it is how far was looked, and changes with nothing.
 ///
 /// It is proven: the true end lies in [lower, upper]. The value within them is where the distance at the witness is the clearance, by
 /// Newton's method, so that it and its derivative (adjoint/clearance/range_adjoint.hpp) are those of one smooth function.
@@ -22,6 +22,7 @@ public:
         Dimension dimension = Dimension::angle;  ///< of its coordinate
         bool is_above = true;                    ///< the way on which the coordinate grows
         double clearance = 1e-6;                 ///< that the bodies keep [m]; > 0
+        double reach = 1;                        ///< how far a slide is looked at [m]
         bool others_anywhere = false;            ///< the other joints anywhere within their limits
     };
 

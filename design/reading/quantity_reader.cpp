@@ -239,6 +239,7 @@ std::shared_ptr<const Quantity> read_free_range(const JsonNode& node, const Read
     const auto end = node.require("end").choice({"above", "below"});
     quantities::FreeRangeEnd::Of of;
     if (const auto kept = node["clearance"].quantity(Dimension::length, context.length_unit, core::files::positive)) of.clearance = *kept;
+    if (const auto reach = node["reach"].quantity(Dimension::length, context.length_unit, core::files::positive)) of.reach = *reach;
     of.others_anywhere = node["anywhere"].boolean().value_or(false);
     if (joint == nullptr || !end) return nullptr;
     of.joint = joint->name;
@@ -517,7 +518,7 @@ const std::vector<QuantityType>& quantity_table() {
         {"joint_position", with_reduction({"joint"}), read_joint_position, joint_position_name, "rad or m",
          "angle of a joint that turns, travel of one that slides, at the start and the steps' ends; angles count turns"},
         {"free_range",
-         {"joint", "end", "clearance", "anywhere"},
+         {"joint", "end", "clearance", "reach", "anywhere"},
          read_free_range,
          free_range_name,
          "rad or m",

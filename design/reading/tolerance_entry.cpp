@@ -172,8 +172,8 @@ private:
     std::optional<Process> usual_process() const {
         if (!units_.processes.usual)
             node_.fail(ErrorCode::missing_key,
-                       "which process makes it? Say \"process\": \"fdm\" beside `tolerances` for the whole design, or in the entry (fettle "
-                       "tolerance takes --process fdm too)");
+                       "which process makes it? Say \"process\": \"fdm\" beside `tolerances` for the whole design, or in the entry, or "
+                       "--process fdm");
         return units_.processes.usual;
     }
 

@@ -239,6 +239,17 @@ def clearance(
     proof: bool = ...,
     progress: Optional[Count] = ...,
 ) -> ClearanceReport: ...
+def free_ranges(
+    model: Model,
+    joints: Union[str, Sequence[str]] = ...,
+    minimum: Optional[Number] = ...,
+    ignore: Union[str, Sequence[str]] = ...,
+    anywhere: bool = ...,
+    angle: Optional[Number] = ...,
+    length: Optional[Number] = ...,
+    reach: Optional[Number] = ...,
+    progress: Optional[Count] = ...,
+) -> Dict[str, Any]: ...
 def as_assembled(model: Model) -> Trajectory: ...
 def joint_ranges(model: Model) -> JointRanges: ...
 def certify_ranges(

@@ -298,12 +298,43 @@ TEST_CASE("validate: a certificate of another scenario than the first is not cal
     const Answer made = run("clearance " + design + " --scenario two --ranges --pairs a:b --minimum 1mm --certificate " + file);
     CAPTURE(made.out);
     REQUIRE(made.code == 0);
+    CHECK(Json::parse(contents(file))["scenario"] == "two");
+    CHECK(run("validate " + file).code == 0);
+    CHECK(run("validate " + file + " --scenario two").code == 0);
+    CHECK(run("validate " + file + " --scenario one").says("stale"));
+    // One of an older version does not say it.
+    Json older = Json::parse(contents(file));
+    older.erase("scenario");
+    folder.write("two.certificate.json", older.dump());
     const Answer stale = run("validate " + file);
     CAPTURE(stale.out);
     CHECK(stale.code == 1);
     CHECK(stale.says("another scenario than the first, which was read: --scenario one, --scenario two"));
     CHECK(run("validate " + file + " --scenario two").code == 0);
     CHECK_FALSE(run("validate " + file + " --scenario one").says("another scenario"));
+}
+
+TEST_CASE("validate: a certificate within tolerances remembers the process that it was made for") {
+    Folder folder;
+    folder.write("fit.scene.json", R"json({"fettle_scene": 1, "units": "mm", "timestep": 0.1, "variables": {"far": "40 mm"}, "bodies": [
+        {"name": "a", "type": "static", "shape": {"part": "box", "dimensions": {"size_x": 20, "size_y": 4, "size_z": 4}}},
+        {"name": "b", "density": 1000, "position": ["= far", 0, 0], "shape": {"part": "box", "dimensions": {"size_x": 4, "size_y": 4, "size_z": 4}}}]})json");
+    const std::string design = folder.write("fit.design.json", R"json({"fettle_design": 1, "scene": "fit.scene.json", "units": "mm",
+        "parameters": [{"name": "far", "lower": 30, "upper": 50}], "objective": [{"type": "mass", "bodies": ["b"]}],
+        "simulation": {"steps": 2}, "tolerances": {"far": "length"}})json");
+    const std::string file = folder.file("fit.certificate.json"), ask = "clearance " + design + " --tolerances --certificate " + file;
+    CHECK(run(ask + " --minimum 1mm", true).says("--process fdm"));
+    const Answer made = run(ask + " --process fdm --minimum 1mm");
+    CAPTURE(made.out);
+    REQUIRE(made.code == 0);
+    const Answer valid = run("validate " + file);
+    CAPTURE(valid.out);
+    CHECK(valid.code == 0);
+    Json other = Json::parse(contents(file));
+    CHECK(other["process"] == "fdm");
+    other["process"] = "sla";
+    folder.write("fit.certificate.json", other.dump());
+    CHECK(run("validate " + file).says("stale"));
 }
 
 }  // namespace fettle::design::cli::validate_command_test

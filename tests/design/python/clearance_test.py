@@ -110,3 +110,16 @@ def test_what_is_refused_is_named_as_the_argument_is():
         fettle.clearance(model, fettle.as_assembled(model))
     with pytest.raises(fettle.Error, match="touches are not reported"):
         fettle.clearance(arm(), ranges=True, allow_touch="post:bar")
+
+
+def test_free_ranges_are_what_the_command_says():
+    model = fettle.build_model(fettle.read_scene(TWO_ARM), check_start=False)
+    found = fettle.free_ranges(model, joints="left_elbow", minimum="1mm", angle="0.1deg")
+    told = subprocess.run(
+        [PROGRAM, "ranges", TWO_ARM, "--joint", "left_elbow", "--minimum", "1mm", "--tolerance", "0.1deg", "--json"],
+        capture_output=True, text=True, check=True)
+    assert found == json.loads(told.stdout)
+    with pytest.raises(fettle.Error, match="left_elbow"):
+        fettle.free_ranges(model, joints=["left_elbw"])
+    with pytest.raises(fettle.Error, match="0 or more"):
+        fettle.free_ranges(model, minimum=-1.0)

@@ -262,4 +262,55 @@ TEST_CASE("a clearance over the ranges of joints has the derivative of its least
         }
     }
 }
+
+TEST_CASE("clearance over ranges: coordinates that gears couple have derivatives, in their ratios and limits too", "[quantity]") {
+    // A wheel drives an arm, and the arm a finger that turns the other way.
+    const std::string scene = R"({
+      "fettle_scene": 1, "units": "mm", "gravity": [0, 0, 0], "timestep": 0.01, "end_time": 0.01,
+      "variables": {"long": "60mm", "post_x": "45mm", "pivot_x": "2mm", "ratio": 0.6, "other": -0.8, "high": "40deg", "stop": "70 deg"},
+      "bodies": [
+        {"name": "wheel", "density": 1240, "position": [-60, 0, 0], "shape": {"part": "cylinder"}},
+        {"name": "arm", "density": 1240, "position": ["= long / 2", 0, 0], "shape": {"part": "box", "dimensions": {"size_x": "= long", "size_y": 8, "size_z": 6}}},
+        {"name": "finger", "density": 1240, "position": [25, 80, 0], "rotation": [0, 0, -20], "shape": {"part": "box", "dimensions": {"size_x": 50, "size_y": 8, "size_z": 6}}},
+        {"name": "post", "type": "static", "position": ["= post_x", -45, 0], "rotation": [0, 20, 17], "shape": {"part": "box", "dimensions": {"size_x": 14, "size_y": 10, "size_z": 24}}}
+      ],
+      "joints": [
+        {"name": "crank", "type": "revolute", "b": "wheel", "point": [-60, 0, 0], "axis": [0, 0, 1], "limits": [-60, "= high"]},
+        {"name": "pivot", "type": "revolute", "b": "arm", "point": ["= pivot_x", 1, 0], "axis": [0, 0, 1]},
+        {"name": "knuckle", "type": "revolute", "b": "finger", "point": [0, 85, 0], "axis": [0, 0, 1], "limits": [-60, "= stop"]},
+        {"name": "g1", "type": "gear", "of": ["crank", "pivot"], "ratio": "= ratio"},
+        {"name": "g2", "type": "gear", "of": ["pivot", "knuckle"], "ratio": "= other"}
+      ]
+    })";
+    const std::string design =
+        R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm", "simulation": {"clearance_tolerance": 1e-9},
+          "parameters": [{"name": "long", "lower": 50, "upper": 70}, {"name": "post_x", "lower": 30, "upper": 50},
+            {"name": "pivot_x", "lower": -5, "upper": 5}, {"name": "ratio", "lower": 0.4, "upper": 0.8, "unit": "1"},
+            {"name": "other", "lower": -1, "upper": -0.5, "unit": "1"}, {"name": "high", "lower": 10, "upper": 60, "unit": "deg"}],
+          "objective": [{"type": "mass", "bodies": ["arm"]}],
+          "constraints": [{"type": "clearance", "a": "arm", "b": "post", "minimum": 1, "ranges": true},
+                          {"type": "clearance", "a": "arm", "b": "finger", "minimum": 0.01, "ranges": true},
+                          {"type": "clearance", "a": "finger", "b": "post", "minimum": 0.01, "ranges": true}]})";
+    const auto problem = tests::design_support::problem_of(scene, design);
+    const VectorX p = description::values_of(problem.design().parameters);
+    const auto at = problem.rest_rows(p);
+    REQUIRE(at);
+    CAPTURE(at->values.transpose(), at->jacobian);
+    CHECK((at->values.array() > 1e-4).all());
+    CHECK(at->jacobian.col(3).cwiseAbs().maxCoeff() > 1e-4);  // by the ratios
+    CHECK(at->jacobian.col(4).cwiseAbs().maxCoeff() > 1e-4);
+    for (Eigen::Index k = 0; k < p.size(); ++k) {
+        const double h = 1e-4 * (problem.design().parameters[k].upper - problem.design().parameters[k].lower);
+        VectorX above = p, below = p;
+        above[k] += h;
+        below[k] -= h;
+        const auto one = problem.rest_rows(above), other = problem.rest_rows(below);
+        REQUIRE((one && other));
+        for (Eigen::Index i = 0; i < at->values.size(); ++i) {
+            INFO(problem.design().constraints[i].name << " by " << problem.design().parameters[k].name);
+            CHECK(at->jacobian(i, k) == Approx((one->values[i] - other->values[i]) / (2 * h)).epsilon(1e-6).margin(1e-9));
+        }
+    }
+}
+
 }  // namespace fettle::design::quantities::clearance_test

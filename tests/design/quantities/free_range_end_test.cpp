@@ -51,11 +51,12 @@ TEST_CASE("free_range: how far a lid opens and closes, and a drawer goes, by han
     const DesignProblem problem = problem_of(scene, design(ends));
     const DesignEvaluation at = problem.evaluate(description::values_of(problem.design().parameters));
     REQUIRE(at.usable);
-    // Upwards the upper corner (55, 5) mm from the hinge meets the frame at 30 mm, downwards the lower one (55, 1) the base at 0.
+    // Upwards the upper corner (55, 5) mm from the hinge meets the frame at 30 mm, downwards the lower face, 1 mm above it, the base's
+    // edge.
     CHECK(at.constraints[0].value == Approx(angle_of(0.055, 0.005, 0.03 - 1e-6)).epsilon(1e-9));
-    CHECK(at.constraints[1].value == Approx(angle_of(0.055, 0.001, 0.2e-3)).epsilon(1e-9));
+    CHECK(at.constraints[1].value == Approx(-std::asin(0.8e-3 / 0.05)).epsilon(1e-9));
     CHECK(at.constraints[2].value == Approx(0.0395).epsilon(1e-9));
-    CHECK(at.constraints[3].value < -0.09);  // nothing is there
+    CHECK(at.constraints[3].value == Approx(-1));  // nothing is there
     for (int i = 0; i < 4; ++i) {
         CHECK(at.constraints[i].is_proven);
         CHECK(at.constraints[i].lower <= at.constraints[i].value);
