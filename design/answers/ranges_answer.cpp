@@ -56,6 +56,10 @@ private:
     int decimals_;
 };
 
+bool starts_in_a_clash(const FreeRange& range) {
+    return std::any_of(range.not_searched.begin(), range.not_searched.end(), [](const NotSearched& each) { return !each.is_joined; });
+}
+
 std::string length_text(double metres) { return formatted("%.3g mm", metres / millimetre); }
 
 std::string names_of(const RangesAnswer& answer, int a, int b) { return answer.model.bodies[a].name + ":" + answer.model.bodies[b].name; }
@@ -88,13 +92,20 @@ std::string end_line(const RangesAnswer& answer, const FreeRange& range, const F
     return way + "undecided beyond " + numbers.nearest(end.free) + " " + numbers.name() + ", for " + pair + why + "\n";
 }
 
-std::string limits_line(const RangesAnswer& answer, const FreeRange& range) {
-    if (!answer.ranges.has_limits[range.coordinate]) return {};
-    const LinkageCoordinate& own = coordinate_of(answer, range);
+// What could be written into the scene, where that says more than stands there.
+std::string as_limits(const FreeRange& range, const Numbers& numbers) {
+    if (range.turns_freely || starts_in_a_clash(range)) return {};
+    const auto quoted = [&](double value, Towards towards) { return "\"" + numbers.rounded(value, towards) + " " + numbers.name() + "\""; };
+    return "   as limits: \"limits\": [" + quoted(range.below.free, Towards::up) + ", " + quoted(range.above.free, Towards::down) + "]\n";
+}
+
+std::string limits_lines(const RangesAnswer& answer, const FreeRange& range) {
     const Numbers numbers(answer, range);
+    if (!answer.ranges.has_limits[range.coordinate]) return as_limits(range, numbers);
+    const LinkageCoordinate& own = coordinate_of(answer, range);
     const std::string limits = numbers.nearest(own.low) + " to " + numbers.nearest(own.high) + " " + numbers.name();
     const bool inside = range.turns_freely || (range.below.free <= own.low && own.high <= range.above.free);
-    return "   its limits, " + limits + (inside ? ", lie within\n" : ", go beyond\n");
+    return "   its limits, " + limits + (inside ? ", lie within\n" : ", go beyond\n" + as_limits(range, numbers));
 }
 
 std::string start_lines(const RangesAnswer& answer, const FreeRange& range) {
@@ -105,10 +116,6 @@ std::string start_lines(const RangesAnswer& answer, const FreeRange& range) {
                                : ": closer than that as assembled: free nowhere\n");
     for (const auto& [a, b] : range.touching) out += "   " + names_of(answer, a, b) + ": they touch as assembled, and come apart\n";
     return out;
-}
-
-bool starts_in_a_clash(const FreeRange& range) {
-    return std::any_of(range.not_searched.begin(), range.not_searched.end(), [](const NotSearched& each) { return !each.is_joined; });
 }
 
 Json end_json(const RangesAnswer& answer, const FreeRangeEnd& end) {
@@ -201,7 +208,7 @@ std::string ranges_text(const RangesAnswer& answer) {
             text += end_line(answer, range, range.below, true);
             text += end_line(answer, range, range.above, false);
         }
-        text += start_lines(answer, range) + limits_line(answer, range);
+        text += start_lines(answer, range) + limits_lines(answer, range);
     }
     text += answer.asked.others_anywhere ? "the other joints anywhere within their limits" : "the other joints where they start";
     if (answer.asked.minimum > 0) text += ", at least " + length_text(answer.asked.minimum) + " between the bodies";

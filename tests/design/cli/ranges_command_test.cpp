@@ -51,6 +51,9 @@ TEST_CASE("ranges: a lid is free from the base that it lies on to the frame abov
     CHECK(text.says("hinge: free from 0 to 28.7"));
     CHECK(text.says("above: at 28.8"));
     CHECK(text.says("its limits, 0 to 60 deg, go beyond"));
+    const std::string line = text.out.substr(text.out.find("\"limits\": ["), text.out.find("]\n") - text.out.find("\"limits\": [") + 1);
+    const std::string limited = folder.write("limited.scene.json", replaced(lid_scene, "\"limits\": [0, 60]", line));
+    CHECK(run("ranges " + limited).says("deg, lie within"));
     CHECK(text.says("lid:base: they touch as assembled, and come apart"));
     const Answer kept = run("ranges " + scene + " --minimum 1mm --tolerance 0.001deg --ignore lid:base");
     CAPTURE(kept.out);
