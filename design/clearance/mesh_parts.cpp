@@ -10,6 +10,7 @@
 #include "core/mesh_files/mesh_reader.hpp"
 #include "core/setup/build_model.hpp"
 #include "core/solids/mesh_repair.hpp"
+#include "core/solids/shells.hpp"
 
 namespace fettle::design::clearance {
 
@@ -80,18 +81,36 @@ std::string body_name(const std::string& of_file, core::files::UniqueNames& name
     return names.unique(name);
 }
 
-core::scene::Body body_of(Mesh mesh, const std::string& path, const reading::InputOptions& input, core::files::UniqueNames& names,
-                          std::vector<std::string>& warnings) {
+struct NamedMesh {
+    std::string name;
+    Mesh mesh;
+};
+
+// A mesh that a file has, mended; of one that is split each solid.
+std::vector<NamedMesh> solids_of(NamedMesh whole, const reading::InputOptions& input, bool split, core::files::UniqueNames& names,
+                                 std::vector<std::string>& warnings) {
+    if (!input.strict)
+        for (const std::string& done : core::solids::repair_mesh(whole.mesh)) warnings.push_back("body `" + whole.name + "`: " + done);
+    std::vector<Mesh> solids;
+    if (split) solids = core::solids::split_solids(whole.mesh);
+    std::vector<NamedMesh> out;
+    if (solids.size() < 2) {
+        out.push_back(std::move(whole));
+        return out;
+    }
+    for (std::size_t i = 0; i < solids.size(); ++i)
+        out.push_back({names.unique(whole.name + "#" + std::to_string(i + 1)), std::move(solids[i])});
+    return out;
+}
+
+core::scene::Body body_of(NamedMesh solid, const std::string& path, const reading::InputOptions& input) {
     core::scene::Body body;
-    body.name = body_name(mesh.name, names);
+    body.name = std::move(solid.name);
     body.where = path;
     body.type = core::scene::BodyType::static_body;
     body.density_given = false;
-    if (!input.strict) {
-        body.mesh_policy = core::scene::MeshPolicy::tolerant;
-        for (const std::string& done : core::solids::repair_mesh(mesh)) warnings.push_back("body `" + body.name + "`: " + done);
-    }
-    body.mesh = std::move(mesh);
+    if (!input.strict) body.mesh_policy = core::scene::MeshPolicy::tolerant;
+    body.mesh = std::move(solid.mesh);
     return body;
 }
 
@@ -127,7 +146,8 @@ bool are_meshes(const std::vector<std::string>& paths) {
     return core::mesh_files::has_mesh_extension(paths.front());
 }
 
-Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const reading::InputOptions& input) {
+Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const reading::InputOptions& input,
+                              bool split) {
     MeshParts subject;
     const Result<std::vector<std::string>> files = mesh_files(paths, subject.warnings);
     if (!files) return files.errors();
@@ -153,10 +173,11 @@ Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::
         for (Mesh& mesh : *parts) {
             constexpr double told_with_the_model = 10;  // [m]: of larger bodies check_scene says it
             const double side = longest_side(mesh);
-            scene.bodies.push_back(body_of(std::move(mesh), path, input, names, subject.warnings));
+            const std::string name = body_name(mesh.name, names);
             const std::string doubt = doubted_side(side, core::mesh_files::states_its_unit(path) ? "" : unit);
-            if (!doubt.empty() && side <= told_with_the_model)
-                subject.warnings.push_back("body `" + scene.bodies.back().name + "`: " + doubt);
+            for (NamedMesh& solid : solids_of({name, std::move(mesh)}, input, split, names, subject.warnings))
+                scene.bodies.push_back(body_of(std::move(solid), path, input));
+            if (!doubt.empty() && side <= told_with_the_model) subject.warnings.push_back("body `" + name + "`: " + doubt);
         }
     }
     if (!errors.empty()) return errors;

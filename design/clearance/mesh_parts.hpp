@@ -35,8 +35,10 @@ struct MeshParts {
 /// stands for the meshes in it, in the order of their names; a warning says that those in folders below it are left out. Meshes
 /// are mended and judged as those of a scene.
 /// @param unit  of files that state none: "mm"; empty: not given.
+/// @param split  each solid of a mesh is a body of its own, with its cavities: "box#1", "box#2", in the order of their first triangles
 /// Errors: of the files; missing_key (--unit is needed), out_of_range (no unit, or fewer than one part), inconsistent (a path that is
 /// neither a mesh nor a folder among meshes).
-Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const reading::InputOptions& input);
+Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const reading::InputOptions& input,
+                              bool split = false);
 
 }  // namespace fettle::design::clearance

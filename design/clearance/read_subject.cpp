@@ -302,12 +302,13 @@ Errors check_inputs(const SubjectOptions& options, bool meshes) {
         return {{ErrorCode::inconsistent, options.more.front(), "several files are judged together only if all are meshes"}};
     const bool is_json = std::filesystem::path(options.path).extension() == ".json";  // a file of another kind is told what it is
     if (!options.unit.empty() && is_json) return {{ErrorCode::inconsistent, "--unit", "is for meshes; this file states its own unit"}};
+    if (options.split) return {{ErrorCode::inconsistent, "--split", "is for meshes; in a scene a body has \"split_components\": true"}};
     return {};
 }
 
-Result<reading::LoadedModel> loaded_meshes(const std::vector<std::string>& paths, const std::string& unit,
+Result<reading::LoadedModel> loaded_meshes(const std::vector<std::string>& paths, const SubjectOptions& options,
                                            const reading::InputOptions& input, Subject& subject) {
-    Result<MeshParts> meshes = load_meshes(paths, unit, input);
+    Result<MeshParts> meshes = load_meshes(paths, options.unit, input, options.split);
     if (!meshes) return meshes.errors();
     subject.files = std::move(meshes->files);
     reading::LoadedModel loaded;
@@ -333,7 +334,7 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
     reading::InputOptions any_start = input;
     any_start.check_start = false;
     Result<reading::LoadedModel> loaded =
-        meshes ? loaded_meshes(paths, options.unit, input, subject) : reading::load_model(options.path, kind, any_start);
+        meshes ? loaded_meshes(paths, options, input, subject) : reading::load_model(options.path, kind, any_start);
     if (!loaded) return loaded.errors();
     if (watch.on_warnings) watch.on_warnings(loaded->warnings);
     if (options.ranges) {

@@ -18,6 +18,7 @@ struct SubjectOptions {
     std::string path;               ///< scene, design, trajectory, mesh or folder of meshes
     std::vector<std::string> more;  ///< meshes beside it
     std::string unit;               ///< of meshes that state none
+    bool split = false;             ///< of meshes: each solid is a body of its own
     std::string poses, poses_unit;  ///< file of poses, and the unit of its lengths where it does not say; empty: none
     bool motion = false;            ///< simulate a scene or design
     bool kinematic = false;         ///< follow scripts, no dynamics

@@ -64,7 +64,7 @@ std::string why_not_two(const Subject& subject) {
     const int solids = core::solids::solids_of_shells(subject.model.bodies.front().mesh).count;
     if (solids < 2) return "is one part, and a clearance is between two: " + remedy;
     return "is one part of " + std::to_string(solids) + " solids, and a clearance is between two parts: in a scene, its body has " +
-           "\"split_components\": true, which makes each solid a body of its own; or " + remedy;
+           "\"split_components\": true, and here --split, which makes each solid a body of its own; or " + remedy;
 }
 
 int run_clearance(const ClearanceArguments& options, const CommonOptions& common, Console& console) {
@@ -110,6 +110,8 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
 void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("FILE", options.files, "Scene, design (at its values), or trajectory; or meshes and folders of meshes, in place").required();
     app.option("--unit", options.subject.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
+    app.flag("--split", options.subject.split,
+             "Each solid of a mesh is a body of its own, with its cavities: box#1, box#2 (a print in place is one file)");
     app.option("--minimum", options.minimum, "Required clearance per side, with its unit: 0.3mm (without any: distances and clashes)");
     app.option(
            "--process", options.pairs.process,

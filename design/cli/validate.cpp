@@ -92,7 +92,7 @@ Verdict validate_mesh_file(const std::string& path, const std::string& unit, boo
                   has_unit ? " mm^3" : "; the file states no unit: in a scene it is that of `mesh_unit` or `units`, here of --unit");
     if (solids > 1)
         verdict.text += "  " + std::to_string(solids) + " solids that do not hang together: one body in a scene, or with " +
-                        "\"split_components\": true one each\n";
+                        "\"split_components\": true one each; fettle clearance --split judges them against each other\n";
     return verdict;
 }
 

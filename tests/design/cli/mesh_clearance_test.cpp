@@ -120,6 +120,34 @@ TEST_CASE("clearance: a folder of meshes, all pairs of it") {
     CHECK(run("clearance " + boxes.file("cad/part.step") + " --unit mm --json").json()["errors"][0]["code"] == "unsupported");
 }
 
+TEST_CASE("clearance --split: what is printed in place as one file is judged solid by solid") {
+    const Boxes boxes;
+    core::geometry::Mesh row = boxes.a;
+    for (const core::geometry::Mesh* part : {&boxes.b, &boxes.c}) {
+        const auto count = static_cast<int>(row.vertices.cols());
+        Matrix3X x(3, count + part->vertices.cols());
+        x << row.vertices, part->vertices;
+        auto triangles = row.triangles;
+        for (const auto& t : part->triangles) triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
+        row = core::geometry::make_mesh("row", x, triangles);
+    }
+    boxes.write("row.stl", core::mesh_files::stl_bytes({{"row", &row}}));
+    const std::string file = boxes.file("row.stl") + " --unit mm --json";
+    CHECK(run("clearance " + file).says("--split"));
+    const Answer answer = run("clearance " + file + " --split --minimum 0.4mm --certificate " + boxes.file("row.certificate.json"));
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+    CHECK(answer.json()["pairs"].size() == 3);
+    CHECK(answer.pair("row#1", "row#2")["lower"].get<double>() == Approx(0.0005).margin(2e-6));
+    CHECK(answer.pair("row#2", "row#3")["lower"].get<double>() == Approx(0.002).margin(2e-6));
+    CHECK(run("validate " + boxes.file("row.certificate.json")).code == 0);
+    CHECK(run("clearance " + boxes.file("cad/base.stl") + " " + boxes.file("row.stl") + " --unit mm --split --pairs 'base:row#3' --json")
+              .pair("base", "row#3")["lower"]
+              .get<double>() == Approx(0.012).margin(2e-6));
+    const std::string scene = boxes.write("a.scene.json", R"({"fettle_scene": 1, "units": "mm", "timestep": 0.1, "bodies": []})");
+    CHECK(run("clearance " + scene + " --split", true).says("--split"));
+}
+
 TEST_CASE("clearance: a 3MF's build items are the placement, and names that are taken are numbered") {
     const Boxes boxes;
     MeshPart first{"wheel", &boxes.a}, second{"wheel", &boxes.a}, third{"a:b,c", &boxes.a};
