@@ -64,8 +64,7 @@ public:
         for (const Joint& joint : model_.mechanism.joints)
             if (!joint.is_motor && joint.frame_a >= 0) joints_.push_back(&joint);
         if (joints_.empty())
-            return base::Error{ErrorCode::missing_key, "joints",
-                               "there is no joint, so there are no positions to look at: leave out --ranges"};
+            return base::Error{ErrorCode::missing_key, "joints", "there is no joint that moves, so there are no positions to look at"};
         out_.linkage.bodies.resize(model_.bodies.size());
         out_.joint_of.assign(model_.bodies.size(), -1);
         check_joints();

@@ -75,7 +75,9 @@ std::string joint_names(const LinkageCoordinate& coordinate) {
 std::string meeting_text(const RangesAnswer& answer, const FreeRangeEnd& end) {
     const core::clearance::PairClearance& pair = *end.pair;
     const std::string &a = answer.model.bodies[pair.a].name, &b = answer.model.bodies[pair.b].name;
-    if (pair.overlap && pair.overlap->depth_upper > 0) return a + " is " + length_text(pair.overlap->depth_upper) + " in " + b;
+    const double expected = 10 * answer.asked.length;  // what is deeper is an upper bound of meshes that cannot be cut, and says little
+    if (pair.overlap && pair.overlap->depth_upper > 0 && pair.overlap->depth_upper <= expected)
+        return a + " is " + length_text(pair.overlap->depth_upper) + " in " + b;
     if (pair.is_clash() || !(answer.asked.minimum > 0)) return a + " meets " + b;
     return a + " is " + length_text(pair.upper) + " from " + b + ", closer than " + length_text(answer.asked.minimum);
 }

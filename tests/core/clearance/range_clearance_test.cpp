@@ -260,7 +260,7 @@ TEST_CASE("ranges: flush parts that overlap are a clash, though no edge passes t
     for (const double low : {-0.15, -3.0})
         for (const double place : {33.0, -20.0, 40.0}) {
             const auto at = [](double degrees) {
-                return 0.06 * Vector3(std::cos(degrees * M_PI / 180), std::sin(degrees * M_PI / 180), 0);
+                return Vector3(0.06 * std::cos(degrees * M_PI / 180), 0.06 * std::sin(degrees * M_PI / 180), 0);
             };
             scene::Body pin = bar("pin", 0.004, at(0)), post = bar("post", 0.003, at(place));
             pin.mesh = tests::support::box_mesh({-0.002, -0.001, -0.005}, {0.002, 0.001, 0.005});

@@ -33,6 +33,8 @@ const std::vector<std::string>& commands() {
         "clearance FILE --minimum 0.1mm --certificate OUT.json",
         "clearance FILE FILE --unit mm",
         "clearance FILE --baseline FILE --minimum 0.1mm",
+        "ranges FILE",
+        "ranges FILE --anywhere --minimum 0.1mm",
         "check-resolution FILE",
         "tolerance FILE",
         "gradient FILE",
