@@ -30,7 +30,7 @@ std::vector<JointSpan> joint_spans(const Certificate& certificate) {
     std::vector<JointSpan> out;
     const auto add = [&](const LinkageCoordinate& c) {
         for (const auto& joint : c.joints) {
-            const auto [low, high] = std::minmax(joint.scale * c.low + joint.offset, joint.scale * c.high + joint.offset);
+            const auto [low, high] = std::minmax({joint.scale * c.low + joint.offset, joint.scale * c.high + joint.offset});
             out.push_back({joint.joint, joint.is_angle, c.is_whole_turn, low, high});
         }
     };

@@ -270,7 +270,8 @@ TEST_CASE("clearance --certificate writes a proof that validate accepts, and rej
     CHECK(accepted.json()["pairs"].size() == 2);
     CHECK(accepted.json()["pairs"][0]["lower"] == written.pair("spin", "pin2")["lower"]);
     CHECK(accepted.json()["faults"].empty());
-    for (const auto& pair : accepted.json()["pairs"]) CHECK(pair["minimum"] == 0.4e-3);  // what was asked for is stated
+    const nlohmann::json stated = accepted.json()["pairs"];
+    for (const auto& pair : stated) CHECK(pair["minimum"] == 0.4e-3);  // what was asked for is stated
 
     // Other programs write the keys in another order.
     const std::string sorted = folder.write("sorted.certificate.json", nlohmann::json::parse(contents(file)).dump());

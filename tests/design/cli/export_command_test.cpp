@@ -92,7 +92,8 @@ TEST_CASE("export: a certificate names files of its bodies, and is stale when on
     CAPTURE(good.out);
     CHECK(good.code == 0);
     REQUIRE(good.json()["exports"].size() == 2);
-    for (const auto& exported : good.json()["exports"]) {
+    const auto files = good.json()["exports"];
+    for (const auto& exported : files) {
         CHECK(exported["status"] == "same");
         CHECK(exported["rounding"].get<double>() > 0);
         CHECK(exported["rounding"].get<double>() < 1e-7);
