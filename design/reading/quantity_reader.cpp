@@ -235,6 +235,7 @@ std::shared_ptr<const Quantity> read_joint_position(const JsonNode& node, const 
 }
 
 std::shared_ptr<const Quantity> read_free_range(const JsonNode& node, const ReadContext& context) {
+    const DesignFormulas::Measuring measuring(context.formulas);
     const core::scene::Joint* joint = read_part(node.require("joint"), context.scene.mechanism.joints, "joint");
     const auto end = node.require("end").choice({"above", "below"});
     quantities::FreeRangeEnd::Of of;

@@ -51,6 +51,8 @@ std::vector<Number> numbers() {
         {"contact_torque", "point", R"("body": "box", "of": "floor", "axis": [1, 2, 0.5])", R"(["= L", "= L / 3", 1])", "L", true},
         {"clearance", "from", walls + R"(, "motion": true)", time, "T"},
         {"clearance", "to", walls + R"(, "motion": true)", time, "T"},
+        {"free_range", "clearance", R"("joint": "hinge", "end": "above")", R"("= L")", "L"},
+        {"free_range", "reach", R"("joint": "hinge", "end": "above")", R"("= L")", "L"},
         {"law", "times", R"("of": "length", "values": [1, 2])", R"([0, "= T"])", "T"},
         {"law", "positions", R"("of": "length", "along": "angle", "values": [1, 2])", R"([0, "= far * 1 rad"])", "far"},
         {"law", "values", R"("of": "length", "times": [0, 0.1])", R"([1, "= L"])", "L", true}};
@@ -78,8 +80,9 @@ std::vector<Number> numbers() {
 
 // Words, choices and names; of an expression its formula follows, and its windows are those of the others.
 bool is_no_number(const std::string& type, const std::string& key) {
-    static const std::set<std::string> words{"body",  "a",     "b",    "faces_a",    "faces_b", "motion",  "ranges",    "bodies",
-                                             "joint", "motor", "over", "derivative", "along",   "profile", "expression"};
+    static const std::set<std::string> words{"body",   "a",       "b",          "faces_a", "faces_b", "motion",
+                                             "ranges", "bodies",  "joint",      "motor",   "over",    "derivative",
+                                             "along",  "profile", "expression", "end",     "anywhere"};
     const bool is_name = key == "of" && type != "energy";
     return words.count(key) > 0 || is_name || (type == "energy" && key == "of") || type == "expression";
 }
