@@ -82,4 +82,5 @@ def tolerance(
                 progress(done, len(missing) + to_do)
         shared.close()
         count = None if progress is None else _after(len(missing), progress)
-        return _tolerance(samples_file=samples_file, progress=count, **given)
+        report = _tolerance(samples_file=samples_file, progress=count, **given)
+    return report
