@@ -92,8 +92,10 @@ private:
             const int k = close[i];
             const bool goes_up = up[i].status == PairStatus::clear, goes_down = down[i].status == PairStatus::clear;
             if (!goes_up && !goes_down) {
-                out_.not_searched.push_back({pairs_[k].a, pairs_[k].b, are_joined(k)});
-                if (out_.not_searched.back().is_joined) continue;
+                const bool is_known = there[k].status != PairStatus::undecided, is_joined = are_joined(k);
+                const std::string why = there[k].reason.empty() ? "it is not known whether they are apart" : there[k].reason;
+                out_.not_searched.push_back({pairs_[k].a, pairs_[k].b, is_known ? std::string() : why, is_joined});
+                if (is_joined || !is_known) continue;
             } else {
                 out_.touching.emplace_back(pairs_[k].a, pairs_[k].b);
                 if (goes_up) beside_above_.push_back(k);
@@ -200,6 +202,18 @@ private:
 };
 
 }  // namespace
+
+const NotSearched* FreeRange::clash_at_start() const {
+    const auto found = std::find_if(not_searched.begin(), not_searched.end(),
+                                    [](const NotSearched& each) { return !each.is_joined && each.undecided.empty(); });
+    return found == not_searched.end() ? nullptr : &*found;
+}
+
+bool FreeRange::is_decided() const {
+    const auto is_unknown = [](const NotSearched& each) { return !each.is_joined && !each.undecided.empty(); };
+    return below.kind != FreeRangeEnd::Kind::undecided && above.kind != FreeRangeEnd::Kind::undecided &&
+           std::none_of(not_searched.begin(), not_searched.end(), is_unknown);
+}
 
 std::vector<std::pair<int, int>> searched_pairs(const model::Model& model) {
     std::vector<std::pair<int, int>> out;

@@ -51,7 +51,8 @@ struct FreeRangeEnd {
 /// A pair that the search had to leave out, because no interval from the start on can be free of it.
 struct NotSearched {
     int a = 0, b = 0;
-    bool is_joined = false;  ///< by a joint, which may explain it; else the two meet as assembled, and the coordinate is free nowhere
+    std::string undecided{};  ///< why it is not known whether the two are apart as assembled; empty: they are closer than the minimum
+    bool is_joined = false;   ///< by a joint, which may explain it; else the two meet as assembled, and the coordinate is free nowhere
 };
 
 struct FreeRange {
@@ -61,7 +62,10 @@ struct FreeRange {
     bool turns_freely = false;                    ///< a whole turn is free; below is then the start
     std::vector<std::pair<int, int>> touching{};  ///< meet at the start alone, which the range then leaves out by the accuracy of its ends
     std::vector<NotSearched> not_searched{};
-    bool is_decided() const { return below.kind != FreeRangeEnd::Kind::undecided && above.kind != FreeRangeEnd::Kind::undecided; }
+    /// Are both ends known, of all pairs that no joint joins?
+    bool is_decided() const;
+    /// A pair that no joint joins is closer than the minimum as assembled; null: none is.
+    const NotSearched* clash_at_start() const;
 };
 
 /// The pairs that matter by default: all, but those of one group and those that the scene ignores; the lesser body first.

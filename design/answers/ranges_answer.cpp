@@ -56,9 +56,7 @@ private:
     int decimals_;
 };
 
-bool starts_in_a_clash(const FreeRange& range) {
-    return std::any_of(range.not_searched.begin(), range.not_searched.end(), [](const NotSearched& each) { return !each.is_joined; });
-}
+bool starts_in_a_clash(const FreeRange& range) { return range.clash_at_start() != nullptr; }
 
 std::string length_text(double metres) { return formatted("%.3g mm", metres / millimetre); }
 
@@ -114,8 +112,9 @@ std::string start_lines(const RangesAnswer& answer, const FreeRange& range) {
     std::string out;
     for (const NotSearched& each : range.not_searched)
         out += "   " + names_of(answer, each.a, each.b) +
-               (each.is_joined ? ": not looked at; a joint joins them, and they are closer than that as assembled and beside it\n"
-                               : ": closer than that as assembled: free nowhere\n");
+               (!each.undecided.empty() ? ": not looked at; undecided as assembled: " + each.undecided + "\n"
+                : each.is_joined        ? ": not looked at; a joint joins them, and they are closer than that as assembled and beside it\n"
+                                        : ": closer than that as assembled: free nowhere\n");
     for (const auto& [a, b] : range.touching) out += "   " + names_of(answer, a, b) + ": they touch as assembled, and come apart\n";
     return out;
 }
@@ -145,7 +144,10 @@ Json range_json(const RangesAnswer& answer, const FreeRange& range) {
     for (const auto& joint : own.joints) joints.push_back(joint.joint);
     for (const auto& [a, b] : range.touching) touching.push_back(names_of(answer, a, b));
     for (const NotSearched& each : range.not_searched)
-        not_searched.push_back({{"pair", names_of(answer, each.a, each.b)}, {"reason", each.is_joined ? "joined" : "clash as assembled"}});
+        not_searched.push_back({{"pair", names_of(answer, each.a, each.b)},
+                                {"reason", !each.undecided.empty() ? each.undecided
+                                           : each.is_joined        ? "joined"
+                                                                   : "clash as assembled"}});
     const bool is_angle = own.joints.front().is_angle, is_limited = answer.ranges.has_limits[range.coordinate];
     return {{"joint", own.joints.front().joint},
             {"joints", std::move(joints)},

@@ -129,6 +129,22 @@ TEST_CASE("free ranges: what a joint joins may meet as assembled, anything else 
     CHECK(found.above.free >= angle_of(0.01) - 1.7e-4);
 }
 
+TEST_CASE("free ranges: of an open body it is not known on which side the others are, and that is said") {
+    // A plate within an open box: whether it is inside of it cannot be told.
+    scene::Scene scene = swinging(0.06, 0.06);
+    scene.bodies[1].mesh = box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1});
+    auto triangles = scene.bodies[1].mesh.triangles;
+    triangles.pop_back();
+    scene.bodies[1].mesh = geometry::make_mesh("open", scene.bodies[1].mesh.vertices, triangles);
+    scene.bodies[1].mesh_policy = scene::MeshPolicy::tolerant;
+    const FreeRange found = found_in(scene).front();
+    REQUIRE_FALSE(found.not_searched.empty());
+    CHECK(found.not_searched.front().b == 1);
+    CHECK_FALSE(found.not_searched.front().undecided.empty());
+    CHECK(found.clash_at_start() == nullptr);
+    CHECK_FALSE(found.is_decided());
+}
+
 TEST_CASE("free ranges: the other joints where they start, or anywhere within their limits", "[ranges]") {
     // A second hinge, at the first one's place, bears a bar that swings by 0.3 rad in the way of the first.
     scene::Scene scene = swinging(0.06, 0.06);
