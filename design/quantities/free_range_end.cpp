@@ -70,10 +70,9 @@ Measurement FreeRangeEnd::value(const Simulated& s) const {
                                 .front();
     const End& end = of_.is_above ? found.above : found.below;
     Measurement out{end.free, end.free, end.free, true, std::nullopt, {}, {}};
-    const auto clash =
-        std::find_if(found.not_searched.begin(), found.not_searched.end(), [](const NotSearched& each) { return !each.is_joined; });
-    if (clash != found.not_searched.end()) {
-        out.fault = names_of(s.model, clash->a, clash->b) + " are closer as assembled";
+    for (const NotSearched& each : found.not_searched) {
+        if (each.is_joined) continue;
+        out.fault = names_of(s.model, each.a, each.b) + (each.undecided.empty() ? " are closer as assembled" : ": " + each.undecided);
         return out;
     }
     if (end.kind == End::Kind::undecided)
