@@ -9,11 +9,12 @@
 
 #include "core/base/contract.hpp"
 #include "core/clearance/range_clearance.hpp"
+#include "core/files/nearest_word.hpp"
 
 namespace fettle::core::clearance {
 namespace {
 
-using Kind = FreeRangeEnd::Kind;
+using Kind = RangeEnd::Kind;
 
 constexpr double meet = 1e-9;  // surfaces that are closer meet, as far as this asks [m]
 
@@ -29,7 +30,8 @@ public:
         for (const auto& [a, b] : pairs) {
             const std::vector<int> by = linked_pair(ranges_.linkage, a, b).coordinates;
             if (std::find(by.begin(), by.end(), coordinate) == by.end()) continue;
-            pairs_.push_back({a, b, std::max(options.minimum, meet)});
+            const double minimum = are_joined(a, b) ? std::min(options.joined_minimum, options.minimum) : options.minimum;
+            pairs_.push_back({a, b, std::max(minimum, meet)});
         }
         out_.coordinate = coordinate;
         out_.start = own_.start;
@@ -92,7 +94,7 @@ private:
             const int k = close[i];
             const bool goes_up = up[i].status == PairStatus::clear, goes_down = down[i].status == PairStatus::clear;
             if (!goes_up && !goes_down) {
-                const bool is_known = there[k].status != PairStatus::undecided, is_joined = are_joined(k);
+                const bool is_known = there[k].status != PairStatus::undecided, is_joined = are_joined(pairs_[k].a, pairs_[k].b);
                 const std::string why = there[k].reason.empty() ? "it is not known whether they are apart" : there[k].reason;
                 out_.not_searched.push_back({pairs_[k].a, pairs_[k].b, is_known ? std::string() : why, is_joined});
                 if (is_joined || !is_known) continue;
@@ -108,16 +110,15 @@ private:
         std::sort(downwards.begin(), downwards.end());
     }
 
-    bool are_joined(int k) const {
-        const auto pair = std::pair(std::minmax(pairs_[k].a, pairs_[k].b));
+    bool are_joined(int a, int b) const {
         const auto& joints = model_.mechanism.joints;
         return std::any_of(joints.begin(), joints.end(),
-                           [&](const model::Joint& joint) { return std::pair(std::minmax(joint.a, joint.b)) == pair; });
+                           [&](const model::Joint& joint) { return (joint.a == a && joint.b == b) || (joint.a == b && joint.b == a); });
     }
 
     // @param beside  pairs that are known to be apart beside the start alone
-    FreeRangeEnd way(double end, const std::vector<int>& which, const std::vector<int>& beside) {
-        FreeRangeEnd out;
+    RangeEnd way(double end, const std::vector<int>& which, const std::vector<int>& beside) {
+        RangeEnd out;
         out.free = out_.start;
         std::vector<double> proven(pairs_.size(), out_.start);  // of each pair, up to where
         for (const int k : beside) proven[k] = toward(out_.start, end, near_);
@@ -175,7 +176,7 @@ private:
         return out;
     }
 
-    FreeRangeEnd not_known(int pair, double to, const std::vector<double>& proven, FreeRangeEnd out) {
+    RangeEnd not_known(int pair, double to, const std::vector<double>& proven, RangeEnd out) {
         out.kind = Kind::undecided;
         out.pair = over(proven[pair], to, {pair}).front();
         return out;
@@ -211,7 +212,7 @@ const NotSearched* FreeRange::clash_at_start() const {
 
 bool FreeRange::is_decided() const {
     const auto is_unknown = [](const NotSearched& each) { return !each.is_joined && !each.undecided.empty(); };
-    return below.kind != FreeRangeEnd::Kind::undecided && above.kind != FreeRangeEnd::Kind::undecided &&
+    return below.kind != RangeEnd::Kind::undecided && above.kind != RangeEnd::Kind::undecided &&
            std::none_of(not_searched.begin(), not_searched.end(), is_unknown);
 }
 
@@ -225,11 +226,15 @@ std::vector<std::pair<int, int>> searched_pairs(const model::Model& model) {
     return out;
 }
 
-std::optional<int> coordinate_of(const JointRanges& ranges, const std::string& joint) {
+base::Result<int> coordinate_of(const JointRanges& ranges, const std::string& joint) {
+    std::vector<std::string_view> known;
     for (int k = 0; k < count_of(ranges.linkage.coordinates); ++k)
-        for (const certificate::JointCoordinate& each : ranges.linkage.coordinates[k].joints)
+        for (const certificate::JointCoordinate& each : ranges.linkage.coordinates[k].joints) {
             if (each.joint == joint) return k;
-    return std::nullopt;
+            known.emplace_back(each.joint);
+        }
+    return base::Error{base::ErrorCode::out_of_range, "",
+                       "no joint that moves is called \"" + joint + "\"; " + files::did_you_mean(joint, known)};
 }
 
 JointRanges alone(JointRanges ranges, int coordinate) {

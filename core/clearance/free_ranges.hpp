@@ -26,17 +26,18 @@
 namespace fettle::core::clearance {
 
 struct FreeRangeOptions {
-    double minimum = 0;                      ///< clearance that is kept [m]; 0: the surfaces do not meet
-    double angle = 1.7e-4;                   ///< how near the end of a turn is found [rad]
-    double length = 1e-5;                    ///< the same of a slide [m]
-    bool above = true, below = true;         ///< which ways are looked along; the other end is then the start
-    bool others_anywhere = false;            ///< the other coordinates anywhere within their limits; false: where they start
-    std::function<bool()> should_stop = {};  ///< optional
+    double minimum = 0;               ///< clearance that is kept [m]; 0: the surfaces do not meet
+    double joined_minimum = 0;        ///< the same for bodies that a joint joins, which are always near each other; at most `minimum`
+    double angle = 1.7e-4;            ///< how near the end of a turn is found [rad]
+    double length = 1e-5;             ///< the same of a slide [m]
+    bool above = true, below = true;  ///< which ways are looked along; the other end is then the start
+    bool others_anywhere = false;     ///< the other coordinates anywhere within their limits; false: where they start
+    std::function<bool()> should_stop = {};                                       ///< optional
     std::function<void(const std::string& joint, double free)> on_progress = {};  ///< optional; called after each question
 };
 
 /// What one way along a coordinate ends at.
-struct FreeRangeEnd {
+struct RangeEnd {
     enum class Kind {
         open,       ///< nothing was met: the search ended at a turn, or at its reach
         blocked,    ///< the pair is closer than the minimum at `at`
@@ -58,7 +59,7 @@ struct NotSearched {
 struct FreeRange {
     int coordinate = 0;  ///< of the linkage
     double start = 0;    ///< [rad or m]
-    FreeRangeEnd below, above;
+    RangeEnd below, above;
     bool turns_freely = false;                    ///< a whole turn is free; below is then the start
     std::vector<std::pair<int, int>> touching{};  ///< meet at the start alone, which the range then leaves out by the accuracy of its ends
     std::vector<NotSearched> not_searched{};
@@ -71,8 +72,9 @@ struct FreeRange {
 /// The pairs that matter by default: all, but those of one group and those that the scene ignores; the lesser body first.
 std::vector<std::pair<int, int>> searched_pairs(const model::Model& model);
 
-/// The coordinate that a joint moves by itself or by gears; nothing: no joint that moves is called so. A cylindrical joint's is its slide.
-std::optional<int> coordinate_of(const JointRanges& ranges, const std::string& joint);
+/// The coordinate that a joint moves by itself or by gears; a cylindrical joint's is its slide. Errors (out_of_range, at no place): no
+/// joint that moves is called so, with the nearest that is.
+base::Result<int> coordinate_of(const JointRanges& ranges, const std::string& joint);
 
 /// The linkage in which `coordinate` alone moves.
 JointRanges alone(JointRanges ranges, int coordinate);

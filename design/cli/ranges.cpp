@@ -4,15 +4,15 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/units.hpp"
-#include "design/clearance/ask_ranges.hpp"
+#include "design/clearance/ranges_report.hpp"
 #include "design/cli/inputs.hpp"
 
 namespace fettle::design::cli {
 
 namespace {
 
-using answers::RangesAnswer;
-using answers::RangesStatus;
+using clearance::RangesReport;
+using clearance::RangesStatus;
 using core::clearance::FreeRange;
 
 struct RangesArguments {
@@ -49,15 +49,14 @@ Result<clearance::RangesQuestion> question_of(const RangesArguments& options) {
     return question;
 }
 
-void tell_checks(const RangesAnswer& answer, const std::string& file, Console& console) {
-    for (const FreeRange& range : answer.found) {
-        const RangesAnswer one{answer.model, answer.ranges, {range}, answer.asked, answer.reach, {}};
-        const RangesStatus status = answers::status_of(one);
-        console.found({answer.ranges.linkage.coordinates[range.coordinate].joints.front().joint,
+void tell_checks(const RangesReport& report, const std::string& file, Console& console) {
+    for (const FreeRange& range : report.found) {
+        const RangesStatus status = clearance::status_of(range);
+        console.found({report.ranges.linkage.coordinates[range.coordinate].joints.front().joint,
                        status == RangesStatus::ok      ? CheckOutcome::passed
                        : status == RangesStatus::clash ? CheckOutcome::failed
                                                        : CheckOutcome::undecided,
-                       status == RangesStatus::clash ? "clash" : answers::to_string(status), answers::range_sentence(answer, range), file});
+                       to_string(status), clearance::range_sentence(report, range), file});
     }
 }
 
@@ -68,17 +67,17 @@ int run_ranges(const RangesArguments& options, const CommonOptions& common, Cons
     if (!loaded) return console.input_errors(loaded.errors());
     tell_warnings(console, loaded->warnings, options.path);
     question->on_joint = [&](int done, int of) { console.progress("looking along the joints", done, of); };
-    const Result<RangesAnswer> answer = clearance::ask_ranges(loaded->model, *question);
+    const Result<RangesReport> report = clearance::ask_ranges(loaded->model, *question);
     console.end_progress();
-    if (!answer) {
-        Errors errors = answer.errors();
+    if (!report) {
+        Errors errors = report.errors();
         for (Error& error : errors)
             if (!error.where.starts_with("--")) error.where = options.path + ": " + error.where;
         return console.input_errors(errors);
     }
-    tell_checks(*answer, options.path, console);
-    console.result(answers::ranges_json(*answer), answers::ranges_text(*answer));
-    const RangesStatus status = answers::status_of(*answer);
+    tell_checks(*report, options.path, console);
+    console.result(clearance::ranges_json(*report), clearance::ranges_text(*report));
+    const RangesStatus status = clearance::status_of(*report);
     return status == RangesStatus::ok ? exit_done : status == RangesStatus::clash ? exit_violated : exit_undecided;
 }
 

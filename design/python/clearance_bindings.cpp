@@ -9,7 +9,7 @@
 #include "core/clearance/clearance.hpp"
 #include "core/clearance/range_clearance.hpp"
 #include "core/files/json_dump.hpp"
-#include "design/clearance/ask_ranges.hpp"
+#include "design/clearance/ranges_report.hpp"
 #include "design/clearance/report_json.hpp"
 #include "design/python/arguments.hpp"
 #include "design/python/bindings.hpp"
@@ -322,15 +322,15 @@ void bind_ranges_question(py::module_& module) {
             read(length, Dimension::length, "length", question.options.length);
             if (!reach.is_none()) read(reach, Dimension::length, "reach", question.reach.emplace());
             Watch watch(progress);
-            const Result<answers::RangesAnswer> answer = [&] {
+            const Result<clearance::RangesReport> report = [&] {
                 const py::gil_scoped_release unlocked;
                 question.on_joint = watch.on_count();
                 question.options.should_stop = watch.should_stop();
                 return clearance::ask_ranges(model, question);
             }();
             watch.end();
-            if (!answer) raise_if_any(with_arguments(answer.errors()));
-            return py::module_::import("json").attr("loads")(core::files::dumped(answers::ranges_json(*answer)));
+            if (!report) raise_if_any(with_arguments(report.errors()));
+            return py::module_::import("json").attr("loads")(core::files::dumped(clearance::ranges_json(*report)));
         },
         py::arg("model"), py::arg("joints") = "", py::arg("minimum") = py::none(), py::arg("ignore") = "", py::arg("anywhere") = false,
         py::arg("angle") = py::none(), py::arg("length") = py::none(), py::arg("reach") = py::none(), py::arg("progress") = py::none(),

@@ -6,7 +6,6 @@
 
 #include "adjoint/clearance/range_adjoint.hpp"
 #include "core/base/limits.hpp"
-#include "core/files/nearest_word.hpp"
 
 namespace fettle::design::quantities {
 
@@ -20,13 +19,17 @@ using core::clearance::PairClearance;
 using core::model::Model;
 using description::Measurement;
 using description::Simulated;
-using End = core::clearance::FreeRangeEnd;
+using End = core::clearance::RangeEnd;
+
+// Bodies that a joint joins keep no more than this [m]: they are always near each other.
+constexpr double joined_clearance = 1e-6;
 
 // Ends that are so near to the first place that is too close are still apart there.
 FreeRangeOptions options_of(const FreeRangeEnd::Of& of, const Model& model) {
     FreeRangeOptions options;
     options.minimum = of.clearance;
-    options.length = std::min(options.length, 0.25 * of.clearance);
+    options.joined_minimum = joined_clearance;
+    options.length = std::min(options.length, 0.25 * std::min(of.clearance, joined_clearance));
     options.angle = std::min(options.angle, options.length / model.diagonal);
     options.above = of.is_above;
     options.below = !of.is_above;
@@ -56,13 +59,19 @@ Result<JointRanges> FreeRangeEnd::ranges_of(const Model& model) const {
     return core::clearance::joint_ranges(model, of_.others_anywhere ? std::nullopt : std::optional(of_.reach));
 }
 
+Result<int> FreeRangeEnd::coordinate_in(const Result<JointRanges>& ranges) const {
+    if (ranges) return core::clearance::coordinate_of(*ranges, of_.joint);
+    Errors errors = ranges.errors();
+    for (Error& error : errors) error = {error.code, "", error.where + ": " + error.message};
+    return errors;
+}
+
 Measurement FreeRangeEnd::value(const Simulated& s) const {
     const Result<JointRanges> ranges = ranges_of(s.model);
-    const std::optional<int> coordinate = ranges ? core::clearance::coordinate_of(*ranges, of_.joint) : std::nullopt;
+    const Result<int> coordinate = coordinate_in(ranges);
     if (!coordinate) {  // the scene as written has it: check()
         Measurement none = description::computed(0);
-        none.fault = ranges ? "there is no joint `" + of_.joint + "` that moves"
-                            : ranges.errors().front().where + ": " + ranges.errors().front().message;
+        none.fault = coordinate.errors().front().message;
         return none;
     }
     const FreeRange found = core::clearance::free_ranges(s.model, *ranges, {*coordinate}, core::clearance::searched_pairs(s.model),
@@ -81,7 +90,7 @@ Measurement FreeRangeEnd::value(const Simulated& s) const {
     (of_.is_above ? out.upper : out.lower) = end.at;
     const JointRanges moved = of_.others_anywhere ? *ranges : core::clearance::alone(*ranges, *coordinate);
     PairClearance pair = *end.pair;
-    out.value = settle(s.model, moved, *coordinate, of_.clearance, out.lower, out.upper, pair);
+    out.value = settle(s.model, moved, *coordinate, pair.minimum, out.lower, out.upper, pair);
     out.parts.push_back({out.value, out.lower, out.upper, true, std::move(pair), {}, {}});  // for add_seeds
     return out;
 }
@@ -89,7 +98,7 @@ Measurement FreeRangeEnd::value(const Simulated& s) const {
 void FreeRangeEnd::add_seeds(const Simulated& s, const Measurement& measured, double scale, description::Seeds& seeds) const {
     if (measured.parts.empty()) return;
     const Result<JointRanges> ranges = ranges_of(s.model);
-    const std::optional<int> coordinate = ranges ? core::clearance::coordinate_of(*ranges, of_.joint) : std::nullopt;
+    const Result<int> coordinate = coordinate_in(ranges);
     if (!coordinate) return;
     const JointRanges moved = of_.others_anywhere ? *ranges : core::clearance::alone(*ranges, *coordinate);
     const std::string refusal =
@@ -97,17 +106,6 @@ void FreeRangeEnd::add_seeds(const Simulated& s, const Measurement& measured, do
     if (seeds.refusal.empty()) seeds.refusal = refusal;
 }
 
-Errors FreeRangeEnd::check(const Model& model, int) const {
-    Errors errors;
-    const Result<JointRanges> ranges = ranges_of(model);
-    for (const Error& error : ranges.errors()) errors.push_back({error.code, "", error.where + ": " + error.message});
-    if (!ranges || core::clearance::coordinate_of(*ranges, of_.joint)) return errors;
-    std::vector<std::string_view> known;
-    for (const auto& coordinate : ranges->linkage.coordinates)
-        for (const auto& joint : coordinate.joints) known.emplace_back(joint.joint);
-    errors.push_back({ErrorCode::out_of_range, "",
-                      "no joint that moves is called \"" + of_.joint + "\"; " + core::files::did_you_mean(of_.joint, known)});
-    return errors;
-}
+Errors FreeRangeEnd::check(const Model& model, int) const { return coordinate_in(ranges_of(model)).errors(); }
 
 }  // namespace fettle::design::quantities

@@ -21,7 +21,7 @@ public:
         std::string joint;
         Dimension dimension = Dimension::angle;  ///< of its coordinate
         bool is_above = true;                    ///< the way on which the coordinate grows
-        double clearance = 1e-6;                 ///< that the bodies keep [m]; > 0
+        double clearance = 1e-6;                 ///< that the bodies keep [m], but for those that a joint joins, which do not meet; > 0
         double reach = 1;                        ///< how far a slide is looked at [m]
         bool others_anywhere = false;            ///< the other joints anywhere within their limits
     };
@@ -38,6 +38,7 @@ public:
 
 private:
     Result<core::clearance::JointRanges> ranges_of(const core::model::Model& model) const;
+    Result<int> coordinate_in(const Result<core::clearance::JointRanges>& ranges) const;
 
     Of of_;
 };

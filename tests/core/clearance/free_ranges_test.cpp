@@ -14,7 +14,7 @@ using namespace fettle::tests::mechanisms;
 using scene::JointKind;
 using tests::mechanisms::joint;
 using tests::support::box_mesh;
-using Kind = FreeRangeEnd::Kind;
+using Kind = RangeEnd::Kind;
 
 namespace {
 
@@ -159,25 +159,62 @@ TEST_CASE("free ranges: the other joints where they start, or anywhere within th
     CHECK(anywhere == Approx(still - 0.3).margin(4e-4));
 }
 
-TEST_CASE("free ranges: no sample of random trees within a range is closer", "[ranges]") {
-    std::mt19937 random(7);
-    int blocked = 0, samples = 0;
-    for (int i = 0; i < 12; ++i) {
-        const auto tree = tests::trees::random_tree(random);
-        const std::vector<FreeRange> found = free_ranges(tree.model, tree.ranges, {0}, {{tree.a, tree.b}}, 0.2);
-        const FreeRange& range = found.front();
-        if (!range.not_searched.empty()) continue;
-        blocked += range.above.kind == Kind::blocked;
-        for (int k = 0; k <= 200; ++k) {
+namespace {
+
+struct Campaign {
+    int ranges = 0, ends = 0, whole_turns = 0;
+    long samples = 0;
+};
+
+// Samples of what is called free are no closer than the minimum; where it ends something is.
+void look_at(const tests::trees::Tree& tree, int samples, const FreeRangeOptions& options, Campaign& campaign) {
+    std::vector<int> coordinates;
+    for (int k = 0; k < count_of(tree.ranges.linkage.coordinates); ++k) coordinates.push_back(k);
+    const std::vector<FreeRange> found = free_ranges(tree.model, tree.ranges, coordinates, {{tree.a, tree.b}}, 0.2, options);
+    for (int k = 0; k < count_of(coordinates); ++k) {
+        const FreeRange& range = found[k];
+        if (!range.not_searched.empty() || !range.touching.empty()) continue;
+        ++campaign.ranges;
+        campaign.whole_turns += range.turns_freely;
+        const auto distance = [&](double at) {
             std::vector<double> u;
             for (const auto& c : tree.ranges.linkage.coordinates) u.push_back(c.start);
-            u[0] = range.below.free + (range.above.free - range.below.free) * k / 200;
-            CHECK(tests::trees::distance_at(tree, u) > 0);
-            ++samples;
+            u[k] = at;
+            return static_cast<double>(tests::trees::distance_at(tree, u));
+        };
+        for (int i = 0; i <= samples; ++i, ++campaign.samples)
+            CHECK(distance(range.below.free + (range.above.free - range.below.free) * i / samples) >= options.minimum);
+        for (const RangeEnd* end : {&range.below, &range.above}) {
+            if (end->kind != Kind::blocked) continue;
+            ++campaign.ends;
+            // The oracle measures surfaces that pass through each other, too: by as much as bodies move within the accuracy of an end.
+            CHECK(distance(end->at) <= options.minimum + 5e-5);
+            CHECK(std::abs(end->at - end->free) <= std::max(options.angle, options.length));
         }
     }
-    CHECK(blocked > 0);
-    CHECK(samples > 500);
+}
+
+}  // namespace
+
+TEST_CASE("free ranges: no sample of random trees within a range is closer, and at its ends something is", "[ranges]") {
+    std::mt19937 random(7);
+    Campaign campaign;
+    for (int i = 0; i < 12; ++i) look_at(tests::trees::random_tree(random), 100, {}, campaign);
+    CHECK(campaign.ends > 4);
+    CHECK(campaign.samples > 1000);
+}
+
+TEST_CASE("free ranges: 200 random trees, with and without a minimum", "[ranges][slow]") {
+    std::mt19937 random(11);
+    Campaign campaign;
+    for (int i = 0; i < 200; ++i) {
+        FreeRangeOptions options;
+        if (i % 2 == 1) options.minimum = 2e-3;
+        look_at(tests::trees::random_tree(random), 200, options, campaign);
+    }
+    CHECK(campaign.ends > 100);
+    CHECK(campaign.whole_turns > 0);
+    WARN(campaign.ranges << " ranges, " << campaign.ends << " ends, " << campaign.samples << " samples");
 }
 
 }  // namespace fettle::core::clearance::free_ranges_test

@@ -59,6 +59,16 @@ TEST_CASE("ranges: a lid is free from the base that it lies on to the frame abov
     CAPTURE(kept.out);
     CHECK(kept.says("closer than 1 mm"));
     CHECK(kept.says("not looked at: "));
+    // Bodies that a joint joins are always near each other: the minimum is of the others, these do not meet.
+    const std::string raised = folder.write("raised.scene.json", replaced(lid_scene, "[25, 0, 2]", "[25, 0, 2.3]"));
+    const Answer near = run("ranges " + raised + " --minimum 5mm --json");
+    CAPTURE(near.out);
+    CHECK(near.code == 0);
+    const Json below = near.json().at("joints").at(0).at("below"), above = near.json().at("joints").at(0).at("above");
+    CHECK((below["a"] == "base" || below["b"] == "base"));
+    CHECK(below["distance"].get<double>() < 1e-6);
+    CHECK((above["a"] == "frame" || above["b"] == "frame"));
+    CHECK(above["distance"].get<double>() == Approx(5e-3).epsilon(2e-3));
 }
 
 TEST_CASE("ranges: what is asked for is looked at, and nothing else is taken") {
@@ -74,8 +84,8 @@ TEST_CASE("ranges: what is asked for is looked at, and nothing else is taken") {
     const Answer answer = run("ranges " + clash);
     CAPTURE(answer.out);
     CHECK(answer.code == 1);
-    CHECK(answer.says("free nowhere: bodies meet as assembled"));
-    CHECK(answer.says("lid:frame: closer than that as assembled"));
+    CHECK(answer.says("free nowhere: lid:frame, they meet as assembled"));
+    CHECK(run("ranges " + scene + " --minimum 40mm").says("free nowhere: lid:frame, closer than 40 mm as assembled"));
     // A ball has no one coordinate; it is refused by name.
     const std::string ball = folder.write(
         "ball.scene.json", replaced(replaced(lid_scene, "\"revolute\"", "\"ball\""), ", \"axis\": [0, -1, 0], \"limits\": [0, 60]", ""));

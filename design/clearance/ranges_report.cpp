@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "design/clearance/ask_ranges.hpp"
+#include "design/clearance/ranges_report.hpp"
 
 #include <algorithm>
-
-#include "core/files/nearest_word.hpp"
 
 namespace fettle::design::clearance {
 
@@ -16,13 +14,8 @@ Result<std::vector<int>> coordinates_of(const JointRanges& ranges, const std::ve
     if (names.empty())
         for (int k = 0; k < count_of(ranges.linkage.coordinates); ++k) out.push_back(k);
     for (const std::string& name : names) {
-        const std::optional<int> found = core::clearance::coordinate_of(ranges, name);
-        std::vector<std::string_view> known;
-        for (const auto& coordinate : ranges.linkage.coordinates)
-            for (const auto& joint : coordinate.joints) known.emplace_back(joint.joint);
-        if (!found)
-            return Error{ErrorCode::out_of_range, "--joint",
-                         "no joint that moves is called \"" + name + "\"; " + core::files::did_you_mean(name, known)};
+        const Result<int> found = core::clearance::coordinate_of(ranges, name);
+        if (!found) return Error{found.errors().front().code, "--joint", found.errors().front().message};
         out.push_back(*found);
     }
     return out;
@@ -45,7 +38,7 @@ std::vector<std::string> not_looked_at(const core::model::Model& model, const Pa
 
 }  // namespace
 
-Result<answers::RangesAnswer> ask_ranges(const core::model::Model& model, const RangesQuestion& question) {
+Result<RangesReport> ask_ranges(const core::model::Model& model, const RangesQuestion& question) {
     const double reach = question.reach.value_or(model.diagonal);
     Result<JointRanges> ranges =
         core::clearance::joint_ranges(model, question.options.others_anywhere ? std::nullopt : std::optional(reach));
@@ -56,17 +49,17 @@ Result<answers::RangesAnswer> ask_ranges(const core::model::Model& model, const 
     pairs.ignore = question.ignore;
     const Result<PairSelection> selection = select_pairs(model, pairs, false);
     if (!selection) return selection.errors();
-    answers::RangesAnswer answer{model, *std::move(ranges), {}, question.options, reach, not_looked_at(model, *selection)};
+    RangesReport report{model, *std::move(ranges), {}, question.options, reach, not_looked_at(model, *selection)};
     const auto stopped = [&] { return question.options.should_stop && question.options.should_stop(); };
     int done = 0;
     for (const int coordinate : *coordinates) {
         if (stopped()) break;
         if (question.on_joint) question.on_joint(done++, count_of(*coordinates));
-        const auto found = core::clearance::free_ranges(model, answer.ranges, {coordinate}, pairs_of(*selection), reach, question.options);
-        answer.found.insert(answer.found.end(), found.begin(), found.end());
+        const auto found = core::clearance::free_ranges(model, report.ranges, {coordinate}, pairs_of(*selection), reach, question.options);
+        report.found.insert(report.found.end(), found.begin(), found.end());
     }
-    answer.interrupted = stopped();
-    return answer;
+    report.interrupted = stopped();
+    return report;
 }
 
 }  // namespace fettle::design::clearance

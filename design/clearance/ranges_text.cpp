@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "design/answers/ranges_answer.hpp"
+#include "design/clearance/ranges_report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "core/base/bound_text.hpp"
 #include "core/base/text.hpp"
 
-namespace fettle::design::answers {
+namespace fettle::design::clearance {
 
 namespace {
 
@@ -18,22 +18,22 @@ using core::base::formatted;
 using core::base::Towards;
 using core::certificate::LinkageCoordinate;
 using core::clearance::FreeRange;
-using core::clearance::FreeRangeEnd;
 using core::clearance::NotSearched;
-using Kind = FreeRangeEnd::Kind;
+using core::clearance::RangeEnd;
+using Kind = RangeEnd::Kind;
 
 constexpr double degree = std::numbers::pi / 180, millimetre = 1e-3;
 
-const LinkageCoordinate& coordinate_of(const RangesAnswer& answer, const FreeRange& range) {
-    return answer.ranges.linkage.coordinates[range.coordinate];
+const LinkageCoordinate& coordinate_of(const RangesReport& report, const FreeRange& range) {
+    return report.ranges.linkage.coordinates[range.coordinate];
 }
 
 // Numbers of a coordinate, in degrees or millimetres, as fine as its ends were looked for.
 class Numbers {
 public:
-    Numbers(const RangesAnswer& answer, const FreeRange& range)
-        : is_angle_(coordinate_of(answer, range).joints.front().is_angle),
-          decimals_(static_cast<int>(std::clamp(std::ceil(-std::log10(near(answer) / unit())), 0.0, 9.0))) {}
+    Numbers(const RangesReport& report, const FreeRange& range)
+        : is_angle_(coordinate_of(report, range).joints.front().is_angle),
+          decimals_(static_cast<int>(std::clamp(std::ceil(-std::log10(near(report) / unit())), 0.0, 9.0))) {}
 
     double unit() const { return is_angle_ ? degree : millimetre; }
     const char* name() const { return is_angle_ ? "deg" : "mm"; }
@@ -43,7 +43,7 @@ public:
     std::string nearest(double value) const { return text(value / unit()); }
 
 private:
-    double near(const RangesAnswer& answer) const { return is_angle_ ? answer.asked.angle : answer.asked.length; }
+    double near(const RangesReport& report) const { return is_angle_ ? report.asked.angle : report.asked.length; }
     std::string text(double x) const {
         std::string out = formatted("%.*f", decimals_, x);
         if (out.find('.') == std::string::npos) return out;
@@ -60,7 +60,7 @@ bool starts_in_a_clash(const FreeRange& range) { return range.clash_at_start() !
 
 std::string length_text(double metres) { return formatted("%.3g mm", metres / millimetre); }
 
-std::string names_of(const RangesAnswer& answer, int a, int b) { return answer.model.bodies[a].name + ":" + answer.model.bodies[b].name; }
+std::string names_of(const RangesReport& report, int a, int b) { return report.model.bodies[a].name + ":" + report.model.bodies[b].name; }
 
 std::string joint_names(const LinkageCoordinate& coordinate) {
     std::string out = coordinate.joints.front().joint;
@@ -70,24 +70,24 @@ std::string joint_names(const LinkageCoordinate& coordinate) {
 }
 
 // "lid meets frame, 0.004 mm deep"
-std::string meeting_text(const RangesAnswer& answer, const FreeRangeEnd& end) {
+std::string meeting_text(const RangesReport& report, const RangeEnd& end) {
     const core::clearance::PairClearance& pair = *end.pair;
-    const std::string &a = answer.model.bodies[pair.a].name, &b = answer.model.bodies[pair.b].name;
-    const double expected = 10 * answer.asked.length;  // what is deeper is an upper bound of meshes that cannot be cut, and says little
+    const std::string &a = report.model.bodies[pair.a].name, &b = report.model.bodies[pair.b].name;
+    const double expected = 10 * report.asked.length;  // what is deeper is an upper bound of meshes that cannot be cut, and says little
     if (pair.overlap && pair.overlap->depth_upper > 0 && pair.overlap->depth_upper <= expected)
         return a + " is " + length_text(pair.overlap->depth_upper) + " in " + b;
-    if (pair.is_clash() || !(answer.asked.minimum > 0)) return a + " meets " + b;
-    return a + " is " + length_text(pair.upper) + " from " + b + ", closer than " + length_text(answer.asked.minimum);
+    if (pair.is_clash() || pair.minimum < report.asked.minimum || !(report.asked.minimum > 0)) return a + " meets " + b;
+    return a + " is " + length_text(pair.upper) + " from " + b + ", closer than " + length_text(report.asked.minimum);
 }
 
-std::string end_line(const RangesAnswer& answer, const FreeRange& range, const FreeRangeEnd& end, bool is_below) {
-    const Numbers numbers(answer, range);
+std::string end_line(const RangesReport& report, const FreeRange& range, const RangeEnd& end, bool is_below) {
+    const Numbers numbers(report, range);
     const std::string way = is_below ? "   below: " : "   above: ";
     if (end.kind == Kind::blocked)
-        return way + "at " + numbers.nearest(end.at) + " " + numbers.name() + " " + meeting_text(answer, end) + "\n";
+        return way + "at " + numbers.nearest(end.at) + " " + numbers.name() + " " + meeting_text(report, end) + "\n";
     if (end.kind == Kind::open)
         return way + "nothing in the way up to " + numbers.nearest(end.free) + " " + numbers.name() + ", where the search ended\n";
-    const std::string pair = end.pair ? names_of(answer, end.pair->a, end.pair->b) : std::string("a pair");
+    const std::string pair = end.pair ? names_of(report, end.pair->a, end.pair->b) : std::string("a pair");
     const std::string why = end.pair && !end.pair->reason.empty() ? ": " + end.pair->reason : std::string();
     return way + "undecided beyond " + numbers.nearest(end.free) + " " + numbers.name() + ", for " + pair + why + "\n";
 }
@@ -99,33 +99,37 @@ std::string as_limits(const FreeRange& range, const Numbers& numbers) {
     return "   as limits: \"limits\": [" + quoted(range.below.free, Towards::up) + ", " + quoted(range.above.free, Towards::down) + "]\n";
 }
 
-std::string limits_lines(const RangesAnswer& answer, const FreeRange& range) {
-    const Numbers numbers(answer, range);
-    if (!answer.ranges.has_limits[range.coordinate]) return as_limits(range, numbers);
-    const LinkageCoordinate& own = coordinate_of(answer, range);
+std::string limits_lines(const RangesReport& report, const FreeRange& range) {
+    const Numbers numbers(report, range);
+    if (!report.ranges.has_limits[range.coordinate]) return as_limits(range, numbers);
+    const LinkageCoordinate& own = coordinate_of(report, range);
     const std::string limits = numbers.nearest(own.low) + " to " + numbers.nearest(own.high) + " " + numbers.name();
     const bool inside = range.turns_freely || (range.below.free <= own.low && own.high <= range.above.free);
     return "   its limits, " + limits + (inside ? ", lie within\n" : ", go beyond\n" + as_limits(range, numbers));
 }
 
-std::string start_lines(const RangesAnswer& answer, const FreeRange& range) {
+std::string too_close(const RangesReport& report) {
+    return report.asked.minimum > 0 ? "closer than " + length_text(report.asked.minimum) : "they meet";
+}
+
+std::string start_lines(const RangesReport& report, const FreeRange& range) {
     std::string out;
     for (const NotSearched& each : range.not_searched)
-        out += "   " + names_of(answer, each.a, each.b) +
+        out += "   " + names_of(report, each.a, each.b) +
                (!each.undecided.empty() ? ": not looked at; undecided as assembled: " + each.undecided + "\n"
-                : each.is_joined        ? ": not looked at; a joint joins them, and they are closer than that as assembled and beside it\n"
-                                        : ": closer than that as assembled: free nowhere\n");
-    for (const auto& [a, b] : range.touching) out += "   " + names_of(answer, a, b) + ": they touch as assembled, and come apart\n";
+                : each.is_joined        ? ": not looked at; a joint joins them, and they meet as assembled and beside it\n"
+                                        : ": " + too_close(report) + " as assembled\n");
+    for (const auto& [a, b] : range.touching) out += "   " + names_of(report, a, b) + ": they touch as assembled, and come apart\n";
     return out;
 }
 
-Json end_json(const RangesAnswer& answer, const FreeRangeEnd& end) {
+Json end_json(const RangesReport& report, const RangeEnd& end) {
     if (end.kind == Kind::open) return nullptr;
     Json out = {{"finding", end.kind == Kind::blocked ? "blocked" : "undecided"}};
     if (end.kind == Kind::blocked) out["at"] = end.at;
     if (!end.pair) return out;
-    out["a"] = answer.model.bodies[end.pair->a].name;
-    out["b"] = answer.model.bodies[end.pair->b].name;
+    out["a"] = report.model.bodies[end.pair->a].name;
+    out["b"] = report.model.bodies[end.pair->b].name;
     if (end.kind == Kind::undecided) {
         out["reason"] = end.pair->reason;
         return out;
@@ -138,25 +142,25 @@ Json end_json(const RangesAnswer& answer, const FreeRangeEnd& end) {
     return out;
 }
 
-Json range_json(const RangesAnswer& answer, const FreeRange& range) {
-    const LinkageCoordinate& own = coordinate_of(answer, range);
+Json range_json(const RangesReport& report, const FreeRange& range) {
+    const LinkageCoordinate& own = coordinate_of(report, range);
     Json joints = Json::array(), touching = Json::array(), not_searched = Json::array();
     for (const auto& joint : own.joints) joints.push_back(joint.joint);
-    for (const auto& [a, b] : range.touching) touching.push_back(names_of(answer, a, b));
+    for (const auto& [a, b] : range.touching) touching.push_back(names_of(report, a, b));
     for (const NotSearched& each : range.not_searched)
-        not_searched.push_back({{"pair", names_of(answer, each.a, each.b)},
+        not_searched.push_back({{"pair", names_of(report, each.a, each.b)},
                                 {"reason", !each.undecided.empty() ? each.undecided
                                            : each.is_joined        ? "joined"
                                                                    : "clash as assembled"}});
-    const bool is_angle = own.joints.front().is_angle, is_limited = answer.ranges.has_limits[range.coordinate];
+    const bool is_angle = own.joints.front().is_angle, is_limited = report.ranges.has_limits[range.coordinate];
     return {{"joint", own.joints.front().joint},
             {"joints", std::move(joints)},
             {"unit", is_angle ? "rad" : "m"},
             {"start", range.start},
             {"turns_freely", range.turns_freely},
             {"free", {{"lower", range.below.free}, {"upper", range.above.free}}},
-            {"below", range.turns_freely ? Json() : end_json(answer, range.below)},
-            {"above", end_json(answer, range.above)},
+            {"below", range.turns_freely ? Json() : end_json(report, range.below)},
+            {"above", end_json(report, range.above)},
             {"limits", is_limited ? Json{own.low, own.high} : Json()},
             {"touching", std::move(touching)},
             {"not_searched", std::move(not_searched)}};
@@ -164,10 +168,17 @@ Json range_json(const RangesAnswer& answer, const FreeRange& range) {
 
 }  // namespace
 
-RangesStatus status_of(const RangesAnswer& answer) {
-    if (std::any_of(answer.found.begin(), answer.found.end(), starts_in_a_clash)) return RangesStatus::clash;
-    const bool is_decided = std::all_of(answer.found.begin(), answer.found.end(), [](const FreeRange& each) { return each.is_decided(); });
-    return is_decided && !answer.interrupted ? RangesStatus::ok : RangesStatus::undecided;
+RangesStatus status_of(const FreeRange& range) {
+    if (starts_in_a_clash(range)) return RangesStatus::clash;
+    return range.is_decided() ? RangesStatus::ok : RangesStatus::undecided;
+}
+
+RangesStatus status_of(const RangesReport& report) {
+    const auto any = [&](RangesStatus status) {
+        return std::any_of(report.found.begin(), report.found.end(), [&](const FreeRange& each) { return status_of(each) == status; });
+    };
+    if (any(RangesStatus::clash)) return RangesStatus::clash;
+    return report.interrupted || any(RangesStatus::undecided) ? RangesStatus::undecided : RangesStatus::ok;
 }
 
 const char* to_string(RangesStatus status) {
@@ -182,43 +193,47 @@ const char* to_string(RangesStatus status) {
     return "undecided";
 }
 
-std::string range_sentence(const RangesAnswer& answer, const FreeRange& range) {
-    if (starts_in_a_clash(range)) return "free nowhere: bodies meet as assembled";
-    if (range.turns_freely) return "free all round, proven";
-    const Numbers numbers(answer, range);
+std::string range_sentence(const RangesReport& report, const FreeRange& range) {
+    if (const NotSearched* clash = range.clash_at_start())
+        return "free nowhere: " + names_of(report, clash->a, clash->b) + ", " + too_close(report) + " as assembled";
+    std::vector<std::string> but_for;
+    for (const NotSearched& each : range.not_searched) but_for.push_back(names_of(report, each.a, each.b));
+    const std::string proven = but_for.empty() ? ", proven" : ", proven but for " + core::base::joined(but_for);
+    if (range.turns_freely) return "free all round" + proven;
+    const Numbers numbers(report, range);
     return "free from " + numbers.rounded(range.below.free, Towards::up) + " to " + numbers.rounded(range.above.free, Towards::down) + " " +
-           numbers.name() + ", proven";
+           numbers.name() + proven;
 }
 
-Json ranges_json(const RangesAnswer& answer) {
-    Json json = {{"status", answer.interrupted ? "interrupted" : to_string(status_of(answer))},
-                 {"minimum", answer.asked.minimum},
-                 {"others", answer.asked.others_anywhere ? "anywhere within their limits" : "where they start"},
-                 {"reach", answer.reach},
+Json ranges_json(const RangesReport& report) {
+    Json json = {{"status", report.interrupted ? "interrupted" : to_string(status_of(report))},
+                 {"minimum", report.asked.minimum},
+                 {"others", report.asked.others_anywhere ? "anywhere within their limits" : "where they start"},
+                 {"reach", report.reach},
                  {"joints", Json::array()}};
-    for (const FreeRange& range : answer.found) json["joints"].push_back(range_json(answer, range));
-    json["held"] = answer.ranges.held;
-    json["not_looked_at"] = answer.not_looked_at;
+    for (const FreeRange& range : report.found) json["joints"].push_back(range_json(report, range));
+    json["held"] = report.ranges.held;
+    json["not_looked_at"] = report.not_looked_at;
     return json;
 }
 
-std::string ranges_text(const RangesAnswer& answer) {
+std::string ranges_text(const RangesReport& report) {
     std::string text;
-    for (const FreeRange& range : answer.found) {
-        const Numbers numbers(answer, range);
-        text += joint_names(coordinate_of(answer, range)) + ": " + range_sentence(answer, range) + "; starts at " +
+    for (const FreeRange& range : report.found) {
+        const Numbers numbers(report, range);
+        text += joint_names(coordinate_of(report, range)) + ": " + range_sentence(report, range) + "; starts at " +
                 numbers.nearest(range.start) + " " + numbers.name() + "\n";
         if (!range.turns_freely && !starts_in_a_clash(range)) {
-            text += end_line(answer, range, range.below, true);
-            text += end_line(answer, range, range.above, false);
+            text += end_line(report, range, range.below, true);
+            text += end_line(report, range, range.above, false);
         }
-        text += start_lines(answer, range) + limits_lines(answer, range);
+        text += start_lines(report, range) + limits_lines(report, range);
     }
-    text += answer.asked.others_anywhere ? "the other joints anywhere within their limits" : "the other joints where they start";
-    if (answer.asked.minimum > 0) text += ", at least " + length_text(answer.asked.minimum) + " between the bodies";
+    text += report.asked.others_anywhere ? "the other joints anywhere within their limits" : "the other joints where they start";
+    if (report.asked.minimum > 0) text += ", at least " + length_text(report.asked.minimum) + " between the bodies";
     text += "\n";
-    for (const std::string& each : answer.not_looked_at) text += "not looked at: " + each + "\n";
+    for (const std::string& each : report.not_looked_at) text += "not looked at: " + each + "\n";
     return text;
 }
 
-}  // namespace fettle::design::answers
+}  // namespace fettle::design::clearance
