@@ -37,9 +37,18 @@ Character character_at(std::string_view text, std::size_t at) {
 
 bool is_control(unsigned code) { return code < 0x20 || (code >= 0x7F && code < 0xA0); }
 
-std::string hexadecimal(unsigned byte) {
+// Unicode 15, bidirectional formatting characters (UAX 9, 2.1 to 2.3), and the separators of lines: they would order or break the text
+// beside them anew.
+bool is_direction(unsigned code) {
+    return code == 0x61C || code == 0x200E || code == 0x200F || (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
+}
+
+// \x1b for a byte's worth, \u202e for more.
+std::string hexadecimal(unsigned code) {
     constexpr std::string_view digits = "0123456789abcdef";
-    return {'\\', 'x', digits[byte >> 4U & 15U], digits[byte & 15U]};
+    std::string out = code < 0x100 ? "\\x" : "\\u";
+    for (unsigned shift = code < 0x100 ? 8 : 16; shift > 0; shift -= 4) out += digits[code >> (shift - 4) & 15U];
+    return out;
 }
 
 // Calls `kept(character's bytes, its code)` for each, `other(shown)` for what no terminal is to have.
@@ -49,7 +58,7 @@ void walk(std::string_view text, const Kept& kept, const Other& other) {
         const Character c = character_at(text, at);
         if (c.code == replaced) {
             other(hexadecimal(static_cast<unsigned char>(text[at])));
-        } else if (is_control(c.code) && c.code != '\n' && c.code != '\t') {
+        } else if (is_direction(c.code) || (is_control(c.code) && c.code != '\n' && c.code != '\t')) {
             other(hexadecimal(c.code));
         } else {
             kept(text.substr(at, c.bytes), c.code);

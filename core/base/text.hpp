@@ -18,8 +18,8 @@ std::string joined(const Strings& strings) {
     return text;
 }
 
-/// As a terminal may have it: control characters but line feed and tab as "\\x1b", what is no UTF-8 as "\\xff". A name from a file cannot
-/// colour, move or overwrite the text beside it.
+/// As a terminal may have it: control characters but line feed and tab as "\\x1b", what is no UTF-8 as "\\xff", characters that turn the
+/// direction of writing as "\\u202e". A name from a file cannot colour, move, turn or overwrite the text beside it.
 std::string shown(std::string_view text);
 
 /// The same on one line.

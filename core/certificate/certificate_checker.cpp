@@ -368,7 +368,7 @@ private:
         if (certificate_.toleranced) start.charge = mismatch_of(pair);
         if (joints_are_sound_) start.charge = joint_charge(*certificate_.joints, pair.a, pair.b);
         const Solids found = solids_of(a, b, start, pair.lower);
-        if (found == Solids::overlap) return ended("one body lies inside the other's material");
+        if (found == Solids::overlap) return ended("material of one body lies inside the other");
         if (pair.solids == Solids::unproven || pair.solids == found) return report;
         return ended(std::string("\"") + to_string(pair.solids) + "\" is claimed, " +
                      (found == Solids::not_closed   ? "which cannot be verified: a body is not closed"

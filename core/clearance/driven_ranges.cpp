@@ -64,7 +64,7 @@ public:
         check_driven();
         std::erase_if(out_.driven, [](const DrivenSource& source) { return !moves(source.curve); });
         if (errors_.empty() && out_.driven.empty())
-            fail(ErrorCode::missing_key, "motion", "no motor and no script moves anything: leave out --kinematic");
+            fail(ErrorCode::missing_key, "motion", "no motor and no script moves anything as drawn: leave out --kinematic");
         if (!errors_.empty()) return errors_;
         find_screws();
         settle();

@@ -2,6 +2,7 @@
 #include "core/files/json_keys.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
 
@@ -11,6 +12,22 @@
 
 namespace fettle::core::files {
 namespace {
+
+/// The files of fettle that one may give in place of another.
+struct OwnFormat {
+    std::string_view key, name, use;
+};
+constexpr std::array own_formats{
+    OwnFormat{"fettle_scene", "a scene", "`fettle simulate` takes, and a design names"},
+    OwnFormat{"rigid_body_problem", "a scene", "`fettle simulate` takes, and a design names"},
+    OwnFormat{"fettle_design", "a design", "`fettle optimise` takes; the scene is the file that its `scene` names"},
+    OwnFormat{"fettle_part", "a part", "a scene names as the shape of a body; `fettle validate` looks at it alone"},
+    OwnFormat{"fettle_process", "a process", "--process takes, and a design names"},
+    OwnFormat{"fettle_poses", "a table of poses", "--poses takes"},
+    OwnFormat{"fettle_trajectory", "a trajectory", "`fettle clearance` takes"},
+    OwnFormat{"fettle_certificate", "a certificate", "`fettle validate` checks"},
+    OwnFormat{"fettle_range_certificate", "a certificate", "`fettle validate` checks"},
+};
 
 bool is_quote_or_bracket(char c) { return c == '"' || c == '{' || c == '}' || c == '[' || c == ']'; }
 bool ends_or_escapes(char c) { return c == '"' || c == '\\'; }
@@ -89,8 +106,11 @@ std::string_view top_level_key(const std::filesystem::path& path, std::span<cons
 
 bool has_top_level_key(const std::filesystem::path& path, std::string_view key) { return !top_level_key(path, {&key, 1}).empty(); }
 
-std::string misspelt_key(const JsonNode& object, const std::vector<std::string_view>& formats) {
+std::string format_remark(const JsonNode& object, const std::vector<std::string_view>& formats) {
     if (!object.is_object()) return {};
+    for (const OwnFormat& format : own_formats)
+        if (object[format.key].exists())
+            return "; by its `" + std::string(format.key) + "` it is " + std::string(format.name) + ", which " + std::string(format.use);
     for (const auto& [key, value] : object.members())
         if (const auto meant = nearest_word(key, formats)) return "; did you mean `" + *meant + "`, where `" + key + "` stands?";
     return {};
@@ -101,6 +121,13 @@ bool is_version(const JsonNode& node, int version) {
     if (!found || *found == version) return found.has_value();
     node.fail(ErrorCode::out_of_range, "a file of version " + std::to_string(*found) + " is not read: this program reads version " +
                                            std::to_string(version) + (*found > version ? "; was it written for a newer fettle?" : ""));
+    return false;
+}
+
+bool is_format(const JsonNode& root, std::string_view key, std::string_view name, int version) {
+    if (root.is_object() && root[key].exists()) return is_version(root[key], version);
+    root.fail(ErrorCode::missing_key,
+              "no " + std::string(name) + ": the key `" + std::string(key) + "` is missing" + format_remark(root, {key}));
     return false;
 }
 

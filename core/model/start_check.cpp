@@ -263,7 +263,7 @@ std::optional<base::Error> check_pair(const PlacedBody& a, const PlacedBody& b, 
         // Whether a mesh is closed is worth finding out only when something lies within its box.
         if (outer->body->mesh.triangles.empty() || !bounds_a_solid(*outer)) continue;
         if (const auto point = point_inside(*inner, *outer)) {
-            return messages.error(*inner->body, *outer->body, "overlap at the start: the first lies inside the second's material", *point);
+            return messages.error(*inner->body, *outer->body, "overlap at the start: material of the first lies inside the second", *point);
         }
     }
     return std::nullopt;

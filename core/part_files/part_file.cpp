@@ -157,11 +157,7 @@ Result<PartFile> PartFile::parse(const std::string& text, const std::string& nam
     Result<JsonDocument> document = JsonDocument::parse(text, name);
     if (!document) return document.errors();
     const JsonNode root = document->root();
-    if (!root.is_object() || !root["fettle_part"].exists()) {
-        root.fail(ErrorCode::missing_key, "no part: the key `fettle_part` is missing" + files::misspelt_key(root, {"fettle_part"}));
-        return document->errors();
-    }
-    if (!files::is_version(root["fettle_part"], format_version)) return document->errors();
+    if (!files::is_format(root, "fettle_part", "part", format_version)) return document->errors();
     root.allow_keys({"$schema", "fettle_part", "about", "units", "facets", "dimensions", "counts", "variables", "relations", "profiles",
                      "solids", "solid"});
     const auto unit = root["units"].choice({"um", "mm", "cm", "m", "in", "ft"});

@@ -59,8 +59,8 @@ base::Result<PosesTable> read_poses_json(const std::string& path, const model::M
     auto document = JsonDocument::read(path);
     if (!document) return document.errors();
     const JsonNode root = document->root();
+    if (!files::is_format(root, "fettle_poses", "table of poses", 1)) return document->errors();
     root.allow_keys({"fettle_poses", "units", "rotation", "times", "bodies"});
-    files::is_version(root.require("fettle_poses"), 1);
     const JsonNode units = root.require("units");
     const auto unit_name = units.choice({"um", "mm", "cm", "m", "in", "ft"});
     const auto form_name = root.require("rotation").choice(rotation_form_names());

@@ -35,7 +35,7 @@ public:
         formulas_.set_length_unit(unit_);
         formulas_.read_variables(root["variables"]);
         scene_.gravity = root["gravity"].quantity3(base::Dimension::acceleration, 1).value_or(Vector3::Zero());
-        scene_.timestep = root["timestep"].number(files::positive).value_or(0.01);
+        scene_.timestep = root["timestep"].number({1e-12, 1e9}).value_or(0.01);
         scene_.end_time = root["end_time"].number(files::positive);
         read_integrator(root["integrator"]);
         read_contact(root["contact"]);
@@ -138,11 +138,9 @@ base::Result<scene::Scene> read_scene(files::JsonDocument& document, const scene
     const files::JsonNode root = document.root();
     if (paper_scenes::is_fixture(root)) return paper_scenes::read_fixture(document, options);
     if (!root.is_object() || !root["fettle_scene"].exists()) {
-        const bool design = root.is_object() && root["fettle_design"].exists();
-        return base::Error{design ? ErrorCode::inconsistent : ErrorCode::missing_key, root.where(),
-                           design ? "this is a design, not a scene; the scene is the file that its `scene` names"
-                                  : "not a scene: neither `fettle_scene` (its version, 1) nor `rigid_body_problem` is there" +
-                                        files::misspelt_key(root, {"fettle_scene", "fettle_design"})};
+        return base::Error{ErrorCode::missing_key, root.where(),
+                           "not a scene: neither `fettle_scene` (its version, 1) nor `rigid_body_problem` is there" +
+                               files::format_remark(root, {"fettle_scene", "fettle_design"})};
     }
     return SceneReader(document, options).read();
 }

@@ -7,6 +7,7 @@
 
 #include "core/base/text.hpp"
 #include "design/answers/answer_json.hpp"
+#include "design/answers/judged_json.hpp"
 #include "design/answers/summary.hpp"
 #include "design/problem/motion_warnings.hpp"
 
@@ -19,82 +20,6 @@ using description::Design;
 using problem::DesignEvaluation;
 using problem::DesignProblem;
 using studies::OptimiseOutcome;
-
-Json constraints_json(const Design& design, const DesignEvaluation& final) {
-    Json list = Json::array();
-    for (size_t i = 0; i < final.constraints.size(); ++i) {
-        const description::Constraint& constraint = design.constraints[i];
-        const description::Measurement& measured = final.constraints[i];
-        list.push_back({{"name", constraint.name},
-                        {"value", measured.value},
-                        {"lower", measured.lower},
-                        {"upper", measured.upper},
-                        {"proven", measured.is_proven},
-                        {"met", description::violation(constraint.bounds, measured) <= 0}});
-        if (!measured.fault.empty()) list.back()["fault"] = measured.fault;
-        if (Json continued = continued_json(final, i); !continued.is_null()) list.back()["continued"] = std::move(continued);
-        if (Json over = over_tolerances_json(design, final, false, i); !over.is_null()) list.back()["over_tolerances"] = std::move(over);
-    }
-    return list;
-}
-
-Json terms_json(const Design& design, const DesignEvaluation& final) {
-    Json list = Json::array();
-    for (size_t k = 0; k < final.terms.size(); ++k) {
-        list.push_back({{"name", design.objective[k].name}, {"value", final.terms[k].value}});
-        if (Json over = over_tolerances_json(design, final, true, k); !over.is_null()) list.back()["over_tolerances"] = std::move(over);
-    }
-    return list;
-}
-
-// What the design measures by its own model and with the play of its fits taken up, SI.
-// @param quantity  what no motion changes has no other value
-Json measured_json(const std::string& name, const description::Quantity& quantity, const description::Measurement& own,
-                   const description::Measurement& other) {
-    return {{"name", name}, {"as_written", own.value}, {"play_taken_up", quantity.is_at_rest() ? Json() : Json(other.value)}};
-}
-
-Json by_models_json(const Design& design, const OptimiseOutcome& outcome) {
-    const DesignEvaluation &own = outcome.final, &other = outcome.play_taken_up;
-    if (!other.usable) return {};
-    Json terms = Json::array(), constraints = Json::array();
-    for (size_t k = 0; k < own.terms.size(); ++k)
-        terms.push_back(measured_json(design.objective[k].name, *design.objective[k].quantity, own.terms[k], other.terms[k]));
-    for (size_t i = 0; i < own.constraints.size(); ++i)
-        constraints.push_back(
-            measured_json(design.constraints[i].name, *design.constraints[i].quantity, own.constraints[i], other.constraints[i]));
-    Json in_doubt = Json::array();
-    for (const size_t i : outcome.in_doubt) in_doubt.push_back(design.constraints[i].name);
-    return {{"model", outcome.play_taken_up_by}, {"terms", terms}, {"constraints", constraints}, {"in_doubt", in_doubt}};
-}
-
-// What the design that was found owes to its facets and its time step; null: not known.
-Json resolution_json(const Design& design, const OptimiseOutcome& outcome, const RunFacts& facts) {
-    const studies::FinerReport& report = outcome.finer;
-    if (report.runs.empty()) return {};
-    Json runs = Json::array(), terms = Json::array(), constraints = Json::array(), flips = Json::array();
-    for (const studies::FinerRun& run : report.runs) {
-        runs.push_back({{"run", run.key},
-                        {"objective", finite_or_null(run.objective)},
-                        {"change_of_best", finite_or_null(change_of_best(outcome, facts, run))}});
-        if (!run.failure.empty()) runs.back()["failure"] = run.failure;
-    }
-    for (const studies::FinerValue& value : studies::finer_values(design, outcome.final, report)) {
-        Json entry{{"name", value.name}, {"found", value.found}};
-        for (const studies::FinerRun& run : report.runs) {
-            const auto& measured = value.of_objective ? run.terms : run.constraints;
-            entry[run.key] = run.failure.empty() ? Json(measured[static_cast<size_t>(value.index)].value) : Json();
-        }
-        entry["change"] = finite_or_null(value.share);
-        if (!value.of_objective) {
-            entry["met"] = value.is_met;
-            entry["met_finer"] = value.is_met_finer;
-            if (studies::is_flip(value)) flips.push_back(value.name);
-        }
-        (value.of_objective ? terms : constraints).push_back(std::move(entry));
-    }
-    return {{"runs", runs}, {"terms", terms}, {"constraints", constraints}, {"flips", flips}};
-}
 
 Json stages_json(const optimisers::OptimiserReport& report) {
     Json list = Json::array();
@@ -198,18 +123,12 @@ Json outcome_json(const DesignProblem& problem, const OptimiseOutcome& outcome, 
     json["iterations"] = report.iterations;
     json["optimality"] = report.best.usable && report.optimality.step.size() > 0 ? optimality_json(design, report.optimality) : Json();
     json["stages"] = stages_json(report);
-    json["by_models"] = by_models_json(design, outcome);
-    if (!outcome.play_not_compared.empty()) json["play_not_compared"] = outcome.play_not_compared;
-    json["resolution"] = resolution_json(design, outcome, run);
     json["budget_spent"] = report.budget_spent;
     json["constraint_violation_start"] = report.start.usable ? Json(report.start.violation) : Json();
     json["constraint_violation"] = report.best.usable ? Json(report.best.violation) : Json();
-    json["terms"] = terms_json(design, outcome.final);
-    json["constraints"] = constraints_json(design, outcome.final);
-    json["relations"] = relations_json(design, outcome.final.relations);
-    std::vector<std::string> names;
-    for (const core::scene::Body& body : design.scene.bodies) names.push_back(body.name);
-    json["clearance"] = clearance_json(outcome.clearance, names);
+    add_judged(design, outcome, json);
+    for (size_t k = 0; k < outcome.finer.runs.size(); ++k)
+        json["resolution"]["runs"][k]["change_of_best"] = finite_or_null(change_of_best(outcome, run, outcome.finer.runs[k]));
     json["unbuildable"] = outcome.unbuildable;
     std::vector<std::string> warnings = outcome.at_start.warnings;
     for (const std::string& warning : problem::motion_warnings(design, outcome.final)) warnings.push_back(warning);

@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.hpp"
 #include "design/answers/answer_json.hpp"
+#include "design/answers/travels.hpp"
 
 namespace fettle::design::answers {
 
@@ -18,6 +19,7 @@ namespace {
 Json bodies_at_end(const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
     constexpr int bodies_at_once = 32;
     Json::array_t list(model.bodies.size());
+    const std::vector<Travel> moved = travels(model, trajectory);
     core::base::parallel_for(count_of(list), bodies_at_once, [&](int k) {
         const auto i = static_cast<size_t>(k);
         const core::kinematics::Pose& pose = trajectory.poses.back()[i];
@@ -26,6 +28,8 @@ Json bodies_at_end(const core::model::Model& model, const core::stepper::Traject
         body["position"] = vector_json(core::kinematics::world_position(pose, -model.bodies[i].reference_point));
         Json& rotation = body["rotation"] = Json::array();
         for (int row = 0; row < 3; ++row) rotation.push_back(vector_json(pose.rotation.row(row).transpose()));
+        body["moved"] = moved[i].distance;
+        body["turned"] = moved[i].turn;
     });
     return Json(std::move(list));
 }

@@ -21,6 +21,7 @@ using description::Bounds;
 using description::Design;
 using description::Measurement;
 using optimisers::OptimiserStatus;
+using studies::JudgedDesign;
 using studies::OptimiseOutcome;
 using Verdict = SummaryRow::Verdict;
 
@@ -46,14 +47,15 @@ const char* wish(double weight) { return weight < 0 ? "as much as possible" : "a
 
 class SummaryMaker {
 public:
-    SummaryMaker(const Design& design, const OptimiseOutcome& outcome)
-        : design_(design), outcome_(outcome), costs_(costs_of(design, outcome.report.optimality)) {}
+    /// @param costs, start  Of the search that found the design; empty: there was none.
+    SummaryMaker(const Design& design, const JudgedDesign& judged, std::vector<Cost> costs, studies::MeasuredAtStart start)
+        : design_(design), judged_(judged), costs_(std::move(costs)), start_(std::move(start)) {}
 
     std::vector<SummaryRow> rows() const {
         std::vector<SummaryRow> out;
-        for (std::size_t i = 0; i < outcome_.final.constraints.size(); ++i) out.push_back(of_constraint(i));
-        for (Eigen::Index i = 0; i < outcome_.final.relations.values.size(); ++i) out.push_back(of_relation(i));
-        for (std::size_t k = 0; k < outcome_.final.terms.size(); ++k) out.push_back(of_term(k));
+        for (std::size_t i = 0; i < judged_.final.constraints.size(); ++i) out.push_back(of_constraint(i));
+        for (Eigen::Index i = 0; i < judged_.final.relations.values.size(); ++i) out.push_back(of_relation(i));
+        for (std::size_t k = 0; k < judged_.final.terms.size(); ++k) out.push_back(of_term(k));
         return out;
     }
 
@@ -64,21 +66,21 @@ private:
 
     SummaryRow of_constraint(std::size_t i) const {
         const auto& [name, bounds, quantity] = design_.constraints[i];
-        const Measurement& measured = outcome_.final.constraints[i];
+        const Measurement& measured = judged_.final.constraints[i];
         SummaryRow row;
         row.name = name;
         row.unit = description::unit_name(design_.constraints[i]);
-        if (i < outcome_.measured_at_start.constraints.size()) {
-            const double before = outcome_.measured_at_start.constraints[i];
+        if (i < start_.constraints.size()) {
+            const double before = start_.constraints[i];
             row.before = short_text(before, bounds);
             row.was_missed = description::violation(bounds, description::computed(before)) > 0;
         }
         row.now = measured.fault.empty() ? short_text(judged_by(measured, bounds), bounds) : "-";
         row.asked = description::required_text(bounds, row.unit);
-        row.known = !measured.is_proven                                                             ? SummaryRow::Known::computed
-                    : less_when_round(design_.constraints[i], measured, outcome_.final).has_value() ? SummaryRow::Known::of_facets
-                                                                                                    : SummaryRow::Known::proven;
-        const bool doubtful = std::count(outcome_.in_doubt.begin(), outcome_.in_doubt.end(), i) > 0;
+        row.known = !measured.is_proven                                                            ? SummaryRow::Known::computed
+                    : less_when_round(design_.constraints[i], measured, judged_.final).has_value() ? SummaryRow::Known::of_facets
+                                                                                                   : SummaryRow::Known::proven;
+        const bool doubtful = std::count(judged_.in_doubt.begin(), judged_.in_doubt.end(), i) > 0;
         row.verdict = !(description::violation(bounds, measured) <= 0) ? Verdict::violated : doubtful ? Verdict::in_doubt : Verdict::met;
         row.holds = holds(name);
         return row;
@@ -86,7 +88,7 @@ private:
 
     SummaryRow of_relation(Eigen::Index i) const {
         const description::Relation& relation = design_.relations[static_cast<std::size_t>(i)];
-        const double value = outcome_.final.relations.values[i];
+        const double value = judged_.final.relations.values[i];
         SummaryRow row;
         row.name = relation.name;
         row.unit = description::unit_name(relation);
@@ -104,16 +106,17 @@ private:
         SummaryRow row;
         row.name = term.name;
         row.unit = core::base::unit_name(term.quantity->dimension(), term.unit);
-        if (k < outcome_.measured_at_start.terms.size()) row.before = short_text(outcome_.measured_at_start.terms[k], open);
-        row.now = short_text(outcome_.final.terms[k].value, open);
+        if (k < start_.terms.size()) row.before = short_text(start_.terms[k], open);
+        row.now = short_text(judged_.final.terms[k].value, open);
         row.asked = wish(term.weight);
         row.verdict = Verdict::wanted;
         return row;
     }
 
     const Design& design_;
-    const OptimiseOutcome& outcome_;
+    const JudgedDesign& judged_;
     std::vector<Cost> costs_;
+    studies::MeasuredAtStart start_;
 };
 
 std::size_t count_of_verdict(const std::vector<SummaryRow>& rows, Verdict verdict) {
@@ -149,17 +152,17 @@ std::string sentence_of(const OptimiseOutcome& outcome, const std::vector<Summar
     }
 }
 
-std::string doubt_text(const OptimiseOutcome& outcome) {
-    if (outcome.in_doubt.empty()) return {};
-    return "in doubt: with the play of the fits taken up " + counted(outcome.in_doubt.size(), "requirement") +
-           (outcome.in_doubt.size() == 1 ? " is" : " are") + " not met";
+std::string doubt_text(const JudgedDesign& judged) {
+    if (judged.in_doubt.empty()) return {};
+    return "in doubt: with the play of the fits taken up " + counted(judged.in_doubt.size(), "requirement") +
+           (judged.in_doubt.size() == 1 ? " is" : " are") + " not met";
 }
 
 // What is met by the facets and time steps of the design alone.
-std::string resolution_doubt(const Design& design, const OptimiseOutcome& outcome) {
+std::string resolution_doubt(const Design& design, const JudgedDesign& judged) {
     std::vector<std::string> names;
     std::string run;
-    for (const studies::FinerValue& value : studies::finer_values(design, outcome.final, outcome.finer)) {
+    for (const studies::FinerValue& value : studies::finer_values(design, judged.final, judged.finer)) {
         if (!studies::is_flip(value) || !value.is_met) continue;
         if (names.empty()) run = value.run->name;
         names.push_back(value.name);
@@ -185,7 +188,7 @@ Summary summary_of(const Design& design, const OptimiseOutcome& outcome, const R
         summary.why = report.message;
         return summary;
     }
-    summary.rows = SummaryMaker(design, outcome).rows();
+    summary.rows = SummaryMaker(design, outcome, costs_of(design, report.optimality), outcome.measured_at_start).rows();
     std::string not_optimal = why_not_optimal(design, outcome, run);
     if (!not_optimal.empty()) not_optimal = "not shown to be the best: " + not_optimal;
     const bool has_failed = report.status == OptimiserStatus::infeasible;
@@ -193,6 +196,21 @@ Summary summary_of(const Design& design, const OptimiseOutcome& outcome, const R
     summary.sentence = sentence_of(outcome, summary.rows, run, !doubts.empty());
     summary.why = joined({has_failed ? report.message : "", not_optimal, doubts});
     summary.is_good = report.status == OptimiserStatus::optimal && summary.why.empty();
+    return summary;
+}
+
+Summary summary_of(const Design& design, const JudgedDesign& judged) {
+    Summary summary;
+    summary.rows = SummaryMaker(design, judged, {}, {}).rows();
+    if (!judged.final.usable) {
+        summary.sentence = "The design cannot be evaluated.";
+        summary.why = judged.final.reason;
+        return summary;
+    }
+    summary.why = joined({doubt_text(judged), resolution_doubt(design, judged)});
+    const std::string requirements = requirements_text(summary.rows) + ".";
+    summary.sentence = summary.why.empty() ? capital(requirements) : "As simulated " + requirements;
+    summary.is_good = summary.why.empty() && count_of_verdict(summary.rows, Verdict::violated) == 0;
     return summary;
 }
 

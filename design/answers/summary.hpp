@@ -36,6 +36,10 @@ struct Summary {
 
 Summary summary_of(const description::Design& design, const studies::OptimiseOutcome& outcome, const RunFacts& run);
 
+/// The same of a design as it is, which no search found: `before` is empty in all rows. What could not be evaluated has rows for its
+/// relations alone.
+Summary summary_of(const description::Design& design, const studies::JudgedDesign& judged);
+
 /// The proven bounds of a clearance of the round surfaces that facets stand for, where these do not prove what the meshes do; nothing: they
 /// do, or it is no clearance.
 std::optional<core::clearance::TrueBounds> less_when_round(const description::Constraint& constraint,

@@ -18,7 +18,7 @@ using core::clearance::PairStatus;
 using core::clearance::Solids;
 using core::clearance::Witness;
 
-constexpr const char* one_inside_the_other = "one lies inside the material of the other";
+constexpr const char* one_inside_the_other = "material of one lies inside the other";
 
 int severity(PairStatus status) {
     switch (status) {

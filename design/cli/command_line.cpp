@@ -83,6 +83,7 @@ OptionFacts facts_of(const CLI::Option& option) {
         for (const std::string& name : option.get_lnames()) facts.names.push_back("--" + name);
     }
     if (option.get_items_expected_max() > 0) facts.value = option.get_type_name();
+    facts.several = option.get_items_expected_max() > 1;
     if (facts.value.find('|') == std::string::npos) return facts;
     for (std::size_t at = 0; at <= facts.value.size();) {
         const std::size_t bar = std::min(facts.value.find('|', at), facts.value.size());

@@ -49,6 +49,7 @@ struct OptionFacts {
     std::string value;               ///< "TEXT", "INT", "FLOAT"; empty: a flag
     std::vector<std::string> words;  ///< the known values; empty: any
     bool other_values = false;       ///< values may be others than the known ones
+    bool several = false;            ///< takes a list
     std::string description;
 };
 struct CommandFacts {

@@ -45,6 +45,10 @@ int run_import(const ImportArguments& arguments, const CommonOptions& common, Co
         return console.input_errors({{ErrorCode::unsupported, "--to", "a scene is X" + ending + ", found " + arguments.to}});
     const Result<std::string> text = core::files::read_file(arguments.path);
     if (!text) return console.input_errors(text.errors());
+    if (const std::size_t first = text->find_first_not_of(" \t\r\n"); first != std::string::npos && (*text)[first] == '{')
+        return console.input_errors({{ErrorCode::unsupported, arguments.path,
+                                      "this is JSON; robots (URDF), which are XML, are imported. Scenes and designs are taken as they are: "
+                                      "see fettle simulate"}});
     auto robot = urdf::parse_urdf(*text, arguments.path);
     if (!robot) return console.input_errors(robot.errors());
     if (arguments.ignore_mimic_limits)

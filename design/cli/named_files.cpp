@@ -31,7 +31,7 @@ bool is_same_file(const std::string& x, const std::string& y) {
 std::vector<NamedFile> named_files_of(const std::string& command, const std::vector<GivenValue>& given) {
     std::vector<std::string> written{"--log",         "--junit", "--sarif", "--markdown", "--csv",
                                      "--certificate", "--out",   "--to",    "--draw",     "--report"};
-    std::vector<std::string> read{"--baseline", "--trajectory", "--continue"};
+    std::vector<std::string> read{"--baseline", "--trajectory", "--continue", "--source"};
     (command == "simulate" ? written : read).emplace_back("--poses");
     (command == "simulate" ? read : written).emplace_back("--samples-file");
     std::vector<NamedFile> files;

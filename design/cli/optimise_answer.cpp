@@ -145,14 +145,15 @@ std::string changes_text(const Design& design, const optimisers::OptimiserReport
 
 }  // namespace
 
-std::string answer_text(const answers::Summary& summary, const Console& console) {
+std::string answer_text(const answers::Summary& summary, const Console& console, std::size_t most_rows) {
     using Row = answers::SummaryRow;
-    constexpr std::size_t most_rows = 10, widest = 48;
+    constexpr std::size_t widest = 48;
     std::string text = console.coloured(summary.sentence, summary.is_good) + "\n";
     if (!summary.why.empty()) text += summary.why + "\n";
     const std::vector<Row> rows = answers::chosen_rows(summary.rows, most_rows);
     if (rows.empty()) return text;
-    std::size_t name = 0, before = 6, now = 3, asked = 9;
+    const bool has_before = std::any_of(summary.rows.begin(), summary.rows.end(), [](const Row& row) { return !row.before.empty(); });
+    std::size_t name = 0, before = has_before ? 6 : 0, now = 3, asked = 9;
     for (const Row& row : rows) {
         name = std::max(name, std::min(widest, row.name.size()));
         before = std::max(before, row.before.size());
@@ -160,13 +161,13 @@ std::string answer_text(const answers::Summary& summary, const Console& console)
         asked = std::max(asked, (row.asked + ", " + row.unit).size());
     }
     const auto line = [&](const std::string& what, const std::string& b, const std::string& n, const std::string& a, const std::string& v) {
-        std::string out = formatted("  %-*s  %*s  %*s  %-*s  ", static_cast<int>(name), what.c_str(), static_cast<int>(before), b.c_str(),
-                                    static_cast<int>(now), n.c_str(), static_cast<int>(asked), a.c_str()) +
-                          v;
+        std::string out = formatted("  %-*s  ", static_cast<int>(name), what.c_str());
+        if (has_before) out += formatted("%*s  ", static_cast<int>(before), b.c_str());
+        out += formatted("%*s  %-*s  ", static_cast<int>(now), n.c_str(), static_cast<int>(asked), a.c_str()) + v;
         out.erase(out.find_last_not_of(' ') + 1);
         return out + "\n";
     };
-    text += line("", "before", "now", "asked for", "");
+    text += line("", "before", has_before ? "now" : "is", "asked for", "");
     for (const Row& row : rows) {
         const bool wanted = row.verdict == Row::Verdict::wanted;
         const std::string asked_for = wanted && !row.unit.empty() ? row.asked + ", " + row.unit : row.asked;
@@ -241,36 +242,41 @@ std::string next_text(const std::string& report, const std::string& folder) {
     return "Look: " + look + "   Print: fettle export " + folder + " --to print.3mf --arrange plate\n";
 }
 
-std::vector<Check> outcome_checks(const Design& design, const OptimiseOutcome& outcome, const std::string& file) {
+std::vector<Check> requirement_checks(const Design& design, const studies::JudgedDesign& judged, const std::string& file) {
     std::vector<Check> checks;
-    for (size_t i = 0; i < outcome.final.constraints.size(); ++i) {
+    for (size_t i = 0; i < judged.final.constraints.size(); ++i) {
         const auto& [name, bounds, quantity] = design.constraints[i];
-        const description::Measurement& measured = outcome.final.constraints[i];
+        const description::Measurement& measured = judged.final.constraints[i];
         const std::string unit = description::unit_name(design.constraints[i]);
         const bool met = description::violation(bounds, measured) <= 0;
-        const bool doubtful = met && std::count(outcome.in_doubt.begin(), outcome.in_doubt.end(), i) > 0;
+        const bool doubtful = met && std::count(judged.in_doubt.begin(), judged.in_doubt.end(), i) > 0;
         Check check{name, met ? CheckOutcome::passed : CheckOutcome::failed, met ? "met" : "violated", "", file};
         check.message = description::known_text(measured, bounds, unit) + ", required " + description::required_text(bounds, unit);
-        if (const std::string remark = problem::remark(outcome.final, i); !remark.empty()) check.message += "; " + remark;
-        if (const std::string reserve = problem::reserve_text(outcome.final, false, i, {bounds.unit, unit}); !reserve.empty())
+        if (const std::string remark = problem::remark(judged.final, i); !remark.empty()) check.message += "; " + remark;
+        if (const std::string reserve = problem::reserve_text(judged.final, false, i, {bounds.unit, unit}); !reserve.empty())
             check.message += "; " + reserve + ", " + problem::reserves_text(design);
         if (doubtful) {
             check.outcome = CheckOutcome::remarked;
             check.rule = "in doubt";
             check.message += "; with the play of the fits taken up it is " +
-                             description::amount_text(outcome.play_taken_up.constraints[i].value, bounds.unit, unit) + ", which is not";
+                             description::amount_text(judged.play_taken_up.constraints[i].value, bounds.unit, unit) + ", which is not";
         }
         checks.push_back(std::move(check));
     }
-    for (Eigen::Index i = 0; i < outcome.final.relations.values.size(); ++i) {
+    for (Eigen::Index i = 0; i < judged.final.relations.values.size(); ++i) {
         const description::Relation& relation = design.relations[i];
-        const bool met = description::violation(relation, outcome.final.relations.values[i]) <= 0;
+        const bool met = description::violation(relation, judged.final.relations.values[i]) <= 0;
         const std::string unit = description::unit_name(relation);
         checks.push_back({relation.name, met ? CheckOutcome::passed : CheckOutcome::failed, met ? "met" : "violated",
-                          "is " + description::amount_text(outcome.final.relations.values[i], relation.bounds.unit, unit) + ", required " +
+                          "is " + description::amount_text(judged.final.relations.values[i], relation.bounds.unit, unit) + ", required " +
                               description::required_text(relation.bounds, unit),
                           file});
     }
+    return checks;
+}
+
+std::vector<Check> outcome_checks(const Design& design, const OptimiseOutcome& outcome, const std::string& file) {
+    std::vector<Check> checks = requirement_checks(design, outcome, file);
     const OptimiserStatus status = outcome.report.status;
     if (status == OptimiserStatus::infeasible) return checks;  // the requirements have failed
     checks.push_back({"no better design is near", status == OptimiserStatus::optimal ? CheckOutcome::passed : CheckOutcome::undecided,

@@ -12,8 +12,8 @@
 
 namespace fettle::design::cli {
 
-/// What one reads first: a sentence and a table of at most ten lines.
-std::string answer_text(const answers::Summary& summary, const Console& console);
+/// What one reads first: a sentence and a table of at most so many lines.
+std::string answer_text(const answers::Summary& summary, const Console& console, std::size_t most_rows = 10);
 /// All of it, for --details.
 std::string outcome_text(const description::Design& design, const studies::OptimiseOutcome& outcome, const Console& console,
                          const answers::RunFacts& run);
@@ -21,7 +21,9 @@ std::string outcome_text(const description::Design& design, const studies::Optim
 std::string written_text(const answers::RunFacts& run);
 /// Where to look, and what to type to print it. @param report  the page's file; empty: there is none
 std::string next_text(const std::string& report, const std::string& folder);
-/// Each requirement as a check, and that the design is the best near by.
+/// Each requirement as a check.
+std::vector<Check> requirement_checks(const description::Design& design, const studies::JudgedDesign& judged, const std::string& file);
+/// The same, and that the design is the best near by.
 std::vector<Check> outcome_checks(const description::Design& design, const studies::OptimiseOutcome& outcome, const std::string& file);
 
 int exit_code(optimisers::OptimiserStatus status);

@@ -37,12 +37,14 @@ struct Command {
 Command add_check_resolution(CommandLine& program, const CommonOptions& common);
 Command add_clearance(CommandLine& program, const CommonOptions& common);
 Command add_completion(CommandLine& program);
+Command add_check(CommandLine& program, const CommonOptions& common);
 Command add_coupon(CommandLine& program);
 Command add_draw(CommandLine& program, const CommonOptions& common);
 Command add_export(CommandLine& program, const CommonOptions& common);
 Command add_import(CommandLine& program, const CommonOptions& common);
 Command add_joints(CommandLine& program);
 Command add_manual(CommandLine& program);
+Command add_mcp(CommandLine& program, const CommonOptions& common);
 Command add_new(CommandLine& program);
 Command add_optimisers(CommandLine& program);
 Command add_process(CommandLine& program);

@@ -9,6 +9,7 @@
 #include "core/base/text.hpp"
 #include "core/base/units.hpp"
 #include "core/files/atomic_file.hpp"
+#include "core/part_files/part_file.hpp"
 #include "core/records/continuation.hpp"
 #include "core/records/poses_file.hpp"
 #include "core/records/trajectory_io.hpp"
@@ -24,6 +25,7 @@
 #include "design/answers/output_folder.hpp"
 #include "design/answers/run_folder.hpp"
 #include "design/answers/simulate_json.hpp"
+#include "design/answers/travels.hpp"
 #include "design/clearance/left_out.hpp"
 #include "design/clearance/path_proof.hpp"
 #include "design/clearance/report_json.hpp"
@@ -54,6 +56,11 @@ struct SimulateArguments {
 
 // What is simulated: the file as it stands, or a sample of its tolerances.
 Result<LoadedModel> load_subject(const SimulateArguments& options, const CommonOptions& common, Json& json, std::string& told) {
+    if (options.path.ends_with(core::part_files::part_file_ending))
+        return core::base::Error{
+            ErrorCode::unsupported, options.path,
+            "this is a part, which nothing moves: `fettle validate` and `fettle draw` take it; `fettle simulate` takes "
+            "a scene, in which it is the shape of a body"};
     if (options.made < 0) return load_model(options.path, common);
     begin_to_read(options.path);
     Result<studies::MadeMechanism> made =
@@ -200,6 +207,7 @@ std::string answer_text(const Outcome& outcome, const Simulation& simulation, co
                     ": " + proven(*proof.lower);
     }
     text += clearance::left_out_text(clearance::left_out_of_contact(model));
+    if (!simulation.trajectory.steps.empty()) text += answers::travels_text(model, answers::travels(model, simulation.trajectory)) + "\n";
     if (!out.empty()) text += "trajectory: " + (std::filesystem::path(out) / "trajectory.json").string() + "\n";
     return text;
 }
@@ -228,6 +236,7 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     json.update(clearance::proof_json(proof, run.prover.seconds()));
     json["left_out"] = clearance::left_out_json(clearance::left_out_of_contact(model));
     answers::add_end(model, simulation, json);
+    json["moved"] = answers::travels_text(model, answers::travels(model, simulation.trajectory));
     json["peak_memory_bytes"] = peak_memory_bytes();
     if (!options.poses.empty())
         console.unwritten(core::records::write_poses(options.poses, simulation.trajectory, model, answers::unit_name(model.length_unit)));

@@ -127,7 +127,7 @@ Measurement Clearance::value(const Simulated& s) const {
     const std::string names = "`" + s.model.bodies[range_.a].name + "` and `" + s.model.bodies[range_.b].name + "`";
     if (one_lies_inside(pair)) {
         const double inside = -pair.witness.distance;
-        return {inside, inside, inside, false, pair, "of " + names + " one lies inside the other's material"};
+        return {inside, inside, inside, false, pair, "material of one of " + names + " lies inside the other"};
     }
     Measurement measured{pair.upper, pair.lower, pair.upper, pair.is_bounded, pair, {}, {}};
     if (pair.intersecting) measured.fault = names + " pass through each other";

@@ -109,7 +109,7 @@ std::vector<double> in_window(const std::pair<int, int>& window, const std::vect
     return {y.begin() + window.first, y.begin() + window.second};
 }
 
-std::string seconds(double time) { return core::base::formatted("%.6g s", time); }
+std::string seconds(double time) { return core::base::formatted("%.9g s", time); }
 
 }  // namespace
 
@@ -144,8 +144,8 @@ Errors check(const Reduction& reduction, Dimension of_instants, const Instants& 
         add(ErrorCode::out_of_range, "at " + seconds(*reduction.at) + " this is not known: it is a step's, and the first step ends at " +
                                          seconds(first) + ", the earliest time to ask for");
     if (reduction.from && reduction.to && !(*reduction.from < *reduction.to))
-        add(ErrorCode::inconsistent,
-            "a window begins before it ends; this one is from " + seconds(*reduction.from) + " to " + seconds(*reduction.to));
+        add(ErrorCode::inconsistent, "a window begins before it ends; this one is from " + seconds(*reduction.from) + " to " +
+                                         seconds(*reduction.to) + "; for one time, say `at`");
     if (!errors.empty() || is_of_times(reduction)) return errors;
     const auto [begin, past] = window_of(reduction, instants, count);
     if (begin >= past)

@@ -607,7 +607,7 @@ Result<DesignFile> parse_design(const std::string& text, const std::string& path
                          ? "this is a scene, not a design: a design names it as its `scene`, and says what may change and what is wanted; "
                            "`fettle new` writes one to start from"
                          : "not a design: `fettle_design` (its version, 1) is not there" +
-                               core::files::misspelt_key(root, {"fettle_scene", "fettle_design"})};
+                               core::files::format_remark(root, {"fettle_scene", "fettle_design"})};
     }
     const core::base::ReadRecord record;
     DesignReadOptions drawn = options;

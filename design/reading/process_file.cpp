@@ -41,10 +41,10 @@ public:
     ProcessReader(const JsonNode& root, const std::string& path) : root_(root), path_(path) {}
 
     Process read() {
+        if (!core::files::is_format(root_, "fettle_process", "process", 1)) return {};
         root_.allow_keys(
             {"$schema", "fettle_process", "description", "units", "based_on", "correlation", "minimum_gap", "part_tolerance", "features"});
         root_["$schema"].string();
-        core::files::is_version(root_.require("fettle_process"), 1);
         const auto unit = root_.require("units").choice({"um", "mm", "cm", "m", "in", "ft"});
         if (!unit) return {};
         unit_ = core::base::si_per_unit(*unit, core::base::Dimension::length).value();

@@ -230,27 +230,12 @@ private:
         if (better) report.message += "; the design is the best of these, as it is as written";
     }
 
-    // The best design once more, with its certificates.
+    // The best design once more, with its certificates. Not interruptible: it is what makes the result of an interrupted run usable.
     void measure_end() {
         const VectorX point = outcome_.report.point;
-        problem::EvaluateOptions last;  // not interruptible: it is what makes the result of an interrupted run usable
-        last.gradients = false;
-        last.balance = true;
-        outcome_.final = problem_.evaluate(point, last);
+        static_cast<JudgedDesign&>(outcome_) = judge_design(problem_, point, {options_.should_stop, options_.on_step});
         judge_end();
-        if (!outcome_.final.usable) return;
-        const problem::PlayTakenUp compared = problem::play_taken_up(problem_, outcome_.final);
-        outcome_.play_not_compared = compared.why_not;
-        if (compared.model) {
-            last.should_stop = options_.should_stop;
-            outcome_.play_taken_up_by = compared.model->name;
-            outcome_.play_taken_up = compared.model->problem.evaluate(point, last);
-            outcome_.in_doubt = requirements_in_doubt(design_, outcome_.final, outcome_.play_taken_up);
-        }
-        for (const description::Measurement& measured : outcome_.final.constraints) {
-            if (measured.clearance) outcome_.clearance.push_back(*measured.clearance);
-        }
-        if (outcome_.report.feasible) return;
+        if (!outcome_.final.usable || outcome_.report.feasible) return;
         outcome_.limits =
             limits_of(problem_, point, outcome_.final, outcome_.report.best.jacobian, failures_, outcome_.report.evaluations + refused_);
     }
@@ -302,19 +287,6 @@ private:
 };
 
 }  // namespace
-
-std::vector<size_t> requirements_in_doubt(const Design& design, const DesignEvaluation& own, const DesignEvaluation& other) {
-    std::vector<size_t> doubtful;
-    if (!own.usable || !other.usable) return doubtful;
-    for (size_t i = 0; i < design.constraints.size(); ++i) {
-        const description::Bounds& bounds = design.constraints[i].bounds;
-        if (design.constraints[i].quantity->is_at_rest()) continue;
-        const bool met = description::violation(bounds, own.constraints[i]) <= 0;
-        const description::Measurement value = description::computed(other.constraints[i].value);  // it is no proof of anything
-        if (met && description::violation(bounds, value) > 0) doubtful.push_back(i);
-    }
-    return doubtful;
-}
 
 HistoryEntry history_entry(const Design& design, const VectorX& p, const DesignEvaluation& evaluation) {
     HistoryEntry entry;

@@ -23,7 +23,7 @@
 #include "design/optimisers/optimisation.hpp"
 #include "design/problem/design_problem.hpp"
 #include "design/studies/history.hpp"
-#include "design/studies/resolution.hpp"
+#include "design/studies/judged_design.hpp"
 
 namespace fettle::design::studies {
 
@@ -46,7 +46,8 @@ struct MeasuredAtStart {
     std::vector<double> constraints, terms;  ///< in the design's order
 };
 
-struct OptimiseOutcome {
+/// The design that was found is judged as it is; `final` is not usable if the start was not.
+struct OptimiseOutcome : JudgedDesign {
     optimisers::OptimiserReport report;
     VectorX start;  ///< where it began
     /// On which sides joints say that closed linkages are assembled: the same at the start and at the end.
@@ -55,17 +56,7 @@ struct OptimiseOutcome {
     std::optional<double> objective_start;  ///< the design's own objective there, if it could be evaluated
     /// What the derivatives of the first design say that could be evaluated: narrated before the search goes on from it.
     gradient_audit::GradientWarnings at_start;
-    problem::DesignEvaluation final;  ///< of report.point, without gradients; not usable if the start was not
-    /// The same design with the play of its fits taken up (problem::play_taken_up): where the two differ, the motion within the play
-    /// matters. Not usable where there is no such model, or it cannot be simulated.
-    problem::DesignEvaluation play_taken_up;
-    std::string play_taken_up_by;   ///< that model's name
-    std::string play_not_compared;  ///< why there is none though there are fits; empty: there is one, or there are none
-    std::vector<size_t> in_doubt;   ///< requirements that are met as written, and not with the play taken up
-    /// By finer facets and time steps; of a design that is simulated once more alone (optimise_file.hpp), else without runs.
-    FinerReport finer;
-    std::vector<core::clearance::PairClearance> clearance;  ///< the certificates of all clearance constraints, in their order
-    std::vector<std::string> limits;                        ///< what holds an infeasible design back (limits.hpp)
+    std::vector<std::string> limits;       ///< what holds an infeasible design back (limits.hpp)
     std::vector<std::string> unbuildable;  ///< what within the bounds makes no design, found before the first simulation (buildable.hpp)
     int replayed = 0;                      ///< evaluations that the history answered
 };
@@ -77,11 +68,6 @@ struct OptimiseOutcome {
 /// Deterministic: the same design and options give the same sequence of evaluations, bit for bit.
 /// Errors: the optimiser's name.
 Result<OptimiseOutcome> optimise_design(const problem::DesignProblem& problem, const OptimiseOptions& options = {});
-
-/// Which requirements a design meets, and not by the values of another model of the same motion: what a proof is worth there depends on
-/// which of the two a real mechanism is like. None where the other is not usable; of what no motion changes none.
-std::vector<size_t> requirements_in_doubt(const description::Design& design, const problem::DesignEvaluation& own,
-                                          const problem::DesignEvaluation& other);
 
 /// An evaluation as the history keeps it. Throws optimisers::Interrupted if it was.
 HistoryEntry history_entry(const description::Design& design, const VectorX& p, const problem::DesignEvaluation& evaluation);

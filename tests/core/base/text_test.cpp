@@ -16,6 +16,8 @@ TEST_CASE("What a terminal may have: no control characters, no bytes that are no
     CHECK(shown("long \xC0\xAF") == "long \\xc0\\xaf");           // "/" in two bytes
     CHECK(shown("half \xED\xA0\x80") == "half \\xed\\xa0\\x80");  // a surrogate
     CHECK(shown("far \xF4\x90\x80\x80") == "far \\xf4\\x90\\x80\\x80");
+    CHECK(shown("a\u202Egnp.b\u2066c") == "a\\u202egnp.b\\u2066c");  // would be read from right to left
+    CHECK(shown("fin\u2028") == "fin\\u2028");
     CHECK(shown_on_one_line("a\nb\tc") == "a b c");
 }
 

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "core/files/json_document.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fettle::core::files::json_keys_test {
@@ -26,6 +27,19 @@ TEST_CASE("A top-level key is found wherever it stands", "[scene]") {
     CHECK(has_kind("\xEF\xBB\xBF \n{ \"kind\"\n : 1"));
     CHECK(has_kind(R"({"a": [{"b": "}]"}, "\"{\\", 3], "c": {"kind": {}}, "kind": 1})"));
     CHECK(has_kind("{\"a\": \"" + std::string(200000, '[') + "\", \"b\": [" + std::string(200000, '1') + "], \"kind\": 1}"));
+}
+
+TEST_CASE("Another of our files is told by what it is, and what takes it", "[scene]") {
+    const auto told = [](const std::string& text) {
+        auto document = JsonDocument::parse(text, "a.json");
+        CHECK_FALSE(is_format(document->root(), "fettle_part", "part", 1));
+        return document->errors().front().message;
+    };
+    CHECK(told(R"({"fettle_process": 1})") ==
+          "no part: the key `fettle_part` is missing; by its `fettle_process` it is a process, which --process takes, and a design names");
+    CHECK(told(R"({"fetle_part": 1})").find("did you mean `fettle_part`") != std::string::npos);
+    CHECK(told(R"({"a": 1})") == "no part: the key `fettle_part` is missing");
+    CHECK(told(R"({"fettle_part": 2})").find("a file of version 2 is not read") == 0);
 }
 
 TEST_CASE("What is no top-level key is not taken for one", "[scene]") {

@@ -155,7 +155,7 @@ TEST_CASE("Pairs that contact never acts on are told, not refused", "[model]") {
     REQUIRE(model->warnings.size() == 2);
     CHECK(contains(model->warnings[0], "`wall` and `hand` intersect"));
     CHECK(contains(model->warnings[0], "contact never acts between them"));
-    CHECK(contains(model->warnings[1], "`core` and `wall` overlap at the start: the first lies inside the second's material"));
+    CHECK(contains(model->warnings[1], "`core` and `wall` overlap at the start: material of the first lies inside the second"));
     scene.bodies[1].group = scene.bodies[0].group = scene.bodies[2].group = 3;  // said to be meant
     CHECK(build_model(scene)->warnings.empty());
     // A dynamic body that is inside stays an error.

@@ -149,6 +149,27 @@ TEST_CASE("tolerance: spreads, contributors and samples, as text and as JSON") {
     CHECK(run("tolerance " + folder.design() + " --samples -1").code == 3);
 }
 
+TEST_CASE("check: every requirement at the values as they are, as exit code") {
+    const auto checked = [](const std::string& limit) {
+        const std::string weight = R"("constraints": [ {"type": "mass", "name": "weight", "bodies": ["cube"], "upper": )" + limit + "},";
+        const DesignFolder folder(replaced(small_design, "\"constraints\": [", weight));
+        return run("check " + folder.design() + " --json");
+    };
+    const Answer heavy = checked("1e-9"), light = checked("1e9");
+    CHECK(heavy.code == 1);
+    CHECK(heavy.json().at("status") == "violated");
+    CHECK(heavy.json().at("constraints").at(0).at("met") == false);
+    CHECK(heavy.json().at("summary").at("rows").at(0).at("verdict") == "violated");
+    CHECK(light.json().at("constraints").at(0).at("met") == true);
+    CHECK(light.json().at("resolution").is_null());
+    // The same numbers as the gradient's, which simulates it too.
+    const DesignFolder folder;
+    const Json gradient = run("gradient " + folder.design() + " --json").json(), check = run("check " + folder.design() + " --json").json();
+    CHECK(check.at("objective") == gradient.at("objective"));
+    CHECK(run("check " + folder.design()).says("asked for"));
+    CHECK(run("check " + folder.path.string(), true).says("design.final.json"));
+}
+
 TEST_CASE("check-resolution: the numbers of what can be simulated, and why the rest cannot") {
     // A post of eight sides whose corners, with twice the facets, would reach into the block.
     const DesignFolder folder(R"({"fettle_design": 1, "scene": "small.scene.json", "units": "mm",

@@ -35,6 +35,8 @@ const std::vector<std::string>& commands() {
         "clearance FILE --baseline FILE --minimum 0.1mm",
         "ranges FILE",
         "ranges FILE --anywhere --minimum 0.1mm",
+        "check FILE",
+        "check FILE --resolution",
         "check-resolution FILE",
         "tolerance FILE",
         "gradient FILE",

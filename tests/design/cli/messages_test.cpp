@@ -125,7 +125,7 @@ TEST_CASE("messages: files of another version, and a scene that is not there") {
     refused("validate " + alone, {alone + "#/scene: there is no scene file " + folder.file("gone.scene.json"), "[file_not_found]"});
     refused("validate " + folder.write("half.scene.json", R"({"fettle_scene": 1, "units": "mm", "timestep": -1,
                 "bodies": [{"name": "a", "mesh": "a.stl"}]})"),
-            {"it must be greater than 0"});
+            {"it must be at least 1e-12 and at most 1000000000"});
 }
 
 TEST_CASE("messages: a motor without a joint is told once, by what is missing") {
