@@ -254,6 +254,21 @@ TEST_CASE("report: simulate and clearance leave one beside their results, and re
     CHECK(run("report " + folder.file("other") + " --json").json().at("errors")[0].at("code") == "unsupported");
 }
 
+TEST_CASE("report: of a run that went on it has the forces of all steps, and is made again from its tables") {
+    const DesignFolder folder;
+    const std::string out = folder.file("sim"), scene = folder.file("small.scene.json");
+    REQUIRE(run("simulate " + scene + " --steps 34 --no-report --out " + out).code == 0);
+    REQUIRE(run("simulate " + scene + " --steps 40 --continue " + out + "/trajectory.json --out " + out).code == 0);
+    const std::string page = contents(out + "/report.html");
+    const Json series = data_of(page)["scenarios"][0]["series"];
+    REQUIRE_FALSE(series.empty());
+    CHECK(unpacked<double>(series.back()["time"], "f64").size() == 40);
+    REQUIRE(run("report " + out).code == 0);
+    CHECK(contents(out + "/report.html") == page);
+    REQUIRE(run("simulate " + scene + " --steps 40 --out " + folder.file("whole")).code == 0);
+    CHECK(data_of(contents(folder.file("whole/report.html")))["scenarios"][0]["series"] == series);
+}
+
 TEST_CASE("report: how deep two parts are in each other, how much they share, and where") {
     const DesignFolder folder;
     folder.write("shared.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
