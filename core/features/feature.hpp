@@ -46,7 +46,7 @@ struct Feature {
     std::vector<int> triangles{};        ///< of the mesh, ascending
 
     double length() const { return along.to - along.from; }
-    /// Of a cone: at the ends of its length.
+    /// A cone's radius at a height along the axis.
     double radius_at(double height) const { return surface.radius + surface.slope * (height - surface.axis.dot(surface.point - origin)); }
 };
 

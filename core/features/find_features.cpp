@@ -40,11 +40,11 @@ double of_digits(const geometry::Mesh& mesh) { return std::max(2e-6 * diagonal_o
 
 Parted part_as_needed(const geometry::Mesh& mesh, const FeatureOptions& options, double& tolerance) {
     tolerance = options.tolerance.value_or(of_digits(mesh));
-    Parted exact = part(mesh, {tolerance, options.largest_step});
+    Parted exact = part(mesh, {tolerance, options.largest_step, options.tolerance.has_value()});
     constexpr double much = 0.02, most = 0.5;
     const double loose = 6e-5 * diagonal_of(mesh);
     if (options.tolerance || !(exact.free_area > much * exact.area) || loose <= tolerance) return exact;
-    Parted inexact = part(mesh, {loose, options.largest_step});
+    Parted inexact = part(mesh, {loose, options.largest_step, true});
     if (inexact.free_area > most * exact.free_area) return exact;
     tolerance = loose;
     return inexact;

@@ -242,7 +242,7 @@ std::optional<Surface> near_surface(SurfaceKind kind, const SurfaceSamples& samp
     }
 }
 
-std::optional<Surface> fitted_surface(const Surface& start, const std::vector<Vector3>& points) {
+std::optional<Surface> fitted_surface(const Surface& start, const std::vector<Vector3>& points, double hopeless) {
     const int count = parameter_count(start.kind);
     if (count_of(points) < count) return std::nullopt;
     const Vector3 mean = mean_of(points);
@@ -266,6 +266,7 @@ std::optional<Surface> fitted_surface(const Surface& start, const std::vector<Ve
             }
             damping = is_better ? std::max(1e-12, 0.1 * damping) : 100 * damping;
         }
+        if (hopeless > 0 && sum > 0.25 * before && sum > hopeless * hopeless * static_cast<double>(points.size())) return std::nullopt;
         if (!is_better || before - sum <= enough * before) break;
     }
     return is_sound(surface) ? std::optional(surface) : std::nullopt;

@@ -29,6 +29,8 @@ std::optional<Surface> near_surface(SurfaceKind kind, const SurfaceSamples& samp
 
 /// Gauss-Newton with Levenberg's damping from a start: least sum of squared distances of the points. Its `point` is beside the points'
 /// mean (of cylinders and cones); its axis has a length of 1. Nothing: fewer points than numbers, or no end was reached.
-std::optional<Surface> fitted_surface(const Surface& start, const std::vector<Vector3>& points);
+/// @param hopeless  [m]; > 0: nothing, as soon as the root mean square stays above this while a step takes off less than three quarters of
+///                  the sum of squares: points of no such surface
+std::optional<Surface> fitted_surface(const Surface& start, const std::vector<Vector3>& points, double hopeless = 0);
 
 }  // namespace fettle::core::features

@@ -35,7 +35,8 @@ public:
     }
 
     // How much of the border leads smoothly into free form: of all of it, and of what is ruled of the sides.
-    bool is_unbounded(const Region& region, int index, const std::vector<std::uint8_t>& free) const {
+    bool is_unbounded(const std::vector<Region>& regions, int index, const std::vector<std::uint8_t>& free) const {
+        const Region& region = regions[index];
         constexpr double third = 1.0 / 3;
         const bool is_ruled = region.surface.kind == SurfaceKind::cylinder || region.surface.kind == SurfaceKind::cone;
         double open = 0, border = 0, open_side = 0, side = 0;
@@ -48,7 +49,7 @@ public:
                 const double length = along.norm(), across = is_ruled ? std::abs(along.dot(region.surface.axis)) : 0;
                 border += length;
                 side += across;
-                if (std::abs(crease.angle) > limit_ || free[q] == 0) continue;
+                if (std::abs(crease.angle) > limit_ || (free[q] == 0 && !is_next_column(region, regions, region_[q]))) continue;
                 open += length;
                 open_side += across;
             }
@@ -56,6 +57,14 @@ public:
     }
 
 private:
+    // A cylinder as wide whose axis leans: both are columns of the facets of a tube that bends.
+    static bool is_next_column(const Region& region, const std::vector<Region>& regions, int next) {
+        if (next < 0 || regions[next].surface.kind != SurfaceKind::cylinder || region.surface.kind != SurfaceKind::cylinder) return false;
+        constexpr double leaning = 0.01, alike = 0.1;
+        const Surface &a = region.surface, &b = regions[next].surface;
+        return a.axis.cross(b.axis).norm() > leaning && std::abs(a.radius - b.radius) < alike * a.radius;
+    }
+
     template <class Visit>
     void for_smooth(int patch, const Visit& visit) const {
         for (const int c : all_.patch_creases[patch]) {
@@ -90,7 +99,7 @@ std::vector<std::uint8_t> drop_unbounded(const Patches& patches, std::vector<Reg
     for (int round = 0; round < most_rounds; ++round) {
         std::vector<Region> left;
         for (int r = 0; r < count_of(regions); ++r)
-            if (!form.is_unbounded(regions[r], r, free)) left.push_back(regions[r]);
+            if (!form.is_unbounded(regions, r, free)) left.push_back(regions[r]);
         if (left.size() == regions.size()) break;
         regions = std::move(left);
         free = form.find(regions);

@@ -59,12 +59,19 @@ public:
     std::vector<Region> run() {
         std::vector<Region> out;
         // First those that end where others begin; a column of a torus' facets, say, does not.
+        std::vector<std::uint8_t> is_vain(all_.patches.size(), 0);
         for (const double open : {0.3, 1.0}) {
             std::vector<std::uint8_t> is_for_later(all_.patches.size(), 0);
+            work_ = 0;
+            failed_ = 0;
             for (int seed = 0; seed < count_of(all_.patches); ++seed) {
-                if (claimed_[seed] != 0 || is_for_later[seed] != 0) continue;
+                if (claimed_[seed] != 0 || is_for_later[seed] != 0 || is_vain[seed] != 0 || is_left_out(seed)) continue;
                 std::optional<Region> found = best_from(seed);
-                if (!found) continue;
+                if (!found) {
+                    is_vain[seed] = 1;
+                    ++failed_;
+                    continue;
+                }
                 const bool is_open = open_share(*found) > open;
                 constexpr std::size_t many = 64;  // that are not to be found again from each of them
                 if (is_open && found->patches.size() < many) continue;
@@ -88,8 +95,10 @@ private:
     void add_coarse(std::vector<Region>& out) {
         constexpr double share = 0.6, open = 0.05;
         constexpr std::size_t few = 24;
+        failed_ = 0;
         for (int seed = 0; seed < count_of(all_.patches); ++seed) {
-            if (claimed_[seed] != 0) continue;
+            if (claimed_[seed] != 0 || is_left_out(seed)) continue;
+            ++failed_;
             const std::vector<int> ring = ring_of(seed);
             tolerance_ = share * depth_of(seed);
             if (ring.size() < 6 || !(tolerance_ > options_.tolerance)) continue;
@@ -101,6 +110,13 @@ private:
         }
         tolerance_ = options_.tolerance;
         for (auto& each : tried_) std::fill(each.begin(), each.end(), std::uint8_t{0});
+    }
+
+    // Where very many facets are of no surface, the search begins at one of sixteen alone: surfaces of a few facets among them stay free
+    // form.
+    bool is_left_out(int seed) const {
+        constexpr int very_many = 10'000, share = 16;
+        return failed_ > very_many && seed % share != 0;
     }
 
     // How far the arc over a facet is from it at most, by how its neighbours lean: chord x angle / 8.
@@ -170,7 +186,7 @@ private:
         return chain;
     }
 
-    // What is round a patch, without what is much larger: a fillet's facets without the flat faces beside it.
+    // The patches round one, without much larger ones: a fillet's facets without the flat faces beside it.
     std::vector<int> ring_of(int seed) const {
         std::vector<int> ring{seed};
         const auto add = [&](int from) {
@@ -219,14 +235,14 @@ private:
             near = near_surface(SurfaceKind::cylinder, samples);
             if (near) near->kind = SurfaceKind::cone;
         }
-        if (near) near = fitted_surface(*near, samples.points);
+        if (near) near = fitted_surface(*near, samples.points, 2 * tolerance_);
         for (const Vector3& x : samples.points)
             if (near && !(std::abs(signed_distance(*near, x)) <= tolerance_)) return std::nullopt;
         if (near && !(near->radius < 100 * all_.size)) return std::nullopt;
         return near;
     }
 
-    // Of the surface beside the corners: a coarse facet's middle may be nearer to the other side of a tube.
+    // The surface's normal beside the corners: a coarse facet's middle may be nearer to the other side of a tube.
     Vector3 normal_beside(const Surface& surface, int patch) const {
         Vector3 sum = Vector3::Zero();
         for (const int v : all_.patch_vertices[patch]) sum += normal_at(surface, all_.vertices.col(v));
@@ -312,14 +328,16 @@ private:
 
     // The same, but not from facets on which it went astray often.
     std::optional<Region> tried(SurfaceKind kind, const std::vector<int>& seeds, int seed) {
-        constexpr std::size_t astray = 12;
+        constexpr std::size_t astray = 12, patience = 8;
         constexpr std::uint8_t often = 3;
         std::vector<std::uint8_t>& times = tried_[static_cast<std::size_t>(kind)];
-        if (times[seed] >= often) return std::nullopt;
+        const bool is_long = work_ > patience * all_.patches.size();  // a mesh of mostly free form
+        if (times[seed] >= (is_long ? 1 : often)) return std::nullopt;
         reached_.clear();
         std::optional<Region> out = grown(kind, seeds);
         if (!out && reached_.size() >= astray)
             for (const int member : reached_) times[member] = std::min<std::uint8_t>(times[member] + 1, often);
+        work_ += out ? 0 : reached_.size();
         return out;
     }
 
@@ -398,7 +416,8 @@ private:
         const double bend = bend_of(region, corners);
         if (!(bend > much_bend * tolerance_)) return false;
         constexpr std::size_t many = 24;  // facets, whose corners are near by no chance; of a few they are much nearer than facets are deep
-        if (region.patches.size() < many && region.residual > 0.25 * usual_depth(surface, region.patches)) return false;
+        if (!options_.is_noise && region.patches.size() < many && region.residual > 0.25 * usual_depth(surface, region.patches))
+            return false;
         if (surface.kind == SurfaceKind::sphere) return region.patches.size() >= 6;
         if (surface.kind == SurfaceKind::cone && !is_tapered(region)) return false;
         const auto [u, v] = across_of(surface.axis);
@@ -529,6 +548,8 @@ private:
     std::array<std::vector<std::uint8_t>, 5> tried_;  // by kind, how often
     Marks in_, seen_, corner_;
     std::vector<int> reached_;  // by the last growth
+    int failed_ = 0;            // seeds from which no region was found
+    std::size_t work_ = 0;      // facets reached by growths that came to nothing
 };
 
 }  // namespace

@@ -10,8 +10,9 @@
 namespace fettle::core::features {
 
 struct RegionOptions {
-    double tolerance = 0;  ///< how far corners of facets may lie from their surface [m]
-    double limit = 0;      ///< the most that two facets of one surface lean against each other [rad]
+    double tolerance = 0;   ///< how far corners of facets may lie from their surface [m]
+    double limit = 0;       ///< the most that two facets of one surface lean against each other [rad]
+    bool is_noise = false;  ///< corners are known to be off by about the tolerance; else a few that are are no surface's
 };
 
 struct Region {

@@ -11,6 +11,7 @@
 #include "core/files/json_dump.hpp"
 #include "design/clearance/ranges_report.hpp"
 #include "design/clearance/report_json.hpp"
+#include "design/features/features_report.hpp"
 #include "design/python/arguments.hpp"
 #include "design/python/bindings.hpp"
 #include "design/python/errors.hpp"
@@ -340,9 +341,42 @@ void bind_ranges_question(py::module_& module) {
         "found (0.01 deg, 0.01 mm). reach: how far slides are looked at. progress(done, of).");
 }
 
+void bind_features_question(py::module_& module) {
+    module.def(
+        "features",
+        [](const Model& model, const std::string& process, const py::object& tolerance, bool fits, bool triangles,
+           const py::object& progress) {
+            features::FeaturesQuestion question;
+            question.process = process;
+            question.fits = fits;
+            if (!tolerance.is_none()) {
+                question.options.tolerance = quantity_from(tolerance, Dimension::length, "tolerance");
+                check_above("tolerance", *question.options.tolerance, 0);
+            }
+            Watch watch(progress);
+            const Result<features::FeaturesReport> report = [&] {
+                const py::gil_scoped_release unlocked;
+                question.on_body = watch.on_count();
+                question.should_stop = watch.should_stop();
+                return features::ask_features(model, question);
+            }();
+            watch.end();
+            if (!report) raise_if_any(with_arguments(report.errors()));
+            return py::module_::import("json").attr("loads")(core::files::dumped(features::features_json(*report, triangles)));
+        },
+        py::arg("model"), py::arg("process") = "", py::arg("tolerance") = py::none(), py::arg("fits") = true, py::arg("triangles") = false,
+        py::arg("progress") = py::none(),
+        "What `fettle features` asks and answers, a dict with the keys of its JSON (SI): planes, bores, pins, cones, spheres and tori of "
+        "each "
+        "body as assembled, fitted, and which pin sits in which hole. process: by which a fit's play is judged. tolerance: how far corners "
+        "may "
+        "lie from their surface. triangles: lists those of each feature. progress(done, of).");
+}
+
 }  // namespace
 
 void bind_clearance(py::module_& module) {
+    bind_features_question(module);
     py::class_<Certificate, std::shared_ptr<Certificate>>(
         module, "Certificate", "The proof of clearances as data: over a path, as assembled, or over ranges of joints.")
         .def(py::init<>())

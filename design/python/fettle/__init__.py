@@ -63,6 +63,7 @@ from ._fettle import (
     export_files as export_files,
     follow_scripts as follow_scripts,
     formula as formula,
+    features as features,
     free_ranges as free_ranges,
     from_si as from_si,
     hypot as hypot,

@@ -23,7 +23,7 @@ double area_of(const geometry::Mesh& mesh, int t) {
     return 0.5 * (b - a).cross(d - a).norm();
 }
 
-// What is wrong with what was found, against the surfaces that the kernel drew; empty: nothing.
+// Faults of the features found, against the surfaces that the kernel drew; empty: none.
 std::string fault(const DrawnPart& part, const Features& found) {
     std::string out;
     std::vector<int> feature_of(part.mesh.triangles.size(), -1);
@@ -89,6 +89,26 @@ TEST_CASE("random parts: each surface is found, and none of a wrong kind") {
     const Campaign done = run(40, 1);
     CHECK(done.parts >= 30);
     for (const SurfaceKind kind : curved) CHECK(done.kinds.at(kind) > 0);
+}
+
+TEST_CASE("the same mesh in another order has the same features, names and bits") {
+    Chance chance(7);
+    Result<DrawnPart> part = random_part(chance, Lean::through);
+    REQUIRE(part);
+    const Features before = find_features(part->mesh);
+    DrawnPart other = *part;
+    roughen(other, {false, false, true, 0}, chance);
+    const Features after = find_features(other.mesh);
+    REQUIRE(after.features.size() == before.features.size());
+    for (std::size_t k = 0; k < before.features.size(); ++k) {
+        const Feature &a = before.features[k], &b = after.features[k];
+        CHECK(a.name == b.name);
+        CHECK(a.surface.point == b.surface.point);
+        CHECK(a.surface.axis == b.surface.axis);
+        CHECK(a.surface.radius == b.surface.radius);
+        CHECK(a.residual == b.residual);
+        CHECK(a.triangles.size() == b.triangles.size());
+    }
 }
 
 TEST_CASE("many random parts", "[slow]") {

@@ -31,7 +31,7 @@ private:
 
 constexpr double mm = 1e-3;
 
-/// A plate in two layers with bores, counterbores and blind bores, and pins on it.
+/// A plate of two layers, with bores, counterbores and blind bores, and pins on it.
 inline Result<Solid> plate(Drawing& drawing, Chance& chance) {
     const int nx = 1 + chance.among(3), ny = 1 + chance.among(2);
     const double pitch = chance.between(12, 20) * mm, low = chance.between(2, 8) * mm, high = low + chance.between(2, 8) * mm,
@@ -189,12 +189,15 @@ inline void roughen(DrawnPart& part, const Roughness& rough, Chance& chance) {
     part.facets = facets;
 }
 
+/// @param lean  That of plates. Balls, fillets and grooves whose facets lean are no exact balls and tori, so that those parts have their
+/// corners
+///              on the surfaces.
 inline Result<DrawnPart> random_part(Chance& chance, Lean lean) {
     Facets facets;
     facets.segments = 12 + chance.among(117);
-    facets.lean = lean;
-    Drawing drawing(facets);
     const int kind = chance.among(has_solid_booleans() ? 3 : 2);
+    facets.lean = kind == 0 ? lean : Lean::through;
+    Drawing drawing(facets);
     const Result<Solid> solid = kind == 0 ? plate(drawing, chance) : kind == 1 ? turned_part(drawing, chance) : cut_block(drawing, chance);
     if (!solid) return solid.errors();
     return drawn(drawing, *solid, "part", {false});
