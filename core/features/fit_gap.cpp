@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/clearance/clearance.hpp"
 #include "core/clearance/faces_alone.hpp"
@@ -17,15 +18,23 @@ std::vector<clearance::PairClearance> fit_gaps(const model::Model& model, const 
         two.bodies = {model.bodies[fit.pin.body], model.bodies[fit.hole.body]};
         two.diagonal = model.diagonal;
         two.length_unit = model.length_unit;
-        const clearance::FacesAlone faces(two, {0, parts[fit.pin.body].features[fit.pin.feature].triangles},
-                                          {1, parts[fit.hole.body].features[fit.hole.feature].triangles});
         const std::vector<clearance::PairRequest> pairs{{.a = 0, .b = 1}};
         constexpr double fine = 1e-8, share = 1e-4;  // [m]; of the play
         clearance::ClearanceOptions options = clearance::usual_options(pairs, std::max(fine, share * std::abs(fit.play)));
         options.sample_nodes = false;
         options.should_stop = should_stop;
-        clearance::PairClearance gap =
-            faces.in_whole(clearance::certify_clearance(faces.model(), clearance::as_assembled(faces.model()), pairs, options).front());
+        const auto measured = [&](const std::vector<int>& hole) {
+            const clearance::FacesAlone faces(two, {0, parts[fit.pin.body].features[fit.pin.feature].triangles}, {1, hole});
+            return faces.in_whole(
+                clearance::certify_clearance(faces.model(), clearance::as_assembled(faces.model()), pairs, options).front());
+        };
+        clearance::PairClearance gap = measured(parts[fit.hole.body].features[fit.hole.feature].triangles);
+        if (gap.is_clash() &&
+            !gap.intersecting) {  // a socket's facets are closed, and the ball is within them: then beside all of its part
+            gap = measured({});
+            gap.is_bounded = false;
+            gap.upper = std::numeric_limits<double>::infinity();
+        }
         gap.a = fit.pin.body;
         gap.b = fit.hole.body;
         out.push_back(std::move(gap));
