@@ -59,6 +59,7 @@ private:
         core::scene::CoordinateForces& bar = forces_bar(term.origin);
         if (term.kind == LawKind::damper) bar.damping += coefficient;
         if (term.kind == LawKind::friction) bar.friction += coefficient;
+        if (term.kind == LawKind::stop && is_swing(term)) return reverse_swing(term.origin, reference);
         if (term.kind == LawKind::stop) (*bar.limits)[term.sign > 0 ? 0 : 1] += reference;
         if (term.kind != LawKind::spring) return;
         const core::scene::CoordinateForces& from = forces_of(term.origin);
@@ -70,6 +71,16 @@ private:
         value_bar_[term.measure] += reference;  // the start's, less preload/stiffness
         bar.preload -= reference / from.stiffness;
         bar.stiffness += reference * from.preload / (from.stiffness * from.stiffness);
+    }
+
+    bool is_swing(const MeasureTerm& term) const {
+        return mechanism_.set.measures[term.measure].kind == core::measure::MeasureKind::product;
+    }
+
+    // reference = cos(swing).
+    void reverse_swing(const Origin& origin, double reference_bar) {
+        const auto i = static_cast<std::size_t>(origin.index);
+        *out_.joints[i].swing -= std::sin(*scene_.joints[i].swing) * reference_bar;
     }
 
     void reverse_force(std::size_t k) {

@@ -49,6 +49,13 @@ struct BoxSearchResult {
     bool intersecting = false;  ///< `nearest` is an edge through a triangle, deeper than rounding
 };
 
+/// The steps of a Kronecker sequence, by powers of the root of x^(d + 1) = x + 1, whose multiples are spread evenly in d dimensions.
+inline const std::array<double, certificate::most_coordinates>& sample_steps(std::size_t dimensions) {
+    static constexpr std::array<double, certificate::most_coordinates> of_four{0.8567, 0.7339, 0.6287, 0.5386},
+        of_six{0.8987, 0.8076, 0.7257, 0.6522, 0.5861, 0.5267};
+    return dimensions <= 4 ? of_four : of_six;
+}
+
 struct BoxTrees {
     const PieceTree &a, &b;
     int variables = 0;
@@ -68,6 +75,7 @@ struct BoxCell {
 struct CellProof {
     double lower = 0;
     std::vector<Vector3> normals;
+    bool is_round = false;  ///< the one vector is that of a leaf o
 };
 
 /// At the limit of rounding there is no split.
@@ -196,7 +204,9 @@ certificate::BoxProof prove_box(Cells cells, double distance, const BoxSearchOpt
         pending.pop_back();
         const CellProof found = cells.evaluate(cell, distance, options.tolerance);
         if (cells.proves(found, distance)) {
-            proof.splits += found.normals.size() == 1 ? certificate::still_leaf : certificate::turning_leaf;
+            proof.splits += found.is_round              ? certificate::round_leaf
+                            : found.normals.size() == 1 ? certificate::still_leaf
+                                                        : certificate::turning_leaf;
             proof.normals.insert(proof.normals.end(), found.normals.begin(), found.normals.end());
             continue;
         }

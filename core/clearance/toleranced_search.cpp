@@ -292,7 +292,7 @@ public:
         const auto variables = static_cast<std::size_t>(bodies_.pair.variables());
         VariableBox::Values at = start();
         sample(at);
-        constexpr std::array<double, certificate::most_coordinates> steps{0.8567, 0.7339, 0.6287, 0.5386};
+        const auto& steps = sample_steps(coordinates);
         for (std::size_t i = 1; coordinates > 0 && i <= 8 + 8 * coordinates; ++i) {
             for (std::size_t k = 0; k < coordinates; ++k)
                 at[k] = std::clamp(box_.low[k] + std::fmod(0.5 + static_cast<double>(i) * steps[k], 1.0) * (box_.high[k] - box_.low[k]),

@@ -236,6 +236,14 @@ private:
             out_.rows.back().parts.push_back({joint.coordinate, -from.pitch / (2 * std::numbers::pi)});
         }
         if (joint.coordinate >= 0) add_forces(from.forces, joint.coordinate, from.name);
+        if (from.swing) add_swing(e, *from.swing, from.name);
+    }
+
+    // cos(angle of the axes) >= cos(swing): smooth where the axes are one, as their angle is not.
+    void add_swing(const Ends& e, double swing, const std::string& name) {
+        const int cosine = add_measure({MeasureKind::product, e.frame_a, e.frame_b, z_axis, z_axis, {}});
+        const double length = term_lever(out_.set.measures[cosine]);
+        out_.terms.push_back({LawKind::stop, cosine, 0, std::cos(swing), 1, length, {}, name, origin_});
     }
 
     void add_forces(const scene::CoordinateForces& from, int measure, const std::string& name) {

@@ -29,6 +29,7 @@ struct ClearanceArguments {
     std::vector<std::string> files;
     std::string minimum, tolerance, csv, baseline, certificate, out;
     int explain = 0;
+    double budget = 1;
     bool no_report = false;
 };
 
@@ -90,6 +91,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     question.pairs = options.pairs;
     question.pairs.minimum = lengths->minimum;
     question.tolerance = lengths->tolerance;
+    question.budget = options.budget;
     question.margins = !options.csv.empty();
     question.all_witnesses = options.explain > 0;
     question.proof = !options.certificate.empty();
@@ -130,6 +132,11 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("--group", options.pairs.groups, "name=a,b,c: bodies that are one rigid set (can be given several times)").one_value_each();
     app.option("--tolerance", options.tolerance,
                "How far the two bounds may be apart (default: the lesser of 0.001mm and 0.1% of the minimum)");
+    app.option(
+           "--budget", options.budget,
+           "How many times as much work as by default may be spent on one pair before it is undecided (default: 1; over ranges of joints "
+           "4 million bounds)")
+        .above(0);
     Option motion =
         app.flag("--motion", options.subject.motion, "Over the motion, which is simulated first (a trajectory: always); else as assembled");
     Option kinematic = app.flag("--kinematic", options.subject.kinematic,

@@ -74,9 +74,9 @@ std::string position_text(const Subject& subject, const PairClearance& pair, con
                         (joint.is_angle ? formatted(" %.6g deg", value * degrees) : " " + lengths.plain(value) + " " + lengths.unit()));
     });
     if (pair.as_assembled) return "as assembled";
-    if (subject.toleranced)
+    if (subject.has_deviations())
         for (const clearance::WorstDeviation& d : worst_deviations(subject, pair)) parts.push_back(deviation_text(d));
-    return parts.empty() ? subject.toleranced ? "no tolerance matters" : "nothing moves one against the other" : joined(parts);
+    return parts.empty() ? subject.has_deviations() ? "no tolerance matters" : "nothing moves one against the other" : joined(parts);
 }
 
 // Within tolerances: what does not matter for which pair.
@@ -415,7 +415,7 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, i
         text +=
             "\nno line is about round surfaces: a trajectory holds the meshes alone; give the scene or design (with --motion), only they "
             "know the surfaces that facets stand for\n";
-    if (subject.toleranced) text += without_influence(report, subject);
+    if (subject.has_deviations()) text += without_influence(report, subject);
     text += "\n" + summary(report, subject);
     const auto far = std::count_if(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.least.is_far; });
     if (far > 0)

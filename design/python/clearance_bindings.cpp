@@ -143,7 +143,7 @@ void bind_ranges(py::module_& module) {
     module.def(
         "joint_ranges",
         [](const Model& model) { return std::make_shared<JointRanges>(value_or_raise(core::clearance::joint_ranges(model))); },
-        py::arg("model"), "The JointRanges of a model. Raises Error for balls, planar joints, loops, and coordinates without limits.");
+        py::arg("model"), "The JointRanges of a model. Raises Error for loops, and for coordinates without limits.");
     module.def(
         "certify_ranges",
         [](const Model& model, const py::object& pairs, const py::object& minimum, const py::object& tolerance,
@@ -230,7 +230,7 @@ clearance::Subject subject_from(const Model& model, const std::shared_ptr<Trajec
         return clearance::subject_of(model, *trajectory);
     }
     if (trajectory) refuse(ErrorCode::inconsistent, "ranges", "are in place of a trajectory");
-    if (py::isinstance<py::bool_>(ranges)) return clearance::subject_over(model, value_or_raise(core::clearance::joint_ranges(model)));
+    if (py::isinstance<py::bool_>(ranges)) return value_or_raise(clearance::subject_over_joints(model));
     if (!py::isinstance<JointRanges>(ranges)) refuse(ErrorCode::wrong_type, "ranges", shown(ranges) + ": True or JointRanges is expected");
     check_ranges(ranges.cast<const JointRanges&>(), model);
     return clearance::subject_over(model, ranges.cast<const JointRanges&>());

@@ -79,8 +79,8 @@ FETTLE_RECORD(fettle::core::scene::CoordinateForces, "CoordinateForces", field("
               field("limits", &Type::limits))
 FETTLE_RECORD(fettle::core::scene::Assemble, "Assemble", field("side", &Type::side), field("from_", &Type::from), field("to", &Type::to))
 FETTLE_RECORD(fettle::core::scene::Joint, "Joint", field("name", &Type::name), field("where", &Type::where), field("kind", &Type::kind),
-              field("a", &Type::a), field("b", &Type::b), field("pitch", &Type::pitch), field("of", &Type::of),
-              field("ratio", &Type::ratio), field("forces", &Type::forces), field("collide", &Type::collide),
+              field("a", &Type::a), field("b", &Type::b), field("pitch", &Type::pitch), field("swing", &Type::swing),
+              field("of", &Type::of), field("ratio", &Type::ratio), field("forces", &Type::forces), field("collide", &Type::collide),
               field("assemble", &Type::assemble))
 FETTLE_RECORD(fettle::core::scene::Spring, "Spring", field("name", &Type::name), field("where", &Type::where), field("joint", &Type::joint),
               field("a", &Type::a), field("b", &Type::b), field("forces", &Type::forces))

@@ -267,6 +267,7 @@ class Joint(Record):
     a: Attachment = dataclasses.field(default_factory=Attachment)
     b: Attachment = dataclasses.field(default_factory=Attachment)
     pitch: Number = number("length", 0.0)  #: screw: slide per turn [m]
+    swing: Optional[Number] = number("angle", None)  #: ball: how far apart the two axes may be [rad]
     of: Sequence[str] = ("", "")  #: gear, rack: two joints
     ratio: Number = number("any", 1.0)  #: of a gear; of a rack its radius [m]
     forces: CoordinateForces = dataclasses.field(default_factory=CoordinateForces)
