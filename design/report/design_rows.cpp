@@ -41,9 +41,7 @@ Json row_json(const std::string& name, const Json& told, const description::Boun
             {"in_doubt", false}};
 }
 
-bool is_clearance(const description::Constraint& constraint) {
-    return dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*constraint.quantity)) != nullptr;
-}
+bool is_clearance(const description::Constraint& constraint) { return quantities::clearance_of(*constraint.quantity) != nullptr; }
 
 // How many of the constraints are clearances: each has a pair in the result, in their order.
 bool pairs_match(const description::Design& design, const Json& result) {

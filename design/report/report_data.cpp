@@ -76,9 +76,9 @@ std::vector<StepRange> steps_of(const ReportSource& source, std::size_t pairs) {
     if (source.kind == ReportKind::clearance) return std::vector<StepRange>(pairs, {0, member(source.result, "motion") == true ? all : 0});
     std::vector<StepRange> steps;
     for (const auto& constraint : source.design ? source.design->constraints : std::vector<description::Constraint>()) {
-        const auto* clearance = dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*constraint.quantity));
+        const quantities::ClearanceRange* clearance = quantities::clearance_of(*constraint.quantity);
         if (clearance == nullptr) continue;
-        const quantities::ClearanceRange& range = clearance->range();
+        const quantities::ClearanceRange& range = *clearance;
         if (!range.motion || is_of_faces(range) || quantities::scenario_of(*constraint.quantity) != shown_scenario) {
             steps.emplace_back();
             continue;
@@ -97,10 +97,10 @@ void add_note(Json& row, const std::string& note) {
 void note_ranges(const description::Design& design, Json& rows) {
     std::size_t k = 0;
     for (const description::Constraint& constraint : design.constraints) {
-        const auto* clearance = dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*constraint.quantity));
+        const quantities::ClearanceRange* clearance = quantities::clearance_of(*constraint.quantity);
         if (clearance == nullptr || k >= rows.size()) continue;
         Json& row = rows[k++];
-        const quantities::ClearanceRange& range = clearance->range();
+        const quantities::ClearanceRange& range = *clearance;
         const int scenario = range.motion ? quantities::scenario_of(*constraint.quantity) : shown_scenario;
         const bool is_elsewhere = range.ranges || scenario != shown_scenario;  // than on the path
         if (is_elsewhere) row["point_a"] = row["point_b"] = Json();

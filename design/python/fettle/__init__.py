@@ -112,6 +112,7 @@ from .design import (
     DesignFile as DesignFile,
     Energy as Energy,
     Expression as Expression,
+    FreeRange as FreeRange,
     FunctionQuantity as FunctionQuantity,
     FunctionShape as FunctionShape,
     InScenario as InScenario,
