@@ -3,11 +3,10 @@
 // import_format.hpp says. It may crash, loop and run out of memory with whatever a file makes of assimp; its parent only sees that nothing
 // came. Nothing of fettle's libraries is in it.
 //
-//     mesh_importer FILE SECONDS BYTES PARENT      the limits of processor time and of memory, and the process that waits for it
+//     mesh_importer FILE SECONDS BYTES      the limits of processor time and of memory
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -202,10 +201,7 @@ int import(const char* path) {
 
 int main(int count, char** arguments) {
     using namespace fettle::core::mesh_files;
-    if (count != 5) return import_misused;
-    // It dies with its parent, at once, however that ends.
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != static_cast<pid_t>(std::atol(arguments[4]))) return import_misused;
+    if (count != 4) return import_misused;
     const rlim_t seconds = std::strtoull(arguments[2], nullptr, 10);
     limit(RLIMIT_CPU, seconds, seconds + 1);  // SIGXCPU tells why
     limit(RLIMIT_AS, std::strtoull(arguments[3], nullptr, 10));

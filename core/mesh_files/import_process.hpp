@@ -2,7 +2,7 @@
 /// Runs assimp_importer.cpp on a mesh file. assimp reads dozens of formats, and a hostile or damaged file can make it crash, abort, loop or
 /// ask for all memory; so it never runs in this process. The importer is a small program that the library carries within itself, as bytes:
 /// it has no place that an installation, a wheel or a program that links the library statically could get wrong. It is started from an
-/// anonymous file in memory by posix_spawn, which between fork and exec runs nothing of ours: other threads may hold any lock.
+/// anonymous file in memory (core/files/process.hpp).
 #pragma once
 
 #include <cstdint>
