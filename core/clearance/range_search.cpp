@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/kronecker.hpp"
 #include "core/clearance/pair_search.hpp"
 #include "core/clearance/piece_bound.hpp"
 #include "core/clearance/search_front.hpp"
@@ -116,10 +117,10 @@ public:
         };
         if (pair_.count == 0) return;
         look(middle);
-        const std::array<double, most_coordinates> steps{0.8567, 0.7339, 0.6287, 0.5386};  // Kronecker sequence of four dimensions
+        static const base::Kronecker spread(most_coordinates);
         for (int i = 1; i <= 8 + 8 * pair_.count; ++i) {
             Coordinates at = middle;
-            for (std::size_t k = 0; k < static_cast<std::size_t>(pair_.count); ++k) at[k] = between(k, std::fmod(0.5 + i * steps[k], 1.0));
+            for (std::size_t k = 0; k < static_cast<std::size_t>(pair_.count); ++k) at[k] = between(k, spread.at(i, k));
             look(at);
         }
         for (double step = 0.125; step > 1e-9 && least > 0; step *= 0.5) {
