@@ -14,6 +14,7 @@
 #include "core/model/choose_kappa.hpp"
 #include "core/model/limits.hpp"
 #include "core/model/mechanism_start.hpp"
+#include "core/model/part_across.hpp"
 
 namespace fettle::core::model {
 namespace {
@@ -131,10 +132,10 @@ private:
     // b's x axis where a's is at the start, turned into the plane across b's z axis.
     void align(const measure::Frame& a, measure::Frame& b) const {
         const Matrix3 to_b = pose_of(b.body).rotation.transpose() * pose_of(a.body).rotation;
-        const Vector3 z = b.axes.col(2), x = to_b * a.axes.col(0), across = x - z * z.dot(x);
-        constexpr double too_short = 1e-3;  // axes that stand across each other at the start: any x axis is as good
-        if (across.norm() < too_short) return;
-        b.axes.col(0) = across.normalized();
+        const Vector3 z = b.axes.col(2), x = to_b * a.axes.col(0);
+        const std::optional<Vector3> across = part_across(z, x);
+        if (!across) return;
+        b.axes.col(0) = across->normalized();
         b.axes.col(1) = z.cross(b.axes.col(0));
     }
 
