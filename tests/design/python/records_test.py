@@ -155,8 +155,8 @@ def test_every_quantity_of_a_file_has_a_class():
 
 def test_a_free_range_is_refused_where_it_cannot_be_asked_for():
     design = fettle.read_design(str(EVERY_QUANTITY)).design
-    for changes, message in (({"end": "up"}, "`up` is neither `above` nor `below`"), ({"clearance": 0.0}, "FreeRange/clearance"),
-                             ({"reach": -1.0}, "FreeRange/reach"), ({"joint": "hings"}, "did you mean|no joint")):
+    for changes, message in (({"end": "up"}, "`up` is neither `above` nor `below`"), ({"clearance": 0.0}, "quantity/clearance: 0 is not allowed"),
+                             ({"reach": -1.0}, "quantity/reach: -1 is not allowed"), ({"joint": "hings"}, "did you mean|no joint")):
         design.objective = [fettle.ObjectiveTerm("free", quantity=fettle.FreeRange(**{"joint": "hinge", **changes}))]
         with pytest.raises(fettle.Error, match=message):
             fettle.DesignProblem(design)
