@@ -22,6 +22,9 @@
 #include "core/files/embedded_file.hpp"
 
 FETTLE_EMBEDDED_FILE(fettle_mesh_importer, FETTLE_MESH_IMPORTER)
+#ifdef FETTLE_STEP_IMPORTER
+FETTLE_EMBEDDED_FILE(fettle_step_importer, FETTLE_STEP_IMPORTER)
+#endif
 
 namespace fettle::core::mesh_files {
 namespace {
@@ -69,15 +72,22 @@ private:
     pid_t process_;
 };
 
+std::string_view bytes_of(Importer importer) {
+#ifdef FETTLE_STEP_IMPORTER
+    if (importer == Importer::step) return fettle_step_importer();
+#endif
+    return importer == Importer::assimp ? fettle_mesh_importer() : std::string_view();
+}
+
 /// A file without a name that has the importer in it; -1 and errno where the system makes none.
-int importer_file() {
+int importer_file(Importer importer) {
 #ifdef MFD_EXEC
     int file = ::memfd_create("fettle mesh importer", MFD_CLOEXEC | MFD_EXEC);
     if (file < 0 && errno == EINVAL) file = ::memfd_create("fettle mesh importer", MFD_CLOEXEC);  // a kernel older than the flag
 #else
     const int file = ::memfd_create("fettle mesh importer", MFD_CLOEXEC);
 #endif
-    std::string_view left = fettle_mesh_importer();
+    std::string_view left = bytes_of(importer);
     const int code = file < 0 ? errno : files::write_all(file, left);
     if (code == 0) return file;
     if (file >= 0) ::close(file);
@@ -134,9 +144,12 @@ End collect(int from, std::uint64_t largest, Clock::time_point latest, const std
 
 }  // namespace
 
-ImportOutcome run_importer(const std::string& path, const ImportLimits& limits, const std::function<bool()>& should_stop) {
+bool has_importer(Importer importer) { return !bytes_of(importer).empty(); }
+
+ImportOutcome run_importer(Importer importer, const std::string& path, const std::vector<std::string>& more, const ImportLimits& limits,
+                           const std::function<bool()>& should_stop) {
     ImportOutcome outcome;
-    const Descriptor program(importer_file());
+    const Descriptor program(importer_file(importer));
     std::array<int, 2> ends{-1, -1};
     if (*program < 0 || ::pipe2(ends.data(), O_CLOEXEC) != 0) {
         outcome.code = errno;
@@ -145,9 +158,10 @@ ImportOutcome run_importer(const std::string& path, const ImportLimits& limits, 
     const Descriptor from(ends[0]);
     Descriptor to(ends[1]);
     pid_t process = -1;
-    outcome.code = spawn(
-        *program, {"fettle mesh importer", path, std::to_string(limits.seconds), std::to_string(limits.memory), std::to_string(::getpid())},
-        *to, process);
+    std::vector<std::string> words{"fettle mesh importer", path, std::to_string(limits.seconds), std::to_string(limits.memory),
+                                   std::to_string(::getpid())};
+    words.insert(words.end(), more.begin(), more.end());
+    outcome.code = spawn(*program, std::move(words), *to, process);
     to.close();
     if (outcome.code != 0) return outcome;
     Child child(process);

@@ -303,12 +303,16 @@ Errors check_inputs(const SubjectOptions& options, bool meshes) {
     const bool is_json = std::filesystem::path(options.path).extension() == ".json";  // a file of another kind is told what it is
     if (!options.unit.empty() && is_json) return {{ErrorCode::inconsistent, "--unit", "is for meshes; this file states its own unit"}};
     if (options.split) return {{ErrorCode::inconsistent, "--split", "is for meshes; in a scene a body has \"split_components\": true"}};
+    if (!options.step.facets.empty())
+        return {{ErrorCode::inconsistent, "--facets", "is for STEP files; in a scene a body has \"mesh_facets\""}};
+    if (!options.step.surface_tolerance.empty())
+        return {{ErrorCode::inconsistent, "--surface-tolerance", "is for STEP files; in a scene a body has \"surface_tolerance\""}};
     return {};
 }
 
 Result<reading::LoadedModel> loaded_meshes(const std::vector<std::string>& paths, const SubjectOptions& options,
                                            const reading::InputOptions& input, Subject& subject) {
-    Result<MeshParts> meshes = load_meshes(paths, options.unit, input, options.split);
+    Result<MeshParts> meshes = load_meshes(paths, options.unit, input, options.split, options.step);
     if (!meshes) return meshes.errors();
     subject.files = std::move(meshes->files);
     reading::LoadedModel loaded;

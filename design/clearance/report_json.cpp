@@ -219,7 +219,8 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
             deviations[body.name] = {{"out", deviation->out},
                                      {"in", deviation->in},
                                      {"out_is_proven", deviation->out_is_proven},
-                                     {"in_is_proven", deviation->in_is_proven}};
+                                     {"in_is_proven", deviation->in_is_proven},
+                                     {"declared", deviation->declared}};
     if (!deviations.empty()) json["deviations"] = std::move(deviations);
     json["ignored"] = report.ignored;
     json["ignored_by_scene"] = report.ignored_by_scene;

@@ -11,6 +11,7 @@
 #include "design/cli/clearance_files.hpp"
 #include "design/cli/clearance_text.hpp"
 #include "design/cli/inputs.hpp"
+#include "design/cli/step_options.hpp"
 #include "design/tolerances/known_processes.hpp"
 #include "design/tolerances/process_clearance.hpp"
 
@@ -112,6 +113,7 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("--unit", options.subject.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
     app.flag("--split", options.subject.split,
              "Each solid of a mesh is a body of its own, with its cavities: box#1, box#2 (a print in place is one file)");
+    add_step_options(app, options.subject.step);
     app.option("--minimum", options.minimum, "Required clearance per side, with its unit: 0.3mm (without any: distances and clashes)");
     app.option(
            "--process", options.pairs.process,

@@ -223,7 +223,12 @@ std::string round_surfaces(const ReportedPair& pair, const Subject& subject, con
     std::string text =
         "   of the round surfaces that the facets stand for: at least " + bound(lengths.down(parts->lower, 3), parts->lower_is_proven);
     if (std::isfinite(parts->upper)) text += ", at most " + bound(lengths.up(parts->upper, 3), parts->upper_is_proven);
-    return text + " " + lengths.unit() + "\n";
+    text += " " + lengths.unit();
+    double declared = 0;
+    for (const int body : {pair.least.a, pair.least.b})
+        if (const auto& deviation = subject.model.bodies[body].mesh.deviation) declared += deviation->declared;
+    if (declared > 0) text += " (assumed: the edges of the STEP files are as exact as these declare, " + lengths.rough(declared) + ")";
+    return text + "\n";
 }
 
 // Where the two share most is not searched for: known is the worst of the places that were looked at.

@@ -54,7 +54,8 @@ FETTLE_WORDS(fettle::core::scene::MotorKind, "motion", "effort")
 FETTLE_WORDS(fettle::core::scene::Orientation::Kind, "angles", "vector")
 
 FETTLE_RECORD(fettle::core::geometry::Deviation, "Deviation", field("outside", &Type::out), field("inside", &Type::in),
-              field("outside_is_proven", &Type::out_is_proven), field("inside_is_proven", &Type::in_is_proven))
+              field("outside_is_proven", &Type::out_is_proven), field("inside_is_proven", &Type::in_is_proven),
+              field("declared", &Type::declared))
 FETTLE_RECORD(fettle::core::kinematics::Pose, "Pose", field("rotation", &Type::rotation), field("position", &Type::position))
 FETTLE_RECORD(fettle::core::scene::MotionCurve, "MotionCurve", field("rate", &Type::rate), field("times", &Type::times),
               field("values", &Type::values), field("stop_time", &Type::stop_time))
