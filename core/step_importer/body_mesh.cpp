@@ -164,6 +164,9 @@ BodyMesh mesh_of(const TopoDS_Solid& solid, const MeshWishes& wishes, const Enti
     if (!(diagonal > 0) || !(diagonal < 1e9)) throw Fault{"it has no size, or one beyond 1000 km"};
     BodyMesh out;
     out.declared = declared_tolerance(solid);
+    constexpr double most_declared = 1e-2;  // of the size
+    if (out.declared > most_declared * diagonal)
+        throw Fault{"its edges lie up to " + std::to_string(out.declared) + " mm beside its faces, more than a hundredth of its size"};
     const SolidMesh mesh = meshed(solid, chord, entity);
     set_deviation(mesh, wishes, entity, out);
     out.places = mesh.places;

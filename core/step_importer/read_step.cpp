@@ -175,8 +175,11 @@ private:
         if (contents_.solids.size() >= most_solids) throw Fault{"it places more than " + std::to_string(most_solids) + " solids"};
         const TopoDS_Solid own = TopoDS::Solid(solid.Located(TopLoc_Location()));
         const auto [known, fresh] = known_.try_emplace({own.TShape().get(), own.Orientation()}, static_cast<int>(contents_.shapes.size()));
-        if (fresh) contents_.shapes.push_back(own);
-        const std::uint32_t its = colour_of(TopoDS_Shape(solid));
+        if (fresh) {
+            contents_.shapes.push_back(own);
+            own_colours_.push_back(colour_of(TopoDS_Shape(solid)));  // a search among all labels
+        }
+        const std::uint32_t its = own_colours_[static_cast<std::size_t>(known->second)];
         contents_.solids.push_back({name, known->second, (around * solid.Location()).Transformation(), colour != 0 ? colour : its});
     }
 
@@ -186,6 +189,7 @@ private:
     Handle(XCAFDoc_ShapeTool) shapes_;
     Handle(XCAFDoc_ColorTool) colours_;
     std::map<std::pair<const void*, int>, int> known_;
+    std::vector<std::uint32_t> own_colours_;  // of the shapes
     StepContents contents_;
 };
 
