@@ -16,6 +16,9 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "coinor-libipopt1v5, libnlopt0, libassimp5, libzip4, libcairo2, fonts-dejavu-core")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-numpy, libcholmod3, libumfpack5, libspqr2, libopenblas0")
+if(FETTLE_WITH_STEP)  # the program that reads STEP is carried as bytes: no tool sees what it links
+  string(APPEND CPACK_DEBIAN_PACKAGE_RECOMMENDS ", libocct-data-exchange-7.6")
+endif()
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
   "g++, cmake, libeigen3-dev, libtbb-dev, libnlopt-dev, libassimp-dev, zlib1g-dev, libzip-dev, libcairo2-dev, libexpat1-dev, nlohmann-json3-dev, coinor-libipopt-dev, libsuitesparse-dev, pkg-config")
 include(CPack)

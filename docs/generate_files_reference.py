@@ -137,7 +137,9 @@ class Reference:
             self.lines += ["", f"Besides these keys it has those of its {' and '.join(others)}."]
 
     def title(self, branch):
-        """What tells an alternative from the others: its type, or what is required."""
+        """What tells an alternative from the others: its title, its type, or what is required."""
+        if "title" in branch:
+            return f"**{branch['title']}**"
         kind = branch["properties"].get("type", {})
         values = [kind["const"]] if "const" in kind else kind.get("enum", branch.get("required", []))
         values = values or self.choices(branch)

@@ -64,6 +64,11 @@ def all_of(value, wanted, _, root, place):
         yield from faults(value, branch, root, place)
 
 
+def negation(value, wanted, _, root, place):
+    if not list(faults(value, wanted, root, place)):
+        yield f"{place or '/'} is what is not allowed"
+
+
 def properties(value, wanted, _, root, place):
     for key in wanted.keys() & value.keys() if isinstance(value, dict) else ():
         yield from faults(value[key], wanted[key], root, f"{place}/{key}")
@@ -109,7 +114,7 @@ def number(condition):
 
 
 RULES = {
-    "$ref": reference, "type": kind, "anyOf": any_of, "oneOf": one_of, "allOf": all_of,
+    "$ref": reference, "type": kind, "anyOf": any_of, "oneOf": one_of, "allOf": all_of, "not": negation,
     "properties": properties, "patternProperties": patterns, "additionalProperties": additional, "propertyNames": names, "items": items,
     "required": lambda value, wanted, _, __, place: (
         f"{place}/{key} is missing" for key in wanted if isinstance(value, dict) and key not in value),

@@ -147,6 +147,7 @@ public:
         const Trajectory posed = at_witness(model_, ranges_, pair_);
         const ClearanceGradient gradient = clearance_gradient(model_, posed, pair_.a, pair_.b, pair_.witness);
         if (!gradient.refusal.empty()) return gradient.refusal;
+        if (std::string refusal = refusal_of_swings(); !refusal.empty()) return refusal;
         for (const auto& part : gradient.vertices) bar_.bodies[part.body].vertices_bar.col(part.vertex) += scale_ * part.bar;
         const auto loads = wrenches(posed, pair_, gradient);
         for (int i = 0; i < 2; ++i) reverse(i == 0 ? pair_.a : pair_.b, loads[i]);
@@ -158,6 +159,16 @@ public:
     }
 
 private:
+    // At the end of a swing what the start's own swing is matters, which has no derivative where the axes are one.
+    std::string refusal_of_swings() const {
+        for (std::size_t k = 0; k < pair_.at.size(); ++k) {
+            const int c = pair_.coordinates[k];
+            if (ranges_.direction_of[c] < 0 || (c != held_ && end_of(coordinate_at(k), pair_.at[k]) <= 0)) continue;
+            return "a clearance at the end of the swing of `" + coordinate_at(k).joints.front().joint + "` has no derivative";
+        }
+        return {};
+    }
+
     void reverse(int body, WrenchAbout w) {
         w.force *= scale_;
         w.torque *= scale_;
@@ -187,13 +198,26 @@ private:
 
     // Reverses a point and an axis in the world at the start.
     void reverse_frame(const Link& link, const Vector3& point_bar, const Vector3& axis_bar) {
-        const int frame = model_.mechanism.joints[ranges_.joint_of[link.body]].frame_a;
+        const Joint& joint = model_.mechanism.joints[ranges_.joint_of[link.body]];
+        reverse_point(frames_[joint.frame_a].point == link.screw.point ? joint.frame_a : joint.frame_b, point_bar);
+        for (const int frame : {joint.frame_a, joint.frame_b})
+            for (const Eigen::Index column : {2, 1, 0})
+                if (frames_[frame].axes.col(column) == link.screw.axis) return reverse_axis(frame, column, axis_bar);
+        // That of a swing from where the axes stand apart: the direction of a swing is stationary, so that it has no effect.
+    }
+
+    Matrix3 rotation_of(int body) const { return body == core::measure::world ? Matrix3(Matrix3::Identity()) : start_[body].rotation; }
+
+    void reverse_point(int frame, const Vector3& point_bar) {
         const int body = model_.mechanism.set.frames[frame].body;
-        const Matrix3 rotation = body == core::measure::world ? Matrix3(Matrix3::Identity()) : start_[body].rotation;
-        bar_.mechanism.frames[frame].point += rotation.transpose() * point_bar;
-        bar_.mechanism.frames[frame].axes.col(2) += rotation.transpose() * axis_bar;
-        const core::measure::PlacedFrame& placed = frames_[frame];
-        add_to_start(body, point_bar, placed.arm.cross(point_bar) + Vector3(placed.axes.col(2)).cross(axis_bar));
+        bar_.mechanism.frames[frame].point += rotation_of(body).transpose() * point_bar;
+        add_to_start(body, point_bar, frames_[frame].arm.cross(point_bar));
+    }
+
+    void reverse_axis(int frame, Eigen::Index column, const Vector3& axis_bar) {
+        const int body = model_.mechanism.set.frames[frame].body;
+        bar_.mechanism.frames[frame].axes.col(column) += rotation_of(body).transpose() * axis_bar;
+        add_to_start(body, Vector3::Zero(), Vector3(frames_[frame].axes.col(column)).cross(axis_bar));
     }
 
     const LinkageCoordinate& coordinate_at(std::size_t k) const { return ranges_.linkage.coordinates[pair_.coordinates[k]]; }

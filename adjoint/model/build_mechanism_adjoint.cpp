@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "core/model/part_across.hpp"
 #include "core/model/row_choice.hpp"
 
 namespace fettle::adjoint::model {
@@ -59,6 +60,7 @@ private:
         core::scene::CoordinateForces& bar = forces_bar(term.origin);
         if (term.kind == LawKind::damper) bar.damping += coefficient;
         if (term.kind == LawKind::friction) bar.friction += coefficient;
+        if (term.kind == LawKind::stop && is_swing(term)) return reverse_swing(term.origin, reference);
         if (term.kind == LawKind::stop) (*bar.limits)[term.sign > 0 ? 0 : 1] += reference;
         if (term.kind != LawKind::spring) return;
         const core::scene::CoordinateForces& from = forces_of(term.origin);
@@ -70,6 +72,16 @@ private:
         value_bar_[term.measure] += reference;  // the start's, less preload/stiffness
         bar.preload -= reference / from.stiffness;
         bar.stiffness += reference * from.preload / (from.stiffness * from.stiffness);
+    }
+
+    bool is_swing(const MeasureTerm& term) const {
+        return mechanism_.set.measures[term.measure].kind == core::measure::MeasureKind::product;
+    }
+
+    // reference = cos(swing).
+    void reverse_swing(const Origin& origin, double reference_bar) {
+        const auto i = static_cast<std::size_t>(origin.index);
+        *out_.joints[i].swing -= std::sin(*scene_.joints[i].swing) * reference_bar;
     }
 
     void reverse_force(std::size_t k) {
@@ -151,10 +163,10 @@ private:
         const Matrix3& bar = frames_bar_[frame_b].axes;
         const Matrix3 rotation_b = rotation_of(b.body);
         const Vector3 x = b.axes.col(0), z = b.axes.col(2), world = rotation_of(a.body) * a.axes.col(0);
-        const Vector3 seen = rotation_b.transpose() * world, across = seen - z * z.dot(seen);
-        constexpr double too_short = 1e-3;  // as build_mechanism
-        if (across.norm() < too_short) return free_axes_adjoint(b.axes, bar);
-        const Vector3 x_bar = bar.col(0) + bar.col(1).cross(z), across_bar = normalised_adjoint(x, across.norm(), x_bar);
+        const Vector3 seen = rotation_b.transpose() * world;
+        const std::optional<Vector3> across = core::model::part_across(z, seen);
+        if (!across) return free_axes_adjoint(b.axes, bar);
+        const Vector3 x_bar = bar.col(0) + bar.col(1).cross(z), across_bar = normalised_adjoint(x, across->norm(), x_bar);
         const Vector3 seen_bar = rotation_b * (across_bar - z * z.dot(across_bar)), turn = world.cross(seen_bar);
         frames_bar_[frame_a].axes.col(0) += rotation_of(a.body).transpose() * seen_bar;
         Vector6 of_pose = Vector6::Zero();

@@ -8,9 +8,8 @@
 /// Over what. The bodies of a pair move over boxes of k coordinates u:
 ///   over a path (`motion`)               a box for each segment, in the order of the path; k = 1, u = s in [0, 1]
 ///   as assembled                         one, the start pose (step -1); k = 1, and nothing moves
-///   over ranges of joints (`linkage`)    one: all positions of the joints, in every combination; k <= 4, the coordinates that move one
-///   body
-///                                        against the other (linked_pair), in their ranges. The trajectory's steps have no effect
+///   over ranges of joints (`linkage`)    one: all positions of the joints, in every combination; k <= 6, the coordinates that move one
+///                                        body against the other (linked_pair), in their ranges. The trajectory's steps have no effect
 ///   over a box of tolerances (`toleranced`)  one: the joints' positions together with every deviation between its limits; k <= 12, the
 ///                                        coordinates and then the deviations that matter for the two (toleranced_pair)
 /// With `joints` a certificate over a path claims, too, how far the bodies are from that path where the joints are met at all times: bounds
@@ -23,15 +22,20 @@
 ///   a     piece of A split into its two parts, in their order;   b  the same of B
 ///   .     a leaf whose proof is one vector;   :  a leaf whose proof is 2^k vectors, one for each corner of its part of the box, bit j of
 ///         the corner's number set where coordinate j is high; `normals` has them, in the order of the leaves
+///   o     over ranges of joints, where all screws between the two turn about one axis and slide along it, or turn about one point
+///         (revolution_of): a leaf whose proof is two numbers, a vector m = (m_r, m_z, 0) among `normals`
 /// So the leaves cover the box and all pairs of elements by construction.
 /// A leaf's proof is that vector, or those, in world axes: with n(u) the one, or the multilinear interpolant of them,
 ///   n(u).(x_a(u) - x_b(u)) >= lower max |n| > 0   for all u of the cell and all points x_a, x_b of the two pieces,
-/// which is what a checker has to verify, for the corners of the elements. How far above the claim it lies is not recorded: ours leave a
-/// room of at least 4 times the search's own bound of its rounding (PairSegment::slack, ScrewedPair::slack), and 1/16 of the tolerance, for
-/// a checker's rounding and for its own way of bounding curves. Over a path leaves are as large and vectors as rounded as this room and
-/// this checker allow (clearance/segment_proof.hpp).
-/// Over a box of tolerances vectors are in B's frame; a leaf : has 1 + k of them, for n(t) = n_0 + sum n_j t_j, t in [-1, 1] over the
-/// cell's part of the box (toleranced_prover.hpp). `upper` is the distance of two points of the bodies at one place of one box.
+/// which is what a checker has to verify, for the corners of the elements. A leaf o claims, with r(x) a point's distance from the axis or
+/// the point and z(x) how far along the axis it is (0 about a point),
+///   m_r (r(x_b) - r(x_a)) + m_z (z(x_b) - z(x_a)) >= lower |m| > 0   for all points of the two pieces, wherever the coordinates of the box
+/// are: x -> (r, z) takes no two points farther apart, so that their distance is at least as much (round_prover.hpp).
+/// How far above the claim a leaf lies is not recorded: ours leave a room of at least 4 times the search's own bound of its rounding
+/// (PairSegment::slack, ScrewedPair::slack), and 1/16 of the tolerance, for a checker's rounding and for its own way of bounding curves.
+/// Over a path leaves are as large and vectors as rounded as this room and this checker allow (clearance/segment_proof.hpp). Over a box of
+/// tolerances vectors are in B's frame; a leaf : has 1 + k of them, for n(t) = n_0 + sum n_j t_j, t in [-1, 1] over the cell's part of the
+/// box (toleranced_prover.hpp). `upper` is the distance of two points of the bodies at one place of one box.
 ///
 /// Pieces. A body's elements are its triangles, the edges of no triangle, and the vertices of no edge, numbered
 ///   triangle i: i;   mesh.edges[i]: T + i;   vertex i: T + E + i;   T = number of triangles, E = number of all edges of the mesh.
@@ -67,7 +71,7 @@ char split_along(int k);
 int variable_of_split(char kind);
 
 /// Kinds of leaves: of one vector, and of several.
-inline constexpr char still_leaf = '.', turning_leaf = ':';
+inline constexpr char still_leaf = '.', turning_leaf = ':', round_leaf = 'o';
 
 /// A leaf's vectors where there is one coordinate: at its low and its high end.
 struct LeafPlane {
@@ -122,7 +126,7 @@ struct ExportedFile {
     double rounding = 0;  ///< how far a vertex of the file may be from that of the trajectory [m]: every bound is wider by 2 of it there
 };
 
-inline constexpr int certificate_version = 3;  ///< what is written
+inline constexpr int certificate_version = 4;  ///< what is written
 
 struct Certificate {
     int version = certificate_version;
@@ -149,14 +153,15 @@ struct Certificate {
 std::vector<std::array<int, 2>> uncovered_pairs(const Certificate& certificate, int bodies);
 
 /// One JSON object (*.certificate.json), SI, with the names used here; every number reads back to the same bits.
-///   fettle_certificate 3, geometry_hash, path_hash (hexadecimal), length_unit, source, scenario, process (both optional), motion,
+///   fettle_certificate 4, geometry_hash, path_hash (hexadecimal), length_unit, source, scenario, process (both optional), motion,
 ///   bodies [{elements, cuts}],
 ///   exports (optional) [{file, hash, rounding}], joints (optional, ideal_joints.hpp), path_as_stored (optional, is_of_path),
 ///   over ranges of joints coordinates [{start, low, high, is_whole_turn, joints [{joint, is_angle, scale, offset}]}] and
 ///   links [{parent, screws [{coordinate, point, axis, turn, slide}]}],
 ///   pairs [{a, b, lower, upper, solids, minimum (optional), step, segment, at, point_a {kind, index, weight}, point_b,
 ///   boxes [{splits, normals}]}], `normals` flat. Written whole or not at all.
-/// Read, too, are the two formats before it: fettle_certificate 2, of a path (`segments` [{splits, planes}] for `boxes`, `t` for `0`, `s`
+/// Read, too, are the formats before it: fettle_certificate 3, which has neither leaves o nor more than four coordinates of joints, 2, of
+/// a path (`segments` [{splits, planes}] for `boxes`, `t` for `0`, `s`
 /// for `at`), and fettle_range_certificate 1 (a pair's one `splits` and `normals` beside its bounds).
 [[nodiscard]] base::Errors write_certificate(const std::filesystem::path& path, const Certificate& certificate);
 /// The same as one of a set of files.

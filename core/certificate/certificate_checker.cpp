@@ -178,7 +178,8 @@ private:
     // Few enough variables, and formulas of the meshes and poses at hand.
     bool check_tolerances_of(const PairCertificate& pair, const std::string& where) {
         const TolerancedPair toleranced = toleranced_pair(*certificate_.toleranced, pair.a, pair.b);
-        if (count_of(toleranced.coordinates) > most_coordinates || count_of(toleranced.deviations) > most_deviations)
+        if (count_of(toleranced.coordinates) > most_coordinates || count_of(toleranced.deviations) > most_deviations ||
+            toleranced.variables() > most_variables)
             return fault(where, "more joints or deviations matter for the two than this program checks");
         TolerancedProver prover(*certificate_.toleranced, toleranced, mesh(pair.a).vertices, mesh(pair.b).vertices);
         if (!(mismatch_of(pair) <= largest_mismatch * prover.size()))
@@ -284,7 +285,7 @@ private:
             const OfBox cell = pending.back();
             pending.pop_back();
             const Part &a = parts_a[cell.a], &b = parts_b[cell.b];
-            if (kind == '.' || kind == ':') {
+            if (is_leaf(prover, kind)) {
                 const std::size_t count = vectors_of(prover, kind);
                 if (used + count > normals.size()) return ended("the vectors of leaf " + std::to_string(leaf) + " are missing");
                 const long pieces = pieces_of(prover, a.region, b.region, cell.box, kind, normals.subspan(used, count), pair.lower);
@@ -304,11 +305,16 @@ private:
     }
 
     template <class Prover>
+    static bool is_leaf(const Prover& /*prover*/, char kind) {
+        return kind == still_leaf || kind == turning_leaf || (kind == round_leaf && std::is_same_v<Prover, RangeProver>);
+    }
+
+    template <class Prover>
     static std::size_t vectors_of(const Prover& prover, char kind) {
         if constexpr (std::is_same_v<Prover, TolerancedProver>)
             return kind == still_leaf ? 1 : 1 + static_cast<std::size_t>(prover.coordinates());
         else
-            return kind == '.' ? 1 : std::size_t{1} << prover.coordinates();
+            return kind == turning_leaf ? std::size_t{1} << prover.coordinates() : 1;
     }
 
     template <class Prover, class Box>
@@ -316,6 +322,9 @@ private:
                           double lower) {
         if constexpr (std::is_same_v<Prover, TolerancedProver>)
             return prover.prove(a, b, box, kind, normals, lower);
+        else if constexpr (std::is_same_v<Prover, RangeProver>)
+            return kind == round_leaf ? prover.prove_round(a, b, box, normals.front(), lower)
+                                      : prover.prove(a, b, box, normals, lower, leaf_halvings);
         else
             return prover.prove(a, b, box, normals, lower, leaf_halvings);
     }

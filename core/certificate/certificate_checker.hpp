@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// Checks a certificate of clearance (certificate.hpp) against meshes and path. Calls nothing of the search that makes
 /// certificates: all arithmetic is on intervals rounded outwards (geometry/interval.hpp), boxes are computed from the vertices. Over a path
-/// and over ranges of joints the bound of a leaf is another one than the search's. Over tolerances (toleranced_prover.hpp) and of joints
+/// and over ranges of joints the bound of a leaf is another one than the search's, but for leaves o, whose formula is the same and whose
+/// evaluation is the checker's own (round_prover.hpp). Over tolerances (toleranced_prover.hpp) and of joints
 /// (joint_prover.hpp) the search calls these provers to find its bounds: there a check is one of the record, and an error of a prover would
 /// stand in both.
 ///

@@ -253,9 +253,10 @@ Format read_format(const JsonNode& root) {
         return Format::old_range;
     }
     const JsonNode version = root.require(version_key);
-    const bool is_old = version.exists() && version.is_number() && version.number() == 2.0;
-    if (!is_old) files::is_version(version, certificate_version);
-    return is_old ? Format::old_path : Format::current;
+    const auto is = [&](double number) { return version.exists() && version.is_number() && version.number() == number; };
+    if (is(2)) return Format::old_path;
+    if (!is(3)) files::is_version(version, certificate_version);  // one of version 3 is one of 4 that has less in it
+    return Format::current;
 }
 
 Certificate read_root(const JsonNode& root, Format format) {

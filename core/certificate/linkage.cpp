@@ -96,6 +96,20 @@ LinkageCoordinate read_coordinate(const files::JsonNode& node) {
     return out;
 }
 
+std::optional<Revolution> revolution_of(const LinkedPair& pair) {
+    std::vector<Screw> screws = pair.a;
+    screws.insert(screws.end(), pair.b.begin(), pair.b.end());
+    if (screws.empty()) return std::nullopt;
+    const auto turns = [](const Screw& screw) { return screw.turn != 0; };
+    const auto first = std::find_if(screws.begin(), screws.end(), turns);
+    if (first == screws.end()) return std::nullopt;
+    const Vector3 point = first->point, axis = first->axis;
+    const auto all = [&](const auto& holds) { return std::all_of(screws.begin(), screws.end(), holds); };
+    if (all([&](const Screw& s) { return s.axis == axis && (s.point == point || s.turn == 0); })) return Revolution{point, axis};
+    if (all([&](const Screw& s) { return s.point == point && s.slide == 0; })) return Revolution{point, Vector3::Zero()};
+    return std::nullopt;
+}
+
 LinkedPair linked_pair(const Linkage& linkage, int a, int b) {
     const std::vector<int> from_a = ancestry(linkage, a), from_b = ancestry(linkage, b);
     std::size_t common = 0;

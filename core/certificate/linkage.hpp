@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,13 +59,21 @@ struct Linkage {
 
 /// More screws between two bodies than this are not dealt with, nor more coordinates.
 inline constexpr int most_screws = 16;
-inline constexpr int most_coordinates = 4;
+inline constexpr int most_coordinates = 6;
 
 using Coordinates = std::array<double, most_coordinates>;  ///< those beyond a box's own are 0
 
 /// What two bodies are moved over: of a path's segment one coordinate in [0, 1], of a linked pair its own.
 struct CoordinateBox {
     Coordinates low{}, high{};
+};
+
+/// What all screws between two bodies leave of every point, wherever their coordinates are: they turn about one axis and slide along it, so
+/// that the distance from the axis stays; or they turn about axes through one point, so that the distance from the point does.
+struct Revolution {
+    Vector3 point = Vector3::Zero();  ///< in the world at the start [m]
+    Vector3 axis = Vector3::Zero();   ///< 0: it is the point's
+    bool is_about_axis() const { return !axis.isZero(0); }
 };
 
 /// Two bodies of a linkage: what moves one against the other. Screws that carry both bodies, and what they move together, is left out.
@@ -79,6 +88,10 @@ base::Errors check_linkage(const Linkage& linkage, std::size_t bodies);
 /// {start, low, high, is_whole_turn, joints [{joint, is_angle, scale, offset}]}
 void write_coordinate(files::JsonWriter& out, const LinkageCoordinate& coordinate);
 LinkageCoordinate read_coordinate(const files::JsonNode& node);
+
+/// Points and axes are compared bit by bit: those of one joint are the same. Nothing: no screw moves one against the other, or there is no
+/// such axis or point.
+std::optional<Revolution> revolution_of(const LinkedPair& pair);
 
 /// Contract: checked; a, b are bodies of it.
 LinkedPair linked_pair(const Linkage& linkage, int a, int b);

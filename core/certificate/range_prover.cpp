@@ -56,7 +56,10 @@ double least_along(const Interval3& f, const Region& region, bool by_box) {
 }  // namespace
 
 RangeProver::RangeProver(const Linkage& linkage, const LinkedPair& pair, const kinematics::Pose& start_a, const kinematics::Pose& start_b)
-    : a_(side_of(linkage, pair, pair.a, start_a)), b_(side_of(linkage, pair, pair.b, start_b)), count_(count_of(pair.coordinates)) {
+    : a_(side_of(linkage, pair, pair.a, start_a)),
+      b_(side_of(linkage, pair, pair.b, start_b)),
+      count_(count_of(pair.coordinates)),
+      round_(linkage, pair, start_a, start_b) {
     for (std::size_t k = 0; k < pair.coordinates.size(); ++k) {
         const LinkageCoordinate& c = linkage.coordinates[pair.coordinates[k]];
         box_.low[k] = c.low;
@@ -196,11 +199,19 @@ bool RangeProver::is_above(const Region& a, const Region& b, const CoordinateBox
     return true;
 }
 
+bool RangeProver::is_usable(const Region& a, const Region& b) const {
+    return magnitude_ < base::largest_magnitude && a.radius < base::largest_magnitude && b.radius < base::largest_magnitude;
+}
+
+long RangeProver::prove_round(const Region& a, const Region& b, const CoordinateBox& part, const Vector3& m, double lower) {
+    return is_usable(a, b) && round_.prove(a, b, part, m, lower) ? 1 : 0;
+}
+
 long RangeProver::prove(const Region& a, const Region& b, const CoordinateBox& box, std::span<const Vector3> normals, double lower,
                         int halvings) {
     const std::size_t corners = std::size_t{1} << count_;
     if (normals.size() != 1 && normals.size() != corners) return 0;
-    if (!(magnitude_ < base::largest_magnitude && a.radius < base::largest_magnitude && b.radius < base::largest_magnitude)) return 0;
+    if (!is_usable(a, b)) return 0;
     double length = 0;
     for (const Vector3& normal : normals) {
         if (!normal.allFinite()) return 0;

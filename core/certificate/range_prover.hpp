@@ -24,6 +24,7 @@
 
 #include "core/certificate/certified_body.hpp"
 #include "core/certificate/linkage.hpp"
+#include "core/certificate/round_prover.hpp"
 #include "core/kinematics/path.hpp"
 
 namespace fettle::core::certificate {
@@ -37,6 +38,8 @@ public:
     int coordinates() const { return count_; }
     const CoordinateBox& box() const { return box_; }
     long prove(const Region& a, const Region& b, const CoordinateBox& part, std::span<const Vector3> normals, double lower, int halvings);
+    /// The same by one vector of a leaf o. @return 1, or 0
+    long prove_round(const Region& a, const Region& b, const CoordinateBox& part, const Vector3& m, double lower);
     Interval distance_at(const Interval3& X_a, const Interval3& X_b, const Coordinates& at);
     double witness_room(const Interval3& X_a, const Interval3& X_b) const;
 
@@ -63,12 +66,14 @@ private:
     static std::vector<double> radii(Side& side, const Region& region, const CoordinateBox& box);
     void add_losses(Side& side, const Region& region, const CoordinateBox& box, std::span<const Vector3> normals, Losses& losses) const;
     bool is_above(const Region& a, const Region& b, const CoordinateBox& box, std::span<const Vector3> normals, double wanted);
+    bool is_usable(const Region& a, const Region& b) const;
     Losses losses(const Region& a, const Region& b, const CoordinateBox& box, std::span<const Vector3> normals);
 
     Side a_, b_;
     int count_ = 0;  // of coordinates
     CoordinateBox box_;
     double magnitude_ = 0;  // upper bound of all numbers, as BodyPath::magnitude
+    RoundProver round_;
 };
 
 }  // namespace fettle::core::certificate

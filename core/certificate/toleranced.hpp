@@ -13,6 +13,7 @@
 /// their ranges are the same for all of them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -108,9 +109,9 @@ bool same_toleranced(const Toleranced& x, const Toleranced& y);
 /// |shift + scale (u - start)| at most, or |u - start|, whatever the deviations. Contract: checked.
 double farthest(const Toleranced& toleranced, const TolerancedScrew& screw);
 
-/// More deviations than this that matter for one pair are not dealt with.
+/// More deviations than this that matter for one pair are not dealt with, nor more than most_variables of coordinates and deviations.
 inline constexpr int most_deviations = 8;
-static_assert(most_deviations + most_coordinates == most_variables);
+static_assert(std::max(most_deviations, most_coordinates) <= most_variables);
 
 /// Two bodies: what moves one against the other. What carries both alike is left out.
 struct TolerancedPair {

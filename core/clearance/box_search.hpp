@@ -68,6 +68,7 @@ struct BoxCell {
 struct CellProof {
     double lower = 0;
     std::vector<Vector3> normals;
+    bool is_round = false;  ///< the one vector is that of a leaf o
 };
 
 /// At the limit of rounding there is no split.
@@ -196,7 +197,9 @@ certificate::BoxProof prove_box(Cells cells, double distance, const BoxSearchOpt
         pending.pop_back();
         const CellProof found = cells.evaluate(cell, distance, options.tolerance);
         if (cells.proves(found, distance)) {
-            proof.splits += found.normals.size() == 1 ? certificate::still_leaf : certificate::turning_leaf;
+            proof.splits += found.is_round              ? certificate::round_leaf
+                            : found.normals.size() == 1 ? certificate::still_leaf
+                                                        : certificate::turning_leaf;
             proof.normals.insert(proof.normals.end(), found.normals.begin(), found.normals.end());
             continue;
         }

@@ -39,9 +39,12 @@ public:
         for (const certificate::LinkedBody& body : ranges_.linkage.bodies)
             for (const certificate::Screw& screw : body.screws)
                 if (screw.coordinate == coordinate) slide = std::max(slide, std::abs(screw.slide));
-        turns_ = slide == 0;
+        const bool swings = ranges_.direction_of[coordinate] >= 0;
+        turns_ = slide == 0 && !swings;
         near_ = own_.joints.front().is_angle ? options.angle : options.length / slide;
-        reach_ = slide > 0 ? reach / slide : own_.is_whole_turn ? own_.high - own_.low : 2 * std::numbers::pi;
+        const double away = slide > 0 ? reach / slide : own_.is_whole_turn ? own_.high - own_.low : 2 * std::numbers::pi;
+        lowest_ = swings ? 0 : own_.start - away;
+        highest_ = swings ? std::numbers::pi : own_.start + away;
         options_.answer_is_enough = true;
         options_.measure_overlap = options_.sample_nodes = false;
         options_.should_stop = options.should_stop;
@@ -52,9 +55,9 @@ public:
         std::vector<int> upwards, downwards;
         look_at_start(upwards, downwards);
         out_.above.free = out_.below.free = out_.start;
-        if (asked_.above) out_.above = way(out_.start + reach_, upwards, beside_above_);
+        if (asked_.above) out_.above = way(highest_, upwards, beside_above_);
         out_.turns_freely = asked_.above && turns_ && out_.above.kind == Kind::open;
-        if (asked_.below && !out_.turns_freely) out_.below = way(out_.start - reach_, downwards, beside_below_);
+        if (asked_.below && !out_.turns_freely) out_.below = way(lowest_, downwards, beside_below_);
         return std::move(out_);
     }
 
@@ -195,7 +198,7 @@ private:
     const int coordinate_;
     std::vector<PairRequest> pairs_;
     ClearanceOptions options_;
-    double near_ = 0, reach_ = 0;
+    double near_ = 0, lowest_ = 0, highest_ = 0;
     bool turns_ = false;
     std::vector<int> beside_above_, beside_below_;  // pairs that touch at the start, and come apart this way
     std::unique_ptr<RangeClearances> certification_;
@@ -238,8 +241,11 @@ base::Result<int> coordinate_of(const JointRanges& ranges, const std::string& jo
 }
 
 JointRanges alone(JointRanges ranges, int coordinate) {
+    const int direction = ranges.direction_of[coordinate];
     for (certificate::LinkedBody& body : ranges.linkage.bodies)
-        std::erase_if(body.screws, [&](const certificate::Screw& screw) { return screw.coordinate != coordinate; });
+        std::erase_if(body.screws, [&](const certificate::Screw& screw) {
+            return screw.coordinate != coordinate && (direction < 0 || screw.coordinate != direction);
+        });
     return ranges;
 }
 

@@ -76,7 +76,7 @@ std::vector<std::pair<int, int>> searched_pairs(const model::Model& model);
 /// joint that moves is called so, with the nearest that is.
 base::Result<int> coordinate_of(const JointRanges& ranges, const std::string& joint);
 
-/// The linkage in which `coordinate` alone moves.
+/// The linkage in which `coordinate` alone moves; a swing goes in every direction.
 JointRanges alone(JointRanges ranges, int coordinate);
 
 /// The ranges of some coordinates of `ranges`, in their order.

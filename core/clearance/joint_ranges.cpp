@@ -44,14 +44,21 @@ struct Affine {
     double scale = 1, offset = 0;
 };
 
-// A coordinate of a joint, with the number of its measure; -1 for the turn of a cylindrical one, which has no measure.
+// A coordinate of a joint, with the number of its measure; -1: it has none that gears or limits are about.
 struct Variable {
     const Joint* joint = nullptr;
     int measure = -1;
     bool is_angle = false;
     double start = 0;
     Affine is;
+    const char* what = "";                              // of the joint's coordinates, where it has more than one
+    std::optional<std::array<double, 2>> between = {};  // its range, whatever limits there are
+    int direction = -1;                                 // of a swing: the variable that is its direction
+    bool is_limited = false;                            // the range is one that the scene states
 };
+
+// Axes that are as good as one [rad].
+constexpr double one_axis = 1e-12;
 
 class RangeBuilder {
 public:
@@ -90,12 +97,6 @@ private:
 
     void check_joints() {
         for (const Joint* joint : joints_) {
-            if (joint->kind == JointKind::ball || joint->kind == JointKind::planar)
-                fail(
-                    ErrorCode::unsupported, joint->name,
-                    std::string("a ") + (joint->kind == JointKind::ball ? "ball" : "planar") +
-                        " joint has no limits on its three coordinates: ranges work with fixed, revolute, prismatic, cylindrical and screw "
-                        "joints");
             for (const int body : {joint->a, joint->b}) {
                 if (is_world(body)) continue;
                 const model::Body& b = model_.bodies[body];
@@ -167,8 +168,8 @@ private:
         for (const Joint* each : line) names += ", `" + each->name + "`";
         fail(ErrorCode::unsupported, joint.name,
              "closes a loop (" + names +
-                 "), whose positions depend on one another: ranges work with trees. For a loop that a motor drives use --kinematic or "
-                 "--motion");
+                 "), whose positions depend on one another: this works with trees. `fettle clearance --ranges` takes loops of revolute "
+                 "joints that one motor drives, --kinematic and --motion go along a motion");
     }
 
     void hang(const Joint& joint, int parent, int body) {
@@ -177,19 +178,90 @@ private:
         hung_by_[body] = &joint;
         if (joint.kind == JointKind::fixed) return;
         out_.joint_of[body] = static_cast<int>(&joint - model_.mechanism.joints.data());
+        const std::vector<Screw> from_a = screws_of(joint);
+        link.screws = body == joint.b ? from_a : reversed(from_a);
+    }
+
+    // What carries b, seen from a, by the joint's coordinates; outermost first.
+    std::vector<Screw> screws_of(const Joint& joint) {
+        if (joint.kind == JointKind::ball) return screws_of_ball(joint);
+        if (joint.kind == JointKind::planar) return screws_of_planar(joint);
         const measure::PlacedFrame& frame = frames_[joint.frame_a];
-        const double sense = body == joint.b ? 1 : -1;  // the coordinate is of b against a
         Screw screw{0, frame.point, frame.axes.col(2), 0, 0};
         const bool turns = joint.kind == JointKind::revolute || joint.kind == JointKind::screw;
         screw.coordinate = add_variable(joint, joint.coordinate, turns);
-        (turns ? screw.turn : screw.slide) = sense;
-        if (joint.kind == JointKind::screw) screw.slide = sense * slide_of_screw(joint);
-        link.screws.push_back(screw);
-        if (joint.kind != JointKind::cylindrical) return;
-        screw.coordinate = add_variable(joint, -1, true);
-        screw.turn = sense;
-        screw.slide = 0;
-        link.screws.push_back(screw);
+        (turns ? screw.turn : screw.slide) = 1;
+        if (joint.kind == JointKind::screw) screw.slide = slide_of_screw(joint);
+        if (joint.kind != JointKind::cylindrical) return {screw};
+        Screw turn = screw;
+        turn.coordinate = add_free(joint, " (turn)", whole_turn());
+        turn.turn = 1;
+        turn.slide = 0;
+        return {screw, turn};
+    }
+
+    // The same of a, seen from b. Two along one axis keep their order, which makes no difference.
+    static std::vector<Screw> reversed(std::vector<Screw> screws) {
+        if (screws.size() > 2) std::reverse(screws.begin(), screws.end());
+        for (Screw& screw : screws) {
+            screw.turn = -screw.turn;
+            screw.slide = -screw.slide;
+        }
+        return screws;
+    }
+
+    // b's axis swings from a's in some direction, and b is turned about it: all that b can be turned to, with that swing at most.
+    std::vector<Screw> screws_of_ball(const Joint& joint) {
+        const measure::PlacedFrame &a = frames_[joint.frame_a], &b = frames_[joint.frame_b];
+        const Vector3 axis_a = a.axes.col(2), axis_b = b.axes.col(2), across = axis_a.cross(axis_b);
+        const double sine = across.norm(), swing = std::atan2(sine, axis_a.dot(axis_b));
+        const bool are_one = swing < one_axis || swing > pi - one_axis;
+        const std::optional<double> most = swing_of(joint);
+        const int direction = add_free(joint, " (direction)", whole_turn());
+        const int swings = add_free(joint, "", {0, most.value_or(pi * covered)});
+        variables_[swings].start = swing < one_axis ? 0 : swing;
+        variables_[swings].direction = direction;
+        variables_[swings].is_limited = most.has_value();
+        const int turn = add_free(joint, " (turn)", whole_turn());
+        return {{direction, a.point, axis_a, 1, 0},
+                {swings, a.point, are_one ? Vector3(a.axes.col(1)) : Vector3(across / sine), 1, 0},
+                {turn, a.point, are_one && swing < 1 ? axis_a : axis_b, 1, 0}};
+    }
+
+    std::optional<double> swing_of(const Joint& joint) const {
+        for (const model::MeasureTerm& term : model_.mechanism.terms)
+            if (term.kind == model::LawKind::stop && model::is_swing(model_.mechanism, term) && is_of(term, joint))
+                return std::acos(term.reference);
+        return std::nullopt;
+    }
+
+    static bool is_of(const model::MeasureTerm& term, const Joint& joint) {
+        return term.origin.list == joint.origin.list && term.origin.index == joint.origin.index;
+    }
+
+    // b's point slides along two axes of a, and b turns about it.
+    std::vector<Screw> screws_of_planar(const Joint& joint) {
+        const measure::PlacedFrame &a = frames_[joint.frame_a], &b = frames_[joint.frame_b];
+        std::vector<Screw> out;
+        for (const int k : {0, 1}) {
+            const Vector3 axis = a.axes.col(k);
+            const int slide = add_variable(joint, -1, false);
+            variables_[slide].what = k == 0 ? " (x)" : " (y)";
+            variables_[slide].start = axis.dot(b.point - a.point);
+            out.push_back({slide, a.point, axis, 0, 1});
+        }
+        out.push_back({add_free(joint, " (turn)", whole_turn()), b.point, a.axes.col(2), 1, 0});
+        return out;
+    }
+
+    static std::array<double, 2> whole_turn() { return {-pi * covered, pi * covered}; }
+
+    // An angle that nothing couples to others.
+    int add_free(const Joint& joint, const char* what, const std::array<double, 2>& between) {
+        const int place = add_variable(joint, -1, true);
+        variables_[place].what = what;
+        variables_[place].between = between;
+        return place;
     }
 
     int add_variable(const Joint& joint, int measure, bool is_angle) {
@@ -249,7 +321,9 @@ private:
         for (std::size_t i = 0; i < variables_.size(); ++i) {
             if (variables_[i].is.free != static_cast<int>(i)) continue;
             place[i] = count_of(out_.linkage.coordinates);
-            out_.linkage.coordinates.push_back(coordinate_of(static_cast<int>(i)));
+            const Variable& variable = variables_[i];
+            out_.linkage.coordinates.push_back(variable.between ? free_coordinate(variable) : coordinate_of(static_cast<int>(i)));
+            out_.direction_of.push_back(variable.direction < 0 ? -1 : place[variable.direction]);
         }
         for (certificate::LinkedBody& body : out_.linkage.bodies)
             for (Screw& screw : body.screws) {
@@ -258,6 +332,18 @@ private:
                 screw.turn *= is.scale;
                 screw.slide *= is.scale;
             }
+    }
+
+    LinkageCoordinate free_coordinate(const Variable& variable) {
+        LinkageCoordinate out;
+        const auto& [low, high] = *variable.between;
+        out.start = variable.start;
+        out.low = std::min(low, out.start);
+        out.high = std::max(high, out.start);
+        out.joints = {{variable.joint->name + variable.what, true, 1, 0}};
+        out.is_whole_turn = variable.direction < 0;
+        out_.has_limits.push_back(variable.is_limited);
+        return out;
     }
 
     LinkageCoordinate coordinate_of(int free) {
@@ -271,11 +357,10 @@ private:
         std::vector<std::string> followers;
         for (const Variable& each : variables_) {
             if (each.is.free != free) continue;
-            const bool is_turn = each.measure < 0;
-            out.joints.push_back({each.joint->name + (is_turn ? " (turn)" : ""), each.is_angle, each.is.scale, each.is.offset});
+            out.joints.push_back({each.joint->name + each.what, each.is_angle, each.is.scale, each.is.offset});
             if (!each.is_angle || each.joint->kind == JointKind::screw) slides = &each;
             const std::array<double, 2> before{out.low, out.high};
-            if (!is_turn) apply_limits(each, out);
+            apply_limits(each, out);
             if (before != std::array{out.low, out.high}) followers.push_back("`" + each.joint->name + "`");
         }
         const bool has_limits = std::isfinite(out.low) && std::isfinite(out.high);
@@ -296,7 +381,12 @@ private:
             out.high = out.start + either_way;
             return out;
         }
-        if (slides != nullptr)
+        if (slides != nullptr && slides->joint->kind == JointKind::planar)
+            fail(ErrorCode::missing_key, slides->joint->name,
+                 "has no limits on its two slides, and takes none: to look at all its positions, use two prismatic joints and a revolute "
+                 "one, "
+                 "each with \"limits\", and small bodies between them");
+        else if (slides != nullptr)
             fail(ErrorCode::missing_key, slides->joint->name,
                  "has no limits: say \"limits\": [least, greatest], or everything is possible");
         else if (!half)
@@ -347,6 +437,10 @@ private:
 };
 
 }  // namespace
+
+bool is_direction(const JointRanges& ranges, int coordinate) {
+    return std::find(ranges.direction_of.begin(), ranges.direction_of.end(), coordinate) != ranges.direction_of.end();
+}
 
 base::Result<JointRanges> joint_ranges(const model::Model& model, std::optional<double> reach) {
     return RangeBuilder(model, reach).build();

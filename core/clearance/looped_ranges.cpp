@@ -84,7 +84,7 @@ private:
                     continue;
                 }
                 if (joints[k].kind != scene::JointKind::revolute)
-                    fail({k}, "closes a loop; within tolerances the joint of a loop that comes last has to be a revolute one");
+                    fail({k}, "closes a loop; of the joints of a loop that no motor drives the last in the list has to be a revolute one");
                 closing_.push_back(k);
                 joints[k].is_motor = true;  // so that it is none of the tree's
             }
@@ -172,7 +172,7 @@ private:
         if (drivers.empty() && limited.size() == 1) drivers = limited;
         if (drivers.size() != 1) {
             fail(loop.closing, drivers.empty() ? "closes a loop that nothing drives: give one of its joints a motor, or limits to one alone"
-                                               : "closes a loop that more than one motor drives; within tolerances it is one");
+                                               : "closes a loop that more than one motor drives: one is expected");
             return;
         }
         loop.driver = drivers.front();

@@ -97,6 +97,7 @@ ScrewedPair screwed_pair(const PieceTree& a, const PieceTree& b, const certifica
     out.body_a = screwed_body(linked.a, out.start, start_a);
     out.body_b = screwed_body(linked.b, out.start, start_b);
     out.slack = slack_of(out);
+    out.revolution = revolution_of(linked);
     return out;
 }
 

@@ -21,6 +21,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "core/certificate/linkage.hpp"
@@ -54,6 +55,7 @@ struct ScrewedPair {
     Coordinates start{};
     std::array<bool, most_coordinates> is_single{};  ///< one screw alone moves with it
     double slack = 0;                                ///< [m]
+    std::optional<certificate::Revolution> revolution{};
 };
 
 /// Contract: at most most_coordinates and most_screws.

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "core/base/kronecker.hpp"
 #include "core/clearance/pair_search.hpp"
 #include "core/clearance/piece_bound.hpp"
+#include "core/clearance/revolved_bound.hpp"
 #include "core/clearance/search_front.hpp"
 
 namespace fettle::core::clearance {
@@ -67,11 +70,23 @@ private:
                 proof.normals = std::move(normals);
             }
         }
+        if (pair_.revolution && !(best.lower >= wanted)) take_revolved(cell, best, proof);
         proof.lower = proven(best.lower);
         cell.lower = std::max(cell.lower, proof.lower);
         cell.loosened = best.loosened;
         cell.widest = best.widest;
         return proof;
+    }
+
+    // Where the turns do not matter, halving them is of no use.
+    void take_revolved(const RangeCell& cell, RangeBound& best, CellProof& proof) {
+        if (!revolved_) revolved_ = std::make_shared<const RevolvedBound>(pair_);
+        const RevolvedBound::Found found = revolved_->bound(cell.a, cell.b, cell.box);
+        if (!(found.lower > best.lower)) return;
+        best.loosened -= found.lower - best.lower;
+        best.lower = found.lower;
+        proof.normals = {found.vector};
+        proof.is_round = true;
     }
 
     static const Corners* element(const PieceTree& tree, const Piece& piece) {
@@ -94,6 +109,7 @@ private:
     }
 
     const ScrewedPair& pair_;
+    std::shared_ptr<const RevolvedBound> revolved_;  // once it is needed
 };
 
 // Samples, and downhill from the best: along each coordinate to and fro, with steps that shrink.
@@ -116,10 +132,10 @@ public:
         };
         if (pair_.count == 0) return;
         look(middle);
-        const std::array<double, most_coordinates> steps{0.8567, 0.7339, 0.6287, 0.5386};  // Kronecker sequence of four dimensions
+        static const base::Kronecker spread(most_coordinates);
         for (int i = 1; i <= 8 + 8 * pair_.count; ++i) {
             Coordinates at = middle;
-            for (std::size_t k = 0; k < static_cast<std::size_t>(pair_.count); ++k) at[k] = between(k, std::fmod(0.5 + i * steps[k], 1.0));
+            for (std::size_t k = 0; k < static_cast<std::size_t>(pair_.count); ++k) at[k] = between(k, spread.at(i, k));
             look(at);
         }
         for (double step = 0.125; step > 1e-9 && least > 0; step *= 0.5) {

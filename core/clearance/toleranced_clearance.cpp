@@ -64,11 +64,12 @@ private:
         out.deviations = pair.deviations;
         for (const int k : pair.deviations) out.deviations_at.push_back(toleranced_.deviations[k].base);
         out.reason = obstacle(asked, count_of(pair.coordinates));
-        if (out.reason.empty() && count_of(pair.deviations) > certificate::most_deviations) {
+        const int most_deviations = std::min(certificate::most_deviations, certificate::most_variables - count_of(pair.coordinates));
+        if (out.reason.empty() && count_of(pair.deviations) > most_deviations) {
             std::vector<std::string> names;
             for (const int k : pair.deviations) names.push_back("`" + toleranced_.deviations[k].of + "`");
-            out.reason = std::to_string(names.size()) + " tolerances matter for the two; at most " +
-                         std::to_string(certificate::most_deviations) + " can be looked at together: " + base::joined(names);
+            out.reason = std::to_string(names.size()) + " tolerances matter for the two; at most " + std::to_string(most_deviations) +
+                         " can be looked at together: " + base::joined(names);
         }
         if (out.reason.empty()) measure(pair, i, out);
         return out;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/kronecker.hpp"
 #include "core/clearance/pair_search.hpp"
 #include "core/clearance/piece_bound.hpp"
 #include "core/clearance/search_front.hpp"
@@ -292,11 +293,10 @@ public:
         const auto variables = static_cast<std::size_t>(bodies_.pair.variables());
         VariableBox::Values at = start();
         sample(at);
-        constexpr std::array<double, certificate::most_coordinates> steps{0.8567, 0.7339, 0.6287, 0.5386};
-        for (std::size_t i = 1; coordinates > 0 && i <= 8 + 8 * coordinates; ++i) {
+        static const base::Kronecker spread(certificate::most_coordinates);
+        for (int i = 1; coordinates > 0 && i <= 8 + 8 * static_cast<int>(coordinates); ++i) {
             for (std::size_t k = 0; k < coordinates; ++k)
-                at[k] = std::clamp(box_.low[k] + std::fmod(0.5 + static_cast<double>(i) * steps[k], 1.0) * (box_.high[k] - box_.low[k]),
-                                   box_.low[k], box_.high[k]);
+                at[k] = std::clamp(box_.low[k] + spread.at(i, k) * (box_.high[k] - box_.low[k]), box_.low[k], box_.high[k]);
             sample(at);
         }
         for (double step = 0.5; step > 1e-4; step *= 0.5)

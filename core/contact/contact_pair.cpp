@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/base/four.hpp"
-#include "core/linear/factorisations.hpp"
+#include "core/linear/positive_part.hpp"
 
 namespace fettle::core::contact {
 namespace {
@@ -336,9 +336,7 @@ void add_outer_product(PairMatrix& hessian, double factor, const PairVector& v) 
 
 PairMatrix positive_part(const PairMatrix& lower) {
     const linear::SymmetricEigen<9> eigen = linear::symmetric_eigen<9>(lower);
-    if (eigen.values[0] >= 0) return lower;
-    const PairVector positive = eigen.values.cwiseMax(0.0);
-    return eigen.vectors * positive.asDiagonal() * eigen.vectors.transpose();
+    return eigen.values[0] >= 0 ? lower : PairMatrix(linear::positive_part(eigen));
 }
 
 Matrix12 in_both_bodies(const PairMatrix& hessian) {

@@ -9,7 +9,7 @@
 #include "core/energy/body_terms.hpp"
 #include "core/energy/contact_terms.hpp"
 #include "core/energy/measure_terms.hpp"
-#include "core/linear/factorisations.hpp"
+#include "core/linear/positive_part.hpp"
 
 namespace fettle::core::energy {
 namespace {
@@ -23,10 +23,7 @@ constexpr int values_a_piece = 32;   // the same, of values alone
 
 Matrix6 positive_part(const Matrix6& h) {
     const Eigen::LLT<Matrix6> cholesky(h);
-    if (cholesky.info() == Eigen::Success) return h;
-    const linear::SymmetricEigen<6> eigen = linear::symmetric_eigen<6>(h);
-    const Vector6 positive = eigen.values.cwiseMax(0.0);
-    return eigen.vectors * positive.asDiagonal() * eigen.vectors.transpose();
+    return cholesky.info() == Eigen::Success ? h : Matrix6(linear::positive_part(linear::symmetric_eigen<6>(h)));
 }
 
 // h from (dq, phi) of the rows' and of the columns' body to (dq, dtheta): phi = J dtheta.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/linear/factorisations.hpp"
+#include "core/linear/positive_part.hpp"
 
 namespace fettle::core::energy {
 
@@ -69,11 +69,6 @@ double measures_value(const ValueAt& at) {
     return sum;
 }
 
-Matrix12 positive_part_of(const Matrix12& h) {
-    const linear::SymmetricEigen<12> eigen = linear::symmetric_eigen<12>(h);
-    return eigen.vectors * eigen.values.cwiseMax(0.0).asDiagonal() * eigen.vectors.transpose();
-}
-
 // The derivatives of one term in the bodies of its measure.
 struct TermGradient {
     int a = 0, b = 0;
@@ -95,7 +90,7 @@ TermGradient derivatives_of(const DerivativesAt& at, const model::MeasureTerm& t
     const bool exact = at.kind == contact::HessianKind::exact;
     out.hessian = (exact ? law.second : law.majorant) * along * along.transpose();
     if (!f.is_linear() && law.first != 0) out.hessian += law.first * gauss_newton_hessian(m, f, frames);
-    if (!exact && law.first != 0) out.hessian = positive_part_of(out.hessian);
+    if (!exact && law.first != 0) out.hessian = linear::positive_part(linear::symmetric_eigen<12>(out.hessian));
     for (kinematics::PoseGradient* side : {&out.gradient.a, &out.gradient.b}) {
         side->force *= law.first;
         side->arm *= law.first;

@@ -24,12 +24,15 @@ struct Deviation {
     /// False: found from samples (curves of a law without bound), or of what solids cut each other by (parts/solid_booleans.hpp) to first
     /// order.
     bool out_is_proven = true, in_is_proven = true;
+    /// The share of both that is no theorem but a file's word: tolerances that a STEP file declares for its edges and vertices.
+    double declared = 0;
 
     void add(const Deviation& other) {
         out = std::max(out, other.out);
         in = std::max(in, other.in);
         out_is_proven = out_is_proven && other.out_is_proven;
         in_is_proven = in_is_proven && other.in_is_proven;
+        declared = std::max(declared, other.declared);
     }
 };
 
@@ -45,7 +48,9 @@ struct Mesh {
     /// Per triangle: index into `face_names`; empty: its faces have no names. Connectivity that is built anew leaves both as they are.
     std::vector<int> triangle_face;
     std::vector<std::string> face_names;  ///< the part's own: "bore", "rim end", "slot 2" (named_faces.hpp)
-    std::optional<Deviation> deviation;   ///< from the part that it was drawn for (core/parts); nothing: it is the part
+    /// From the part that it was drawn for (core/parts), or the solid of a STEP file; nothing: it is the part.
+    std::optional<Deviation> deviation;
+    std::optional<std::array<unsigned char, 3>> colour;  ///< sRGB, where its file has one (STEP)
 };
 
 /// Fills edges, codimensional_points, triangle_shell (and shell_names where it has the wrong length: "name/0", "name/1", ...)

@@ -13,6 +13,7 @@ void scale_mesh(Mesh& mesh, const Vector3& factors) {
     const double most = (1 + 0x1p-50) * factors.cwiseAbs().maxCoeff();
     mesh.deviation->out *= most;
     mesh.deviation->in *= most;
+    mesh.deviation->declared *= most;
 }
 
 void turn_triangles(Mesh& mesh) {
@@ -23,9 +24,14 @@ void turn_triangles(Mesh& mesh) {
 
 std::vector<Mesh> split_parts(const Mesh& mesh, const std::vector<int>& part_of_shell, int count) {
     std::vector<std::vector<Triangle>> triangles(static_cast<std::size_t>(count));
+    std::vector<std::vector<int>> faces(triangles.size());
     std::vector<std::string> names(triangles.size());
     for (std::size_t s = part_of_shell.size(); s-- > 0;) names[part_of_shell[s]] = mesh.shell_names[s];
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) triangles[part_of_shell[mesh.triangle_shell[t]]].push_back(mesh.triangles[t]);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const int part = part_of_shell[mesh.triangle_shell[t]];
+        triangles[part].push_back(mesh.triangles[t]);
+        if (!mesh.triangle_face.empty()) faces[part].push_back(mesh.triangle_face[t]);
+    }
     std::vector<Mesh> parts;
     std::vector<int> new_index(mesh.vertices.cols(), -1);
     for (std::size_t part = 0; part < triangles.size(); ++part) {
@@ -38,6 +44,10 @@ std::vector<Mesh> split_parts(const Mesh& mesh, const std::vector<int>& part_of_
             for (int& v : triangle) v = new_index[v];
         }
         parts.push_back(make_mesh(names[part], mesh.vertices(Eigen::all, kept), std::move(triangles[part])));
+        parts.back().triangle_face = std::move(faces[part]);
+        parts.back().face_names = mesh.face_names;
+        parts.back().deviation = mesh.deviation;
+        parts.back().colour = mesh.colour;
     }
     return parts;
 }

@@ -3,25 +3,20 @@
 // import_format.hpp says. It may crash, loop and run out of memory with whatever a file makes of assimp; its parent only sees that nothing
 // came. Nothing of fettle's libraries is in it.
 //
-//     mesh_importer FILE SECONDS BYTES PARENT      the limits of processor time and of memory, and the process that waits for it
+//     mesh_importer FILE SECONDS BYTES      the limits of processor time and of memory
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cerrno>
-#include <csignal>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <string>
 #include <vector>
 
 #include "core/mesh_files/import_format.hpp"
+#include "core/mesh_files/import_program.hpp"
 #include "core/mesh_files/most_placed.hpp"
 
 namespace fettle::core::mesh_files {
@@ -134,46 +129,21 @@ const aiScene* imported(const char* path, bool& left_out) {
     return aiImportFileExWithProperties(path, 0, nullptr, properties);
 }
 
-bool write_all(const void* data, std::size_t size) {
-    const char* at = static_cast<const char*>(data);
-    while (size > 0) {
-        const ssize_t written = ::write(STDOUT_FILENO, at, size);
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return false;
-        at += written;
-        size -= static_cast<std::size_t>(written);
-    }
-    return true;
-}
-
-template <class Value>
-bool write_list(const std::vector<Value>& values) {
-    return write_all(values.data(), values.size() * sizeof(Value));
-}
-
-int write_failure(const std::string& reason, int code) {
-    ImportHeader header;
-    header.mark = import_is_failure;
-    write_all(&header, sizeof header);
-    write_all(reason.data(), reason.size());
-    return code;
-}
-
 int write_mesh(const Flat& mesh) {
-    const ImportHeader header{import_is_mesh,        mesh.coordinates.size() / 3, mesh.corners.size(), mesh.polygon_ends.size(),
-                              mesh.edges.size() / 2, mesh.points.size(),          mesh.names.size()};
-    bool good = write_all(&header, sizeof header) && write_list(mesh.coordinates) && write_list(mesh.corners) &&
-                write_list(mesh.polygon_ends) && write_list(mesh.polygon_names) && write_list(mesh.edges) && write_list(mesh.points);
-    for (const std::string& name : mesh.names) {
-        const auto length = static_cast<std::uint32_t>(name.size());
-        good = good && write_all(&length, sizeof length) && write_all(name.data(), name.size());
-    }
-    return good && write_all(&import_end, sizeof import_end) ? import_written : import_failed;
-}
-
-void limit(__rlimit_resource_t what, rlim_t most, rlim_t last = 0) {
-    const rlimit limits{most, std::max(most, last)};
-    ::setrlimit(what, &limits);
+    const ImportHeader header{import_is_mesh,
+                              mesh.coordinates.size() / 3,
+                              mesh.corners.size(),
+                              mesh.polygon_ends.size(),
+                              mesh.edges.size() / 2,
+                              mesh.points.size(),
+                              mesh.names.size(),
+                              0,
+                              0};
+    const ImportPipe pipe;
+    const bool good = pipe.write(&header, sizeof header) && pipe.write_list(mesh.coordinates) && pipe.write_list(mesh.corners) &&
+                      pipe.write_list(mesh.polygon_ends) && pipe.write_list(mesh.polygon_names) && pipe.write_list(mesh.edges) &&
+                      pipe.write_list(mesh.points) && pipe.write_texts(mesh.names) && pipe.write_end();
+    return good ? import_written : import_failed;
 }
 
 int import(const char* path) {
@@ -182,18 +152,18 @@ int import(const char* path) {
         const aiScene* scene = imported(path, left_out);
         if (scene == nullptr || scene->mRootNode == nullptr) {
             const std::string reason = aiGetErrorString();
-            return write_failure(reason, reason == "std::bad_alloc" ? import_out_of_memory : import_failed);
+            return ImportPipe().write_failure(reason, reason == "std::bad_alloc" ? import_out_of_memory : import_failed);
         }
         if (left_out) throw std::string("a face names a vertex that is not there");
         Flat mesh;
         append_node(*scene, *scene->mRootNode, axes_of_the_file(*scene->mRootNode), mesh);
         return write_mesh(mesh);  // and no more: what assimp holds goes with the process
     } catch (const std::string& fault) {
-        return write_failure(fault, import_failed);
+        return ImportPipe().write_failure(fault, import_failed);
     } catch (const TooMuch&) {
-        return write_failure("", import_too_large);
+        return ImportPipe().write_failure("", import_too_large);
     } catch (const std::bad_alloc&) {
-        return write_failure("", import_out_of_memory);
+        return ImportPipe().write_failure("", import_out_of_memory);
     }
 }
 
@@ -202,14 +172,7 @@ int import(const char* path) {
 
 int main(int count, char** arguments) {
     using namespace fettle::core::mesh_files;
-    if (count != 5) return import_misused;
-    // It dies with its parent, at once, however that ends.
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != static_cast<pid_t>(std::atol(arguments[4]))) return import_misused;
-    const rlim_t seconds = std::strtoull(arguments[2], nullptr, 10);
-    limit(RLIMIT_CPU, seconds, seconds + 1);  // SIGXCPU tells why
-    limit(RLIMIT_AS, std::strtoull(arguments[3], nullptr, 10));
-    limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_FSIZE, 0);  // it reads
+    if (count != 4) return import_misused;
+    take_limits(arguments);
     ::_exit(import(arguments[1]));
 }

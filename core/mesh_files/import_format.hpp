@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How assimp_importer.cpp, a program of its own, hands a mesh to assimp_reader.cpp through a pipe: numbers as the machine has them.
+/// How a program that reads files in a process of its own (assimp_importer.cpp, core/step_importer) hands a mesh to import_answer.hpp
+/// through a pipe: numbers as the machine has them.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +17,17 @@ struct ImportHeader {
     std::uint64_t edges = 0;     ///< two vertex indices of 32 bits
     std::uint64_t points = 0;    ///< a vertex index of 32 bits
     std::uint64_t names = 0;     ///< a length of 32 bits and the characters
+    /// 0 but for STEP: one ImportBody for each name; then each polygon's face, 32 bits, and the faces' names.
+    std::uint64_t bodies = 0, faces = 0;
+};
+
+/// What a file places: the vertices and polygons from these up to the next one's, and how far they are from the solid
+/// (geometry::Deviation).
+struct ImportBody {
+    std::uint64_t first_vertex = 0, first_polygon = 0;
+    double out = 0, in = 0, declared = 0;  ///< [m]
+    std::uint32_t is_proven = 0;
+    std::uint32_t colour = 0;  ///< 0x1RRGGBB; 0: none
 };
 inline constexpr std::uint64_t import_is_mesh = 0x6873656d656c7466, import_is_failure = 0x6c696166656c7466;
 /// Behind the last name: everything has been written.

@@ -1,114 +1,54 @@
 // SPDX-License-Identifier: MIT
 #include "core/mesh_files/import_process.hpp"
 
-#include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/mman.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <optional>
 #include <string_view>
-#include <utility>
+#include <system_error>
 #include <vector>
 
 #include "core/files/atomic_file.hpp"
 #include "core/files/embedded_file.hpp"
+#include "core/files/process.hpp"
 
 FETTLE_EMBEDDED_FILE(fettle_mesh_importer, FETTLE_MESH_IMPORTER)
+#ifdef FETTLE_STEP_IMPORTER
+FETTLE_EMBEDDED_FILE(fettle_step_importer, FETTLE_STEP_IMPORTER)
+#endif
 
 namespace fettle::core::mesh_files {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-class Descriptor {
-public:
-    explicit Descriptor(int number) : number_(number) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() { close(); }
-    void close() {
-        if (number_ >= 0) ::close(std::exchange(number_, -1));
-    }
-    int operator*() const { return number_; }
-
-private:
-    int number_;
-};
-
-/// A process that is waited for; if that does not come about it is killed, and leaves no zombie.
-class Child {
-public:
-    explicit Child(pid_t process) : process_(process) {}
-    Child(const Child&) = delete;
-    Child& operator=(const Child&) = delete;
-    ~Child() { kill(); }
-    void kill() {
-        if (process_ < 0) return;
-        ::kill(process_, SIGKILL);
-        wait();
-    }
-    /// @return its status; nullopt if somebody else has collected it
-    std::optional<int> wait() {
-        int status = 0;
-        pid_t reaped = -1;
-        do reaped = ::waitpid(process_, &status, 0);
-        while (reaped < 0 && errno == EINTR);
-        const bool is_ours = reaped == std::exchange(process_, -1);
-        return is_ours ? std::optional<int>(status) : std::nullopt;
-    }
-
-private:
-    pid_t process_;
-};
+std::string_view bytes_of(Importer importer) {
+#ifdef FETTLE_STEP_IMPORTER
+    if (importer == Importer::step) return fettle_step_importer();
+#endif
+    return importer == Importer::assimp ? fettle_mesh_importer() : std::string_view();
+}
 
 /// A file without a name that has the importer in it; -1 and errno where the system makes none.
-int importer_file() {
+int importer_file(Importer importer) {
 #ifdef MFD_EXEC
     int file = ::memfd_create("fettle mesh importer", MFD_CLOEXEC | MFD_EXEC);
     if (file < 0 && errno == EINVAL) file = ::memfd_create("fettle mesh importer", MFD_CLOEXEC);  // a kernel older than the flag
 #else
     const int file = ::memfd_create("fettle mesh importer", MFD_CLOEXEC);
 #endif
-    std::string_view left = fettle_mesh_importer();
+    std::string_view left = bytes_of(importer);
     const int code = file < 0 ? errno : files::write_all(file, left);
     if (code == 0) return file;
     if (file >= 0) ::close(file);
     errno = code;
     return -1;
-}
-
-/// Starts it with `out` as stdout and nothing else of ours. @return 0, or errno
-int spawn(int program, std::vector<std::string> words, int out, pid_t& process) {
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    const std::string path = "/proc/self/fd/" + std::to_string(program);
-    posix_spawn_file_actions_t actions;
-    posix_spawnattr_t attributes;
-    ::posix_spawn_file_actions_init(&actions);
-    ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
-    ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);  // what an abort prints is for nobody
-    ::posix_spawnattr_init(&attributes);
-    sigset_t none, usual;
-    ::sigemptyset(&none);
-    ::sigfillset(&usual);
-    ::posix_spawnattr_setsigmask(&attributes, &none);
-    ::posix_spawnattr_setsigdefault(&attributes, &usual);
-    ::posix_spawnattr_setpgroup(&attributes, 0);  // Ctrl-C is for the parent, with which it ends
-    ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-    const int code = ::posix_spawn(&process, path.c_str(), &actions, &attributes, arguments.data(), environ);
-    ::posix_spawnattr_destroy(&attributes);
-    ::posix_spawn_file_actions_destroy(&actions);
-    return code;
 }
 
 using End = ImportOutcome::End;
@@ -134,29 +74,37 @@ End collect(int from, std::uint64_t largest, Clock::time_point latest, const std
 
 }  // namespace
 
-ImportOutcome run_importer(const std::string& path, const ImportLimits& limits, const std::function<bool()>& should_stop) {
+bool has_importer(Importer importer) { return !bytes_of(importer).empty(); }
+
+ImportOutcome run_importer(Importer importer, const std::string& path, const std::vector<std::string>& more, const ImportLimits& limits,
+                           const std::function<bool()>& should_stop) {
     ImportOutcome outcome;
-    const Descriptor program(importer_file());
-    std::array<int, 2> ends{-1, -1};
-    if (*program < 0 || ::pipe2(ends.data(), O_CLOEXEC) != 0) {
+    const files::Descriptor program(importer_file(importer));
+    if (*program < 0) {
         outcome.code = errno;
         return outcome;
     }
-    const Descriptor from(ends[0]);
-    Descriptor to(ends[1]);
-    pid_t process = -1;
-    outcome.code = spawn(
-        *program, {"fettle mesh importer", path, std::to_string(limits.seconds), std::to_string(limits.memory), std::to_string(::getpid())},
-        *to, process);
-    to.close();
-    if (outcome.code != 0) return outcome;
-    Child child(process);
-    outcome.end = collect(*from, limits.largest, Clock::now() + 10 * std::chrono::seconds(limits.seconds), should_stop, outcome.written);
-    if (outcome.end != End::exited) {
-        child.kill();
-    } else if (const std::optional<int> status = child.wait()) {  // else what it wrote tells enough
-        if (WIFSIGNALED(*status)) outcome.end = WTERMSIG(*status) == SIGXCPU ? End::out_of_time : End::killed;
-        outcome.code = WIFSIGNALED(*status) ? WTERMSIG(*status) : WEXITSTATUS(*status);
+    files::Launch launch{
+        .words = {"/proc/self/fd/" + std::to_string(*program), path, std::to_string(limits.seconds), std::to_string(limits.memory)}};
+    launch.words.insert(launch.words.end(), more.begin(), more.end());
+    std::optional<files::Pipe> pipe;
+    std::optional<files::Process> process;
+    try {
+        launch.out = *pipe.emplace().to;
+        process.emplace(launch);
+    } catch (const std::system_error& error) {
+        outcome.code = error.code().value();
+        return outcome;
+    }
+    pipe->to.close();
+    const auto latest = Clock::now() + 10 * std::chrono::seconds(limits.seconds);
+    outcome.end = collect(*pipe->from, limits.largest, latest, should_stop, outcome.written);
+    if (outcome.end != End::exited) process->kill();
+    const int code = process->wait();
+    if (outcome.end == End::exited && code != files::Process::lost) {  // else what it wrote tells enough
+        const bool is_killed = code > 128;
+        if (is_killed) outcome.end = code - 128 == SIGXCPU ? End::out_of_time : End::killed;
+        outcome.code = is_killed ? code - 128 : code;
     }
     if (outcome.end != End::exited) outcome.written.clear();
     return outcome;

@@ -32,13 +32,13 @@ constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 31;  // so that eve
 
 using Parse = Result<RawMesh> (*)(std::string_view bytes, const std::string& where);
 
-/// Without a parser of our own assimp reads it.
+/// Without a parser of our own assimp reads it, or Open CASCADE.
 struct Format {
     std::string_view extension;
     bool states_unit = false;
     Parse parse = nullptr;
 };
-constexpr std::array<Format, 10> formats = {{{".stl", false, parse_stl},
+constexpr std::array<Format, 12> formats = {{{".stl", false, parse_stl},
                                              {".obj", false, parse_obj},
                                              {".off", false, parse_off},
                                              {".ply", false, parse_ply},
@@ -47,7 +47,9 @@ constexpr std::array<Format, 10> formats = {{{".stl", false, parse_stl},
                                              {".gltf", true},
                                              {".glb", true},
                                              {".3ds", false},
-                                             {".amf", true}}};
+                                             {".amf", true},
+                                             {".step", true},
+                                             {".stp", true}}};
 
 std::string lower_case_extension(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
@@ -82,6 +84,7 @@ Result<RawMesh> read_raw(const std::string& path, const MeshReadOptions& options
         return Error{ErrorCode::unsupported, path,
                      "extension `" + lower_case_extension(path) + "` is not a mesh format; allowed: " + mesh_extensions()};
     if (Errors errors = checked_file(path); !errors.empty()) return errors;
+    if (is_step(path)) return read_step(path, options.chord, options.surface_tolerance, options.should_stop);
     if (format->parse == nullptr) return read_by_assimp(path, format->extension, options.should_stop);
     const auto text = files::read_file(path);
     if (!text) return text.errors();
@@ -107,6 +110,7 @@ Errors check_numbers(const RawMesh& raw, const std::string& path) {
 struct GroupedTriangles {
     std::vector<Triangle> triangles;
     std::vector<int> group;
+    std::vector<int> face;  ///< of files that have faces
 };
 
 /// Polygons cut into triangles; with `weld` without those that have two equal corners.
@@ -114,11 +118,12 @@ Result<GroupedTriangles> grouped_triangles(const RawMesh& raw, bool weld, const 
     GroupedTriangles result;
     result.triangles.reserve(raw.polygon_ends.size());
     result.group.reserve(raw.polygon_ends.size());
-    const auto add = [&](const Triangle& t, int group) {
+    const auto add = [&](const Triangle& t, std::size_t polygon) {
         const Vector3 &a = raw.vertices[t[0]], &b = raw.vertices[t[1]], &c = raw.vertices[t[2]];
         if (weld && (a == b || b == c || c == a)) return;
         result.triangles.push_back(t);
-        result.group.push_back(group);
+        result.group.push_back(raw.polygon_group[polygon]);
+        if (!raw.polygon_face.empty()) result.face.push_back(raw.polygon_face[polygon]);
     };
     int first = 0;
     std::int64_t tests = most_tests;
@@ -127,7 +132,7 @@ Result<GroupedTriangles> grouped_triangles(const RawMesh& raw, bool weld, const 
         const int count = raw.polygon_ends[p] - first;
         first = raw.polygon_ends[p];
         if (count == 3) {
-            add({corners[0], corners[1], corners[2]}, raw.polygon_group[p]);
+            add({corners[0], corners[1], corners[2]}, p);
             continue;
         }
         if (count > most_corners)
@@ -147,7 +152,7 @@ Result<GroupedTriangles> grouped_triangles(const RawMesh& raw, bool weld, const 
                  << "), has no area or an outline that crosses itself; export the mesh as triangles";
             return Error{ErrorCode::mesh_invalid, path, text.str()};
         }
-        for (const Triangle& t : pieces) add(t, raw.polygon_group[p]);
+        for (const Triangle& t : pieces) add(t, p);
     }
     return result;
 }
@@ -190,6 +195,15 @@ void name_shells(Mesh& mesh, const std::vector<int>& triangle_group, const std::
     }
 }
 
+/// The names of its faces alone, which follow one another in the file.
+void take_faces(const std::vector<std::string>& names, RawMesh& out) {
+    if (out.polygon_face.empty()) return;
+    const auto [least, most] = std::minmax_element(out.polygon_face.begin(), out.polygon_face.end());
+    const int first = *least;
+    out.face_names.assign(names.begin() + first, names.begin() + *most + 1);
+    for (int& face : out.polygon_face) face -= first;
+}
+
 /// The vertices and polygons of item `i`, as a file of their own.
 RawMesh item_of(const RawMesh& raw, std::size_t i) {
     const RawItem& item = raw.items[i];
@@ -211,7 +225,10 @@ RawMesh item_of(const RawMesh& raw, std::size_t i) {
             out.groups.insert(out.groups.end(), from(raw.groups, static_cast<std::size_t>(first_group) + out.groups.size()),
                               from(raw.groups, static_cast<std::size_t>(group) + 1));
         out.polygon_group.push_back(group - first_group);
+        if (!raw.polygon_face.empty()) out.polygon_face.push_back(raw.polygon_face[p]);
     }
+    take_faces(raw.face_names, out);
+    out.items = {{item.name, 0, 0, item.deviation, item.colour}};
     return out;
 }
 
@@ -240,6 +257,16 @@ Result<Mesh> mesh_of(RawMesh& raw, const std::string& name, const std::string& p
         geometry::build_connectivity(mesh, raw.edges);
     }
     name_shells(mesh, faces->group, raw.groups);
+    if (!faces->face.empty()) {
+        mesh.triangle_face = std::move(faces->face);
+        mesh.face_names = std::move(raw.face_names);
+    }
+    for (const RawItem& item : raw.items) {
+        if (!item.deviation) continue;
+        if (!mesh.deviation) mesh.deviation.emplace();
+        mesh.deviation->add(*item.deviation);
+        mesh.colour = raw.items.front().colour;
+    }
     return mesh;
 }
 
@@ -252,6 +279,11 @@ std::string mesh_extensions() {
 }
 
 bool has_mesh_extension(const std::string& path) { return format_of(path) != nullptr; }
+
+bool is_step(const std::string& path) {
+    const std::string extension = lower_case_extension(path);
+    return extension == ".step" || extension == ".stp";
+}
 
 bool states_its_unit(const std::string& path) {
     const Format* format = format_of(path);
@@ -283,6 +315,21 @@ Result<std::vector<Mesh>> read_mesh_parts(const std::string& path, const MeshRea
     if (raw->items.empty()) add(*raw, std::filesystem::path(path).stem().string());
     if (!errors.empty()) return errors;
     return parts;
+}
+
+Result<Mesh> item_called(const std::vector<Mesh>& parts, const std::string& name, const std::string& path) {
+    std::string names;
+    const Mesh* found = nullptr;
+    std::size_t count = 0, told = 0;
+    constexpr std::size_t most_told = 30;
+    for (const Mesh& part : parts) {
+        if (part.name == name) found = &part, ++count;
+        if (++told <= most_told) names += (told == 1 ? "`" : ", `") + base::shown_on_one_line(part.name) + "`";
+    }
+    if (count == 1) return *found;
+    return Error{ErrorCode::inconsistent, path,
+                 std::string(count == 0 ? "has no item `" : "has several items `") + name + "`; it has " + names +
+                     (told > most_told ? ", ..." : "")};
 }
 
 }  // namespace fettle::core::mesh_files

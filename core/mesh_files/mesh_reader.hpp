@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Reads a mesh file into a geometry::Mesh in metres: STL, OBJ, OFF, PLY and 3MF by readers of our own; COLLADA, glTF, 3DS and AMF
-/// by assimp.
+/// by assimp; the solids of STEP files by Open CASCADE, where fettle was built with it.
 ///
 /// Precision. What is read by our own is read in full double precision (binary STL is float by definition): another program's design may
 /// have parts that touch, and rounding to float could make them intersect. assimp keeps coordinates in float32: 100.123456789 becomes
@@ -11,6 +11,11 @@
 /// damaged file is an error here. Files beyond 2 GiB are refused, and so is what places more than 10 million vertices and triangles.
 ///
 /// Axes are those of the file: up in a glTF file is y.
+///
+/// STEP (docs/method/step.md): each solid of each instance is meshed, with a proven bound of how far the mesh is from its exact faces
+/// (Mesh::deviation), checked against the exact volume, area, centroid and box. A solid with a face that cannot be bounded, an open shell
+/// or anything else that would be left out is an error that names the face and its entity. Limits: 60 s of processor time and 20 s for each
+/// MiB, 2 GiB of memory and 200 times the file. Faces are called after their kind and number ("cylinder 7").
 ///
 /// What is kept: positions, faces (polygons are cut into triangles), polylines and two-vertex faces as codimensional edges, points that the
 /// file names as such (`p` in OBJ, faces of one vertex) and the vertices of a file that has nothing else as codimensional points. What is
@@ -40,12 +45,18 @@ struct MeshReadOptions {
     bool weld = true;
     /// Optional, asked on any thread while assimp reads: true ends it, with an error that says so.
     std::function<bool()> should_stop = {};
+    /// STEP alone: how far facets may be from round faces [m]; 0: two ten-thousandths of the solid's diagonal, between 1 um and 0.1 mm.
+    double chord = 0;
+    /// STEP alone: the user's word for how far the mesh is from faces that no bound is known of [m]; 0: these are errors.
+    double surface_tolerance = 0;
 };
 
 /// The extensions of what is read, as messages list them: ".stl .obj .off ...".
 std::string mesh_extensions();
 /// In any case: "GEAR.STL".
 bool has_mesh_extension(const std::string& path);
+/// STEP files, in any case: ".step", ".stp".
+bool is_step(const std::string& path);
 /// Is it of a format that has a unit of its own, so that MeshReadOptions::unit is not used?
 bool states_its_unit(const std::string& path);
 
@@ -58,7 +69,12 @@ bool states_its_unit(const std::string& path);
 Result<geometry::Mesh> read_mesh(const std::string& path, const MeshReadOptions& options = {});
 
 /// The parts of a file: of a 3MF one mesh for each item that its build places, where it places it, named after its object (two items of one
-/// object have one name); of every other format the one mesh, named after the file without its extension. Errors: as read_mesh.
+/// object have one name); of a STEP file one for each solid, named after its product ("pin", "pin#2"); of every other format the one mesh,
+/// named after the file without its extension. Errors: as read_mesh.
 Result<std::vector<geometry::Mesh>> read_mesh_parts(const std::string& path, const MeshReadOptions& options = {});
+
+/// One of the parts, by its name. Errors, with `where` the path: inconsistent (none is called so, or several), with the names that there
+/// are.
+Result<geometry::Mesh> item_called(const std::vector<geometry::Mesh>& parts, const std::string& name, const std::string& path);
 
 }  // namespace fettle::core::mesh_files

@@ -2,8 +2,10 @@
 /// What a mesh file says, before mesh_reader.cpp makes a geometry::Mesh of it, and the readers of single formats.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,10 +15,12 @@
 
 namespace fettle::core::mesh_files {
 
-/// What the build of a 3MF places: the vertices and polygons from these up to the next item's.
+/// What the build of a 3MF places, or a solid of a STEP file: the vertices and polygons from these up to the next item's.
 struct RawItem {
-    std::string name;  ///< of its object
+    std::string name;  ///< of its object; of a STEP file's no two are the same
     std::size_t first_vertex = 0, first_polygon = 0;
+    std::optional<geometry::Deviation> deviation = {};  ///< [m]
+    std::optional<std::array<unsigned char, 3>> colour = {};
 };
 
 struct RawMesh {
@@ -27,8 +31,10 @@ struct RawMesh {
     std::vector<std::string> groups;    ///< objects of the file, as it names them
     std::vector<geometry::Edge> edges;  ///< polylines
     std::vector<int> points;            ///< vertices that the file names as points
-    std::vector<RawItem> items;         ///< of 3MF; else empty: the file is one thing
-    double metres_per_unit = 0;         ///< 0: the file does not say
+    std::vector<RawItem> items;         ///< of 3MF and STEP; else empty: the file is one thing
+    std::vector<int> polygon_face;      ///< of STEP, per polygon: index into `face_names`; else empty
+    std::vector<std::string> face_names;
+    double metres_per_unit = 0;  ///< 0: the file does not say
 };
 
 /// `where` is the path, for messages; lines are counted from 1. All vertex indices of the result are in range.
@@ -45,6 +51,10 @@ Result<RawMesh> parse_ply(std::string_view bytes, const std::string& where);
 /// @param extension    in lower case, with its dot: one of those that mesh_reader.hpp lists for assimp.
 /// @param should_stop  optional: true ends it.
 Result<RawMesh> read_by_assimp(const std::string& path, std::string_view extension, const std::function<bool()>& should_stop);
+
+/// What Open CASCADE makes of a STEP file, likewise (core/step_importer).
+/// @param chord, surface_tolerance  as MeshReadOptions
+Result<RawMesh> read_step(const std::string& path, double chord, double surface_tolerance, const std::function<bool()>& should_stop);
 
 /// Cuts a simple polygon into triangles with the same orientation (ear clipping, exact decisions in the projection along the largest
 /// component of its normal). A convex polygon becomes the fan round its first corner, in time of the first order. Empty if the outline

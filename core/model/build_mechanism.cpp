@@ -14,6 +14,7 @@
 #include "core/model/choose_kappa.hpp"
 #include "core/model/limits.hpp"
 #include "core/model/mechanism_start.hpp"
+#include "core/model/part_across.hpp"
 
 namespace fettle::core::model {
 namespace {
@@ -131,10 +132,10 @@ private:
     // b's x axis where a's is at the start, turned into the plane across b's z axis.
     void align(const measure::Frame& a, measure::Frame& b) const {
         const Matrix3 to_b = pose_of(b.body).rotation.transpose() * pose_of(a.body).rotation;
-        const Vector3 z = b.axes.col(2), x = to_b * a.axes.col(0), across = x - z * z.dot(x);
-        constexpr double too_short = 1e-3;  // axes that stand across each other at the start: any x axis is as good
-        if (across.norm() < too_short) return;
-        b.axes.col(0) = across.normalized();
+        const Vector3 z = b.axes.col(2), x = to_b * a.axes.col(0);
+        const std::optional<Vector3> across = part_across(z, x);
+        if (!across) return;
+        b.axes.col(0) = across->normalized();
         b.axes.col(1) = z.cross(b.axes.col(0));
     }
 
@@ -236,6 +237,14 @@ private:
             out_.rows.back().parts.push_back({joint.coordinate, -from.pitch / (2 * std::numbers::pi)});
         }
         if (joint.coordinate >= 0) add_forces(from.forces, joint.coordinate, from.name);
+        if (from.swing) add_swing(e, *from.swing, from.name);
+    }
+
+    // cos(angle of the axes) >= cos(swing): smooth where the axes are one, as their angle is not.
+    void add_swing(const Ends& e, double swing, const std::string& name) {
+        const int cosine = add_measure({MeasureKind::product, e.frame_a, e.frame_b, z_axis, z_axis, {}});
+        const double length = term_lever(out_.set.measures[cosine]);
+        out_.terms.push_back({LawKind::stop, cosine, 0, std::cos(swing), 1, length, {}, name, origin_});
     }
 
     void add_forces(const scene::CoordinateForces& from, int measure, const std::string& name) {

@@ -11,11 +11,17 @@ namespace fettle::core::model {
 namespace {
 
 std::string value_text(const Model& model, int measure, double value) {
-    const bool turns = model.mechanism.set.measures[measure].kind == measure::MeasureKind::angle;
+    const measure::MeasureKind kind = model.mechanism.set.measures[measure].kind;
+    if (kind == measure::MeasureKind::product) return base::format_quantity(std::acos(std::clamp(value, -1.0, 1.0)), "deg");
+    const bool turns = kind == measure::MeasureKind::angle;
     return turns ? base::format_quantity(value, "deg") : base::length_text(value, model.length_unit, 6);
 }
 
 }  // namespace
+
+bool is_swing(const Mechanism& mechanism, const MeasureTerm& stop) {
+    return mechanism.set.measures[stop.measure].kind == measure::MeasureKind::product;
+}
 
 double room_within(const MeasureTerm& stop, double value) { return stop.sign * stop.length * (value - stop.reference); }
 
@@ -43,6 +49,11 @@ std::vector<std::string> beyond_limits(const Model& model, const std::vector<kin
         const double value = constraint::value_at(mechanism.set, term.measure, frames, angles);
         if (room_within(term, value) >= -at_limit * model.dhat) continue;
         const std::array<double, 2> limits = *limits_of(mechanism, term.measure);
+        if (is_swing(mechanism, term)) {
+            out.push_back("`" + term.name + "` has its axes " + value_text(model, term.measure, value) + " apart, beyond its `swing`, " +
+                          value_text(model, term.measure, term.reference));
+            continue;
+        }
         out.push_back("`" + term.name + "` is at " + value_text(model, term.measure, value) + ", beyond its limits, " +
                       range_text(model, term.measure, limits[0], limits[1]));
     }

@@ -15,6 +15,9 @@ namespace fettle::core::model {
 /// The share of dhat by which a coordinate may stand beyond its limit and still stand at it.
 inline constexpr double at_limit = 1e-2;
 
+/// Is it that of a ball joint's swing, a stop of the cosine of the angle between the two axes?
+bool is_swing(const Mechanism& mechanism, const MeasureTerm& stop);
+
 /// How far a value is within a stop's limit, in lengths; less than 0: beyond it [m].
 double room_within(const MeasureTerm& stop, double value);
 

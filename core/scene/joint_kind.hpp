@@ -28,7 +28,7 @@ inline const std::vector<JointKindInfo>& joint_kinds() {
         return keys;
     };
     static const std::vector<JointKindInfo> kinds{
-        {JointKind::ball, "ball", 3, "", "a point of one body stays on a point of the other", pair},
+        {JointKind::ball, "ball", 3, "", "a point of one body stays on a point of the other", with_axis({"swing"})},
         {JointKind::revolute, "revolute", 1, "angle", "hinge: turns about an axis", with_axis({"assemble"})},
         {JointKind::prismatic, "prismatic", 1, "slide", "slides along an axis, without turning", with_axis({"assemble"})},
         {JointKind::cylindrical, "cylindrical", 2, "slide", "slides along an axis and turns about it", with_axis()},

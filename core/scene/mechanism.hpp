@@ -55,6 +55,7 @@ struct Joint {
     JointKind kind = JointKind::revolute;
     Attachment a, b;
     double pitch = 0;               ///< screw: slide per turn [m]
+    std::optional<double> swing;    ///< ball: how far apart the two axes may be [rad]; a stop, with the stiffness of contact
     std::array<std::string, 2> of;  ///< gear, rack: names of two joints
     double ratio = 1;               ///< gear: angle of the second joint per angle of the first; rack: slide per angle [m/rad]
     CoordinateForces forces;

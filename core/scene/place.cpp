@@ -189,8 +189,10 @@ const char* has_no_point(const Item& item) {
     return none ? "has no point of its own" : nullptr;
 }
 const char* has_no_axis(const Item& item) {
-    return item.couples() || item.joint().kind == JointKind::ball ? "has no axis of its own" : nullptr;
+    const bool has_none = item.couples() || (item.joint().kind == JointKind::ball && !item.joint().swing);
+    return has_none ? "has no axis of its own" : nullptr;
 }
+const char* has_no_swing(const Item& item) { return item.joint().swing ? nullptr : "has no `swing` in the scene"; }
 const char* has_no_coordinate(const Item& item) {
     return item.is_joint() && item.kind_has("") ? "has no coordinate for a force to act along" : nullptr;
 }
@@ -261,6 +263,8 @@ std::vector<Row> make_table() {
         {List::joint, "axis_b/*", PlaceKind::joint_axis, [](const Item& i) -> Numbers { return &i.b().axis; }, is<number>, has_no_axis},
         {List::joint, "pitch", PlaceKind::pitch, [](const Item& i) -> Numbers { return &i.joint().pitch; }, is<length>,
          is_none<JointKind::screw>},
+        {List::joint, "swing", PlaceKind::joint_limits,
+         [](const Item& i) { return i.joint().swing ? Numbers(&*i.joint().swing) : Numbers(); }, is<angle>, has_no_swing, Range::positive},
         {List::joint, "ratio", PlaceKind::ratio, [](const Item& i) -> Numbers { return &i.joint().ratio; }, is<number>,
          is_none<JointKind::gear>, Range::not_zero},
         {List::joint, "radius", PlaceKind::ratio, [](const Item& i) -> Numbers { return &i.joint().ratio; }, is<length>,

@@ -2,6 +2,7 @@
 #include "core/scene_files/mechanism_reader.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <set>
 #include <string>
 #include <string_view>
@@ -249,15 +250,35 @@ private:
     }
 
     void read_lower_pair(const JsonNode& node, scene::Joint& joint) {
-        const bool has_axis = joint.kind != scene::JointKind::ball && joint.kind != scene::JointKind::fixed;
+        const bool is_ball = joint.kind == scene::JointKind::ball;
+        const bool has_axis = is_ball ? has_swing(node) : joint.kind != scene::JointKind::fixed;
         node.allow_keys(keys_of(joint.kind));
         read_ends(node, has_axis, joint.a, joint.b);
         if (!has_axis) joint.b.axis = pose_of(joint.b.body).rotation.transpose() * (pose_of(joint.a.body).rotation * joint.a.axis);
+        if (is_ball && has_axis) joint.swing = read_swing(node["swing"]);
         if (joint.kind == scene::JointKind::screw) joint.pitch = node.require("pitch").length(unit_).value_or(0);
         if (has_coordinate(joint.kind)) joint.forces = read_forces(node, unit_of(joint.kind));
         joint.collide = node["collide"].boolean().value_or(false);
         node["urdf"].members();  // what nothing here uses: read where a robot description is written
         if (node["assemble"].exists()) joint.assemble = read_assemble(node["assemble"]);
+    }
+
+    // A ball joint has an axis for the sake of its swing alone.
+    static bool has_swing(const JsonNode& node) {
+        if (node["swing"].exists()) return true;
+        for (const char* key : {"axis", "axis_a", "axis_b"})
+            if (node[key].exists())
+                node[key].fail(ErrorCode::inconsistent,
+                               "of a ball joint an axis is that of its `swing`, which is missing: say how far its "
+                               "bodies may swing, for instance \"swing\": \"30deg\", or leave the axis out");
+        return false;
+    }
+
+    std::optional<double> read_swing(const JsonNode& node) const {
+        const std::optional<double> swing = CoordinateUnit{true, unit_}.read(node);
+        if (swing && !(*swing > 0 && *swing < std::numbers::pi))
+            node.fail(ErrorCode::out_of_range, "more than 0 and less than 180 degrees is expected");
+        return swing;
     }
 
     // The joints that it names may come later in the list: the model looks for them (model/branch_of_joint.hpp).

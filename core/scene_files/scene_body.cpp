@@ -26,6 +26,9 @@ using base::ErrorCode;
 const std::vector<std::string_view> body_keys{"name",
                                               "mesh",
                                               "mesh_unit",
+                                              "mesh_item",
+                                              "mesh_facets",
+                                              "surface_tolerance",
                                               "shape",
                                               "vertices",
                                               "edges",
@@ -141,6 +144,8 @@ SceneBodies::MeshSource SceneBodies::read_geometry(const files::JsonNode& node, 
     }
     if (node["mesh_unit"].exists() && !mesh.exists())
         node["mesh_unit"].fail(ErrorCode::inconsistent, "only a `mesh` file has a unit of its own");
+    for (const char* key : {"mesh_item", "mesh_facets", "surface_tolerance"})
+        if (node[key].exists() && !mesh.exists()) node[key].fail(ErrorCode::inconsistent, std::string("`") + key + "` is of a `mesh` file");
     if (mesh.exists()) source = read_mesh_file(node, body);
     if (shape.exists()) make_shape(shape, body);
     if (vertices.exists()) read_inline(node, body);
@@ -184,18 +189,42 @@ SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node,
         report(file.errors(), mesh);
         return {};
     }
-    const MeshSource source{*file, options.unit, {1, 1, 1}};
-    auto known = files_.find({*file, options.unit});
+    const std::string item = node["mesh_item"].string().value_or("");
+    if (node["mesh_item"].is_string() && item.empty())
+        node["mesh_item"].fail(ErrorCode::out_of_range, "an item's name is expected; `fettle validate " + *name + "` lists them");
+    options.chord = node["mesh_facets"].length(unit_, files::positive).value_or(0);
+    options.surface_tolerance = node["surface_tolerance"].length(unit_, files::positive).value_or(0);
+    if (!mesh_files::is_step(*file))
+        for (const char* key : {"mesh_facets", "surface_tolerance"})
+            if (node[key].exists()) node[key].fail(ErrorCode::inconsistent, std::string("`") + key + "` is of STEP files");
+    std::string key = *file;
+    if (!item.empty() || options.chord > 0 || options.surface_tolerance > 0)
+        key += "\n" + item + "\n" + std::to_string(options.chord) + "\n" + std::to_string(options.surface_tolerance);
+    const MeshSource source{key, options.unit, {1, 1, 1}};
+    auto known = files_.find({key, options.unit});
     if (known == files_.end()) {
-        auto found = mesh_files::read_mesh(*file, options);
+        auto found = item.empty() ? mesh_files::read_mesh(*file, options) : item_of_file(*file, item, options);
         if (!found) {
             report(found.errors(), mesh);
             return {};
         }
-        known = files_.emplace(std::pair(*file, options.unit), std::move(found).value()).first;
+        known = files_.emplace(std::pair(key, options.unit), std::move(found).value()).first;
     }
     body.mesh = known->second;
     return source;
+}
+
+/// Bodies of one file are read together: a STEP file takes a while.
+base::Result<geometry::Mesh> SceneBodies::item_of_file(const std::string& file, const std::string& item,
+                                                       const mesh_files::MeshReadOptions& options) {
+    const auto key = std::tuple(file, options.unit, options.chord, options.surface_tolerance);
+    auto known = items_.find(key);
+    if (known == items_.end()) {
+        auto parts = mesh_files::read_mesh_parts(file, options);
+        if (!parts) return parts.errors();
+        known = items_.emplace(key, std::move(parts).value()).first;
+    }
+    return mesh_files::item_called(known->second, item, file);
 }
 
 // A part that is written into the scene: a part file whose dimensions are the variables that it names, and its counts the whole numbers

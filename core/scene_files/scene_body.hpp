@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/files/json_document.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
 #include "core/scene/read_options.hpp"
 #include "core/scene_files/scene_formulas.hpp"
 
@@ -44,6 +45,7 @@ private:
     MeshSource read_geometry(const files::JsonNode& node, scene::Body& body);
     void settle_mesh(const files::JsonNode& node, const MeshSource& source, scene::Body& body);
     MeshSource read_mesh_file(const files::JsonNode& node, scene::Body& body);
+    base::Result<geometry::Mesh> item_of_file(const std::string& file, const std::string& item, const mesh_files::MeshReadOptions& options);
     void make_shape(const files::JsonNode& node, scene::Body& body);
     void read_own_part(const files::JsonNode& node, scene::ShapeSpec& spec);
     void read_dimensions(const files::JsonNode& node, scene::ShapeSpec& spec);
@@ -60,7 +62,9 @@ private:
     const MaterialDensities& densities_;
     SceneFormulas& formulas_;
     std::map<std::pair<std::string, double>, geometry::Mesh> files_;  ///< already read, by file and unit
-    std::set<MeshSource> sound_;                                      ///< nothing of them had to be mended
+    /// The same for files of which bodies take single items; with the chord and the tolerance that STEP is read with.
+    std::map<std::tuple<std::string, double, double, double>, std::vector<geometry::Mesh>> items_;
+    std::set<MeshSource> sound_;  ///< nothing of them had to be mended
     std::set<std::string> names_;
     std::vector<std::string> group_names_;  ///< of group -2, -3, ... until number_groups
 };

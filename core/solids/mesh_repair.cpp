@@ -49,10 +49,12 @@ bool drop_copies(geometry::Mesh& mesh, const std::vector<geometry::HalfEdge>& ha
     if (std::find(possible.begin(), possible.end(), true) == possible.end()) return false;
     std::set<geometry::Triangle> seen;
     std::vector<geometry::Triangle> kept;
+    std::vector<int> faces;
     std::size_t first = mesh.triangles.size();
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (!possible[t] || seen.insert(from_smallest(mesh.triangles[t])).second) {
             kept.push_back(mesh.triangles[t]);
+            if (!mesh.triangle_face.empty()) faces.push_back(mesh.triangle_face[t]);
         } else {
             first = std::min(first, t);
         }
@@ -62,6 +64,7 @@ bool drop_copies(geometry::Mesh& mesh, const std::vector<geometry::HalfEdge>& ha
     done.push_back(counted(count, "copy of a triangle is", "copies of triangles are") + " left out, first " + place_of(mesh, first) +
                    ": no effect on the mass");
     mesh.triangles = std::move(kept);
+    mesh.triangle_face = std::move(faces);
     const std::vector<geometry::Edge> edges = mesh.edges;  // those of triangles are found again, the others kept
     geometry::build_connectivity(mesh, edges);
     return true;

@@ -9,6 +9,7 @@
 #include "core/base/units.hpp"
 #include "core/kinematics/mass_matrix.hpp"
 #include "core/model/choose_kappa.hpp"
+#include "core/model/limits.hpp"
 
 namespace fettle::core::solver {
 namespace {
@@ -75,7 +76,11 @@ void describe_stop(const FailedStep& step, std::ostringstream& out) {
         least = gap;
         nearest = &term;
     }
-    if (nearest) out << "; '" << nearest->name << "' is at its " << (nearest->sign > 0 ? "lower" : "upper") << " limit";
+    if (!nearest) return;
+    const char* which = model::is_swing(mechanism, *nearest) ? "the end of its swing"
+                        : nearest->sign > 0                  ? "its lower limit"
+                                                             : "its upper limit";
+    out << "; '" << nearest->name << "' is at " << which;
 }
 
 // The joint or motor that is farthest from where it should be, and what it pushes with.

@@ -2,6 +2,9 @@
 #include "core/stepper/joint_outputs.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "core/model/limits.hpp"
 
 namespace fettle::core::stepper {
 namespace {
@@ -35,7 +38,9 @@ void add_own_forces(const Mechanism& mechanism, const std::vector<double>& measu
                     out[i].friction += measure_forces[k];
                     break;
                 case model::LawKind::stop:
-                    out[i].stop += measure_forces[k];
+                    // A swing is measured by a cosine: this is the torque.
+                    out[i].stop +=
+                        is_swing(mechanism, term) ? -measure_forces[k] * std::sqrt(1 - term.reference * term.reference) : measure_forces[k];
                     break;
                 case model::LawKind::force:  // a motor's
                     break;

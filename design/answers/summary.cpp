@@ -217,7 +217,7 @@ Summary summary_of(const Design& design, const JudgedDesign& judged) {
 std::optional<core::clearance::TrueBounds> less_when_round(const description::Constraint& constraint, const Measurement& measured,
                                                            const problem::DesignEvaluation& final) {
     const Bounds& bounds = constraint.bounds;
-    const bool is_clearance = dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*constraint.quantity)) != nullptr;
+    const bool is_clearance = quantities::clearance_of(*constraint.quantity) != nullptr;
     if (!is_clearance || !measured.clearance || bounds.over_tolerances || final.runs.empty() || !final.runs.front().model ||
         description::violation(bounds, measured) > 0)
         return std::nullopt;

@@ -66,11 +66,13 @@ struct SourceCheck {
     bool has_joints = true;  // as far as is known
 };
 
+bool has_deviations(const Certificate& certificate) { return certificate.toleranced && !certificate.toleranced->deviations.empty(); }
+
 bool states_its_domain(const Certificate& certificate) { return certificate.linkage || certificate.toleranced; }
 
 // What ranges or tolerances state, nothing has, as far as is known.
 void doubt_domain(CheckedCertificate& checked) {
-    const char* const what = checked.certificate->toleranced ? "the tolerances and the joints' ranges" : "the joints' ranges";
+    const char* const what = has_deviations(*checked.certificate) ? "the tolerances and the joints' ranges" : "the joints' ranges";
     for (Claim& claim : checked.claims)
         claim.doubt =
             std::string("about ") + what + " that the certificate states itself: no scene or design at hand is known to have them";
@@ -86,20 +88,22 @@ SourceCheck check_toleranced_source(const Certificate& certificate, const std::s
     const std::filesystem::path process = file_of_certificate(path, certificate.process);
     std::error_code ignored;
     options.process = std::filesystem::is_regular_file(process, ignored) ? process.string() : certificate.process;
-    options.tolerances = true;
+    options.tolerances = has_deviations(certificate);
     options.kinematic = certificate.toleranced->duration > 0;
     options.time = options.kinematic ? certificate.toleranced->duration : -1;
     options.ranges = !options.kinematic && is_over_ranges(*certificate.toleranced);
     const Result<Subject> subject = read_subject(options, input);
     if (!subject) {
         const Error& error = subject.errors().front();
-        return {name, "stale: " + name + ", which it was made from, can no longer be read within tolerances: " + error.where + ": " +
-                          error.message};
+        return {name, "stale: " + name + ", which it was made from, can no longer be read " +
+                          (options.tolerances ? "within tolerances: " : "over its joints' ranges: ") + error.where + ": " + error.message};
     }
     if (core::records::geometry_hash(subject->model) != certificate.geometry_hash)
         return {name, "stale: the meshes of " + name + " have changed since"};
-    if (same_toleranced(*subject->toleranced, *certificate.toleranced)) return {name};
-    return {name, "stale: the tolerances of " + name + ", its formulas, joints or start poses have changed since"};
+    if (subject->toleranced && same_toleranced(*subject->toleranced, *certificate.toleranced)) return {name};
+    return {name, "stale: " + std::string(options.tolerances ? "the tolerances of " : "the joints of ") + name +
+                      (options.tolerances ? ", its formulas, joints or start poses have changed since"
+                                          : ", their limits or the start poses have changed since")};
 }
 
 // @param asked  a scene or design in place of the one that the certificate names

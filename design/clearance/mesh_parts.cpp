@@ -72,15 +72,6 @@ Result<std::vector<std::string>> mesh_files(const std::vector<std::string>& path
     return files;
 }
 
-/// What lists of pairs can name, and no other body has.
-std::string body_name(const std::string& of_file, core::files::UniqueNames& names) {
-    std::string name = core::base::shown_on_one_line(of_file);
-    std::replace_if(
-        name.begin(), name.end(), [](char c) { return c == ':' || c == ',' || c == '*'; }, '_');
-    if (name.empty()) name = "part";
-    return names.unique(name);
-}
-
 struct NamedMesh {
     std::string name;
     Mesh mesh;
@@ -118,6 +109,14 @@ double longest_side(const Mesh& mesh) { return (mesh.vertices.rowwise().maxCoeff
 
 }  // namespace
 
+std::string body_name(const std::string& of_file, core::files::UniqueNames& names) {
+    std::string name = core::base::shown_on_one_line(of_file);
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == ':' || c == ',' || c == '*'; }, '_');
+    if (name.empty()) name = "part";
+    return names.unique(name);
+}
+
 std::string doubted_side(double side, const std::string& unit) {
     constexpr double largest = 3, printed = 0.3, smallest = 1e-4, micrometre = 1e-6;  // [m]
     const Result<double> metres = unit.empty() ? Result<double>(1e-3) : core::base::metres_per_unit(unit, "--unit");
@@ -147,7 +146,7 @@ bool are_meshes(const std::vector<std::string>& paths) {
 }
 
 Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const reading::InputOptions& input,
-                              bool split) {
+                              bool split, const reading::StepWishes& step) {
     MeshParts subject;
     const Result<std::vector<std::string>> files = mesh_files(paths, subject.warnings);
     if (!files) return files.errors();
@@ -159,6 +158,8 @@ Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::
         if (!metres) return metres.errors();
         scene.length_unit = *metres;
     }
+    core::mesh_files::MeshReadOptions read{scene.length_unit, true, input.should_stop};
+    if (Errors faults = reading::take_step_wishes(step, read); !faults.empty()) return faults;
     subject.files = *files;
     core::files::UniqueNames names(" ");
     std::error_code code;
@@ -167,7 +168,7 @@ Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::
             errors.push_back({ErrorCode::missing_key, path, "the file states no unit of length; say it: --unit mm"});
             continue;
         }
-        Result<std::vector<Mesh>> parts = core::mesh_files::read_mesh_parts(path, {scene.length_unit, true, input.should_stop});
+        Result<std::vector<Mesh>> parts = core::mesh_files::read_mesh_parts(path, read);
         errors.insert(errors.end(), parts.errors().begin(), parts.errors().end());
         if (!parts) continue;
         for (Mesh& mesh : *parts) {

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "core/base/result.hpp"
+#include "core/files/unique_names.hpp"
 #include "core/model/model.hpp"
 #include "design/reading/model_file.hpp"
+#include "design/reading/step_wishes.hpp"
 
 namespace fettle::design::clearance {
 
@@ -24,6 +26,9 @@ bool are_meshes(const std::vector<std::string>& paths);
 /// @param unit  That of --unit; empty: the file states its own.
 std::string doubted_side(double side, const std::string& unit);
 
+/// What lists of pairs can name, and no other body has: the name of a file or an item as a body's.
+std::string body_name(const std::string& of_file, core::files::UniqueNames& names);
+
 struct MeshParts {
     core::model::Model model;  ///< all static; length_unit is --unit, else of 3MF the millimetre
     std::vector<std::string> files;
@@ -31,14 +36,14 @@ struct MeshParts {
 };
 
 /// Bodies: one for each file, called as it without its extension; of a 3MF one for each item of its build, where the build places it,
-/// called as its object. A name that is taken gets " 2", " 3"; `:` and `,`, which lists of pairs are written with, become `_`. A folder
-/// stands for the meshes in it, in the order of their names; a warning says that those in folders below it are left out. Meshes
-/// are mended and judged as those of a scene.
+/// called as its object; of a STEP file one for each solid. A name that is taken gets " 2", " 3"; `:` and `,`, which lists of pairs are
+/// written with, become `_`. A folder stands for the meshes in it, in the order of their names; a warning says that those in folders below
+/// it are left out. Meshes are mended and judged as those of a scene.
 /// @param unit  of files that state none: "mm"; empty: not given.
 /// @param split  each solid of a mesh is a body of its own, with its cavities: "box#1", "box#2", in the order of their first triangles
 /// Errors: of the files; missing_key (--unit is needed), out_of_range (no unit, or fewer than one part), inconsistent (a path that is
 /// neither a mesh nor a folder among meshes).
 Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const reading::InputOptions& input,
-                              bool split = false);
+                              bool split = false, const reading::StepWishes& step = {});
 
 }  // namespace fettle::design::clearance

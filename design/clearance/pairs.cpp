@@ -371,27 +371,25 @@ private:
 
 /// A constraint's clearance, and what it is required to be [m].
 struct BoundedClearance {
-    const quantities::Clearance* clearance = nullptr;
+    const quantities::ClearanceRange* range = nullptr;
     double minimum = 0;
 };
 
 // A clearance, or one less a limit that follows from parameters: a formula f(q) of slope 1 in the clearance q requires q >= bound - f(0).
 std::optional<BoundedClearance> bounded_clearance(const description::Design& design, const description::Constraint& constraint) {
-    const description::Quantity* quantity = &quantities::without_scenario(*constraint.quantity);
-    if (const auto* clearance = dynamic_cast<const quantities::Clearance*>(quantity))
-        return BoundedClearance{clearance, constraint.bounds.lower};
-    const auto* expression = dynamic_cast<const quantities::Expression*>(quantity);
-    if (expression == nullptr || expression->parts().size() != 1) return std::nullopt;
-    const auto* clearance =
-        dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*expression->parts().front().quantity));
-    if (clearance == nullptr) return std::nullopt;
-    const core::expression::Formula& formula = expression->formula();
+    const description::QuantityFacts facts = quantities::without_scenario(*constraint.quantity).facts();
+    if (facts.clearance != nullptr) return BoundedClearance{facts.clearance, constraint.bounds.lower};
+    if (facts.kind != description::QuantityFacts::Kind::formula || facts.parts.size() != 1) return std::nullopt;
+    const quantities::NamedQuantity& part = facts.parts.front();
+    const quantities::ClearanceRange* range = quantities::clearance_of(*part.quantity);
+    if (range == nullptr) return std::nullopt;
+    const core::expression::Formula& formula = *facts.formula;
     const auto value_at = [&](double q) {
         std::vector<double> inputs;
         for (const std::string& input : formula.inputs) {
             const auto parameter = std::find_if(design.parameters.begin(), design.parameters.end(),
                                                 [&](const description::Parameter& each) { return each.name == input; });
-            const bool is_clearance = input == expression->parts().front().name || parameter == design.parameters.end();
+            const bool is_clearance = input == part.name || parameter == design.parameters.end();
             inputs.push_back(is_clearance ? q : parameter->value);
         }
         return core::expression::value_of<double>(formula, inputs);
@@ -399,13 +397,13 @@ std::optional<BoundedClearance> bounded_clearance(const description::Design& des
     const double at_zero = value_at(0);
     const bool has_slope_1 = std::abs(value_at(1) - at_zero - 1) < 1e-12 && std::abs(value_at(2) - at_zero - 2) < 1e-12;
     if (!has_slope_1) return std::nullopt;
-    return BoundedClearance{clearance, constraint.bounds.lower - at_zero};
+    return BoundedClearance{range, constraint.bounds.lower - at_zero};
 }
 
 std::optional<PairMinimum> asked_minimum(const description::Design& design, const description::Constraint& constraint, MinimumOver over) {
     const std::optional<BoundedClearance> bounded = bounded_clearance(design, constraint);
     if (!bounded || !(bounded->minimum > 0) || !std::isfinite(bounded->minimum)) return std::nullopt;
-    const quantities::ClearanceRange& range = bounded->clearance->range();
+    const quantities::ClearanceRange& range = *bounded->range;
     const MinimumOver own = range.ranges ? MinimumOver::ranges : range.motion ? MinimumOver::motion : MinimumOver::assembly;
     const bool is_whole = range.faces_a.empty() && range.faces_b.empty() && !range.from && !range.to;
     if (own != over || !is_whole) return std::nullopt;
@@ -434,12 +432,12 @@ std::vector<PairMinimum> design_minima(const description::Design& design, int sc
 BodyPairs design_pairs(const description::Design& design) {
     BodyPairs pairs;
     const std::function<void(const description::Quantity*)> add = [&](const description::Quantity* quantity) {
-        const auto* clearance = dynamic_cast<const quantities::Clearance*>(quantity);
-        const bool is_of_bodies = clearance != nullptr && clearance->range().faces_a.empty() && clearance->range().faces_b.empty();
-        if (is_of_bodies)  // what else of two parts is nearer than their faces is not asked for
-            pairs.emplace_back(std::minmax(clearance->range().a, clearance->range().b));
-        if (const auto* expression = dynamic_cast<const quantities::Expression*>(quantity))
-            for (const quantities::NamedQuantity& part : expression->parts()) add(part.quantity.get());
+        const description::QuantityFacts facts = quantity->facts();
+        const quantities::ClearanceRange* range = facts.clearance;
+        if (range != nullptr && range->faces_a.empty() && range->faces_b.empty())  // what else is nearer than faces is not asked for
+            pairs.emplace_back(std::minmax(range->a, range->b));
+        if (facts.kind == description::QuantityFacts::Kind::formula)
+            for (const quantities::NamedQuantity& part : facts.parts) add(part.quantity.get());
     };
     for (const description::ObjectiveTerm& term : design.objective) add(term.quantity.get());
     for (const description::Constraint& constraint : design.constraints) add(constraint.quantity.get());

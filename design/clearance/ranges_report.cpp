@@ -12,7 +12,8 @@ using core::clearance::JointRanges;
 Result<std::vector<int>> coordinates_of(const JointRanges& ranges, const std::vector<std::string>& names) {
     std::vector<int> out;
     if (names.empty())
-        for (int k = 0; k < count_of(ranges.linkage.coordinates); ++k) out.push_back(k);
+        for (int k = 0; k < count_of(ranges.linkage.coordinates); ++k)
+            if (!is_direction(ranges, k)) out.push_back(k);
     for (const std::string& name : names) {
         const Result<int> found = core::clearance::coordinate_of(ranges, name);
         if (!found) return Error{found.errors().front().code, "--joint", found.errors().front().message};

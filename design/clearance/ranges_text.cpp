@@ -56,6 +56,9 @@ private:
     int decimals_;
 };
 
+// A ball joint's, which goes from 0 on, in every direction.
+bool is_swing(const RangesReport& report, const FreeRange& range) { return report.ranges.direction_of[range.coordinate] >= 0; }
+
 bool starts_in_a_clash(const FreeRange& range) { return range.clash_at_start() != nullptr; }
 
 std::string length_text(double metres) { return formatted("%.3g mm", metres / millimetre); }
@@ -93,19 +96,23 @@ std::string end_line(const RangesReport& report, const FreeRange& range, const R
 }
 
 // What could be written into the scene, where that says more than stands there.
-std::string as_limits(const FreeRange& range, const Numbers& numbers) {
+std::string as_limits(const RangesReport& report, const FreeRange& range, const Numbers& numbers) {
     if (range.turns_freely || starts_in_a_clash(range)) return {};
     const auto quoted = [&](double value, Towards towards) { return "\"" + numbers.rounded(value, towards) + " " + numbers.name() + "\""; };
+    if (is_swing(report, range)) {
+        const bool is_one = range.above.free > 0 && range.above.free < std::numbers::pi;
+        return is_one ? "   as limit: \"swing\": " + quoted(range.above.free, Towards::down) + "\n" : "";
+    }
     return "   as limits: \"limits\": [" + quoted(range.below.free, Towards::up) + ", " + quoted(range.above.free, Towards::down) + "]\n";
 }
 
 std::string limits_lines(const RangesReport& report, const FreeRange& range) {
     const Numbers numbers(report, range);
-    if (!report.ranges.has_limits[range.coordinate]) return as_limits(range, numbers);
+    if (!report.ranges.has_limits[range.coordinate]) return as_limits(report, range, numbers);
     const LinkageCoordinate& own = coordinate_of(report, range);
     const std::string limits = numbers.nearest(own.low) + " to " + numbers.nearest(own.high) + " " + numbers.name();
     const bool inside = range.turns_freely || (range.below.free <= own.low && own.high <= range.above.free);
-    return "   its limits, " + limits + (inside ? ", lie within\n" : ", go beyond\n" + as_limits(range, numbers));
+    return "   its limits, " + limits + (inside ? ", lie within\n" : ", go beyond\n" + as_limits(report, range, numbers));
 }
 
 std::string too_close(const RangesReport& report) {
@@ -224,7 +231,7 @@ std::string ranges_text(const RangesReport& report) {
         text += joint_names(coordinate_of(report, range)) + ": " + range_sentence(report, range) + "; starts at " +
                 numbers.nearest(range.start) + " " + numbers.name() + "\n";
         if (!range.turns_freely && !starts_in_a_clash(range)) {
-            text += end_line(report, range, range.below, true);
+            if (!is_swing(report, range) || range.start > 0) text += end_line(report, range, range.below, true);
             text += end_line(report, range, range.above, false);
         }
         text += start_lines(report, range) + limits_lines(report, range);

@@ -148,13 +148,11 @@ void simulate(int steps, const SubjectWatch& watch, Subject& subject) {
 
 // The subject of a scene or design whose joints have ranges.
 Result<Subject> from_ranges(const SubjectOptions& options, reading::LoadedModel& loaded) {
-    Result<core::clearance::JointRanges> ranges = core::clearance::joint_ranges(loaded.model);
-    if (!ranges) {
-        Errors errors = ranges.errors();
-        for (Error& error : errors) error.where = options.path + ": " + error.where;
-        return errors;
-    }
-    return subject_over(std::move(loaded.model), *std::move(ranges));
+    Result<Subject> subject = subject_over_joints(std::move(loaded.model));
+    if (subject) return subject;
+    Errors errors = subject.errors();
+    for (Error& error : errors) error.where = options.path + ": " + error.where;
+    return errors;
 }
 
 std::vector<std::string> notes_of_tolerances(const core::certificate::Toleranced& toleranced) {
@@ -249,8 +247,7 @@ Result<Subject> from_tolerances(const SubjectOptions& options, const reading::In
     toleranced->duration = duration;
     const bool moves = options.ranges || options.kinematic;
     Subject subject = options.ranges ? subject_over(*std::move(model), (*positions)->ranges) : subject_of(*std::move(model));
-    if (moves && !toleranced->loops.empty())
-        subject.notes.emplace_back("joints of closed loops follow from what drives them, whatever their own limits are");
+    if (moves && !toleranced->loops.empty()) subject.notes.emplace_back(follow_note);
     if (options.kinematic) {
         subject.source = SubjectSource::prescribed;
         subject.ranges = (*positions)->ranges;
@@ -303,12 +300,16 @@ Errors check_inputs(const SubjectOptions& options, bool meshes) {
     const bool is_json = std::filesystem::path(options.path).extension() == ".json";  // a file of another kind is told what it is
     if (!options.unit.empty() && is_json) return {{ErrorCode::inconsistent, "--unit", "is for meshes; this file states its own unit"}};
     if (options.split) return {{ErrorCode::inconsistent, "--split", "is for meshes; in a scene a body has \"split_components\": true"}};
+    if (!options.step.facets.empty())
+        return {{ErrorCode::inconsistent, "--facets", "is for STEP files; in a scene a body has \"mesh_facets\""}};
+    if (!options.step.surface_tolerance.empty())
+        return {{ErrorCode::inconsistent, "--surface-tolerance", "is for STEP files; in a scene a body has \"surface_tolerance\""}};
     return {};
 }
 
 Result<reading::LoadedModel> loaded_meshes(const std::vector<std::string>& paths, const SubjectOptions& options,
                                            const reading::InputOptions& input, Subject& subject) {
-    Result<MeshParts> meshes = load_meshes(paths, options.unit, input, options.split);
+    Result<MeshParts> meshes = load_meshes(paths, options.unit, input, options.split, options.step);
     if (!meshes) return meshes.errors();
     subject.files = std::move(meshes->files);
     reading::LoadedModel loaded;

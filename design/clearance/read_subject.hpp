@@ -10,6 +10,7 @@
 #include "core/stepper/simulate.hpp"
 #include "design/clearance/subject.hpp"
 #include "design/reading/model_file.hpp"
+#include "design/reading/step_wishes.hpp"
 
 namespace fettle::design::clearance {
 
@@ -19,6 +20,7 @@ struct SubjectOptions {
     std::vector<std::string> more;  ///< meshes beside it
     std::string unit;               ///< of meshes that state none
     bool split = false;             ///< of meshes: each solid is a body of its own
+    reading::StepWishes step = {};  ///< of STEP files among the meshes
     std::string poses, poses_unit;  ///< file of poses, and the unit of its lengths where it does not say; empty: none
     bool motion = false;            ///< simulate a scene or design
     bool kinematic = false;         ///< follow scripts, no dynamics

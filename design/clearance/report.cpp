@@ -18,6 +18,9 @@ using core::clearance::PairStatus;
 using core::clearance::Solids;
 using core::clearance::Witness;
 
+// At least 1, and no more than a count can be.
+long spent(long usual, double times) { return static_cast<long>(std::clamp(static_cast<double>(usual) * times, 1.0, 1e15)); }
+
 constexpr const char* one_inside_the_other = "material of one lies inside the other";
 
 int severity(PairStatus status) {
@@ -309,6 +312,8 @@ Result<ClearanceReport> judge_clearances(const Subject& subject, const Question&
     if (!selection) return selection.errors();
     const std::vector<PairRequest> requests = requests_of(*selection, question.margins);
     ClearanceOptions options = core::clearance::usual_options(requests, question.tolerance);
+    options.max_bounds = spent(options.max_bounds, question.budget);
+    options.max_evaluations = spent(options.max_evaluations, question.budget);
     options.motion = subject.motion();
     options.margin_curve = question.margins;
     options.witness_tolerance = question.all_witnesses ? options.tolerance : 0;

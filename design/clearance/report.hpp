@@ -73,6 +73,7 @@ struct ClearanceReport {
 struct Question {
     PairOptions pairs;
     std::optional<double> tolerance;  ///< [m]; nothing: core::clearance::usual_options()
+    double budget = 1;                ///< how many times as much work as ClearanceOptions has by default may be spent on a pair
     bool margins = false;             ///< certified bounds for each stretch of the path: then every pair is measured
     bool all_witnesses = false;       ///< all that come as close, to within the tolerance
     bool proof = false;               ///< a certificate is wanted

@@ -115,7 +115,7 @@ void add_worst_position(Json& json, const ReportedPair& pair, const Subject& sub
     json["complete"] = least.complete;
     json["tolerance"] = least.tolerance;
     json["coordinates"] = coordinates_json(*subject.ranges, least);
-    if (subject.toleranced && !least.as_assembled) {
+    if (subject.has_deviations() && !least.as_assembled) {
         json["worst_deviations"] = deviations_json(subject, least);
         json["no_influence"] = deviations_without_influence(subject, least);
     }
@@ -205,7 +205,7 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
     json["tolerance"] = report.tolerance;
     json["motion"] = subject.motion();
     json["source"] = source_text(subject);
-    if (subject.toleranced) {
+    if (subject.has_deviations()) {
         json["tolerances"] = Json::array();
         for (const core::certificate::Deviation& d : subject.toleranced->deviations)
             json["tolerances"].push_back({{"of", d.of}, {"lower", d.lower}, {"upper", d.upper}});
@@ -219,7 +219,8 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
             deviations[body.name] = {{"out", deviation->out},
                                      {"in", deviation->in},
                                      {"out_is_proven", deviation->out_is_proven},
-                                     {"in_is_proven", deviation->in_is_proven}};
+                                     {"in_is_proven", deviation->in_is_proven},
+                                     {"declared", deviation->declared}};
     if (!deviations.empty()) json["deviations"] = std::move(deviations);
     json["ignored"] = report.ignored;
     json["ignored_by_scene"] = report.ignored_by_scene;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/text.hpp"
+#include "core/clearance/looped_bodies.hpp"
 
 namespace fettle::design::clearance {
 
@@ -12,11 +13,16 @@ namespace {
 
 std::vector<std::string> notes_of_ranges(const core::model::Model& model, const core::clearance::JointRanges& ranges) {
     using core::base::joined;
-    std::vector<std::string> notes, turns, motors;
+    std::vector<std::string> notes, turns, swings, motors;
     if (!ranges.held.empty()) notes.push_back("held at the start pose, as no joint connects them to the world: " + joined(ranges.held));
     notes.insert(notes.end(), ranges.narrowed.begin(), ranges.narrowed.end());
-    for (const auto& coordinate : ranges.linkage.coordinates)
-        if (coordinate.is_whole_turn) turns.push_back(coordinate.joints.front().joint);
+    for (int k = 0; k < count_of(ranges.linkage.coordinates); ++k) {
+        const auto& coordinate = ranges.linkage.coordinates[k];
+        const std::string& joint = coordinate.joints.front().joint;
+        if (coordinate.is_whole_turn && !is_direction(ranges, k)) turns.push_back(joint);
+        if (ranges.direction_of[k] >= 0 && !ranges.has_limits[k]) swings.push_back(joint);
+    }
+    if (!swings.empty()) notes.push_back("without a `swing`, so they swing to all sides wholly: " + joined(swings));
     if (!turns.empty()) notes.push_back("without limits, so they turn wholly: " + joined(turns));
     for (const auto& joint : model.mechanism.joints)
         if (joint.is_motor) motors.push_back(joint.name);
@@ -25,6 +31,8 @@ std::vector<std::string> notes_of_ranges(const core::model::Model& model, const 
 }
 
 }  // namespace
+
+const char* const follow_note = "joints of closed loops follow from what drives them, whatever their own limits are";
 
 const char* to_string(SubjectSource source) {
     switch (source) {
@@ -47,7 +55,7 @@ const char* to_string(SubjectSource source) {
 }
 
 std::string source_text(const Subject& subject) {
-    return std::string(to_string(subject.source)) + (subject.toleranced ? ", within tolerances" : "");
+    return std::string(to_string(subject.source)) + (subject.has_deviations() ? ", within tolerances" : "");
 }
 
 Subject subject_of(core::model::Model model, std::optional<core::stepper::Trajectory> trajectory) {
@@ -63,6 +71,19 @@ Subject subject_over(core::model::Model model, core::clearance::JointRanges rang
     subject.source = SubjectSource::ranges;
     subject.notes = notes_of_ranges(subject.model, ranges);
     subject.ranges = std::move(ranges);
+    return subject;
+}
+
+Result<Subject> subject_over_joints(core::model::Model model) {
+    core::base::Result<core::clearance::JointRanges> ranges = core::clearance::joint_ranges(model);
+    if (ranges) return subject_over(std::move(model), *std::move(ranges));
+    if (!core::clearance::closes_loops(model)) return ranges.errors();
+    core::base::Result<core::clearance::LoopedRanges> looped = core::clearance::looped_ranges(model);
+    if (!looped) return looped.errors();
+    core::certificate::Toleranced toleranced = core::clearance::looped_bodies(model, *looped);
+    Subject subject = subject_over(std::move(model), std::move(looped->ranges));
+    subject.toleranced = std::move(toleranced);
+    subject.notes.emplace_back(follow_note);
     return subject;
 }
 

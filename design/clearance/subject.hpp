@@ -26,7 +26,8 @@ struct Subject {
     std::string scene_path;
     std::optional<core::clearance::JointedPath> joints;  ///< that hold the bodies at all times, without dynamics; nothing: the path is all
     std::optional<core::clearance::JointRanges> ranges;  ///< in place of a path
-    /// Within tolerances, in place of a path; `ranges` has the coordinates, none as assembled.
+    /// Within tolerances, in place of a path; `ranges` has the coordinates, none as assembled. Where joints close loops over their ranges
+    /// it is there too, without a deviation.
     std::optional<core::certificate::Toleranced> toleranced;
     BodyPairs wanted;                   ///< of a design: those that it is about, which are judged whatever joins them
     std::vector<PairMinimum> required;  ///< of a design: what it requires of pairs, for its certificate
@@ -35,10 +36,14 @@ struct Subject {
     std::vector<std::string> notes;     ///< what the reader of a report should know
     std::vector<std::string> files;     ///< the meshes, where nothing else was read
 
+    bool has_deviations() const { return toleranced && !toleranced->deviations.empty(); }
     bool moves_over_ranges() const { return source == SubjectSource::ranges || source == SubjectSource::prescribed; }
     /// Without steps there is none, wherever the poses come from.
     bool motion() const { return source != SubjectSource::as_assembled && !trajectory.steps.empty(); }
 };
+
+/// What is told of closed loops over ranges.
+extern const char* const follow_note;
 
 /// "over the ranges of the joints, within tolerances".
 std::string source_text(const Subject& subject);
@@ -47,6 +52,8 @@ std::string source_text(const Subject& subject);
 Subject subject_of(core::model::Model model, std::optional<core::stepper::Trajectory> trajectory = std::nullopt);
 /// Over all positions of the joints.
 Subject subject_over(core::model::Model model, core::clearance::JointRanges ranges);
+/// Over all positions of the model's own joints, of which some may close loops. Errors: those of joint_ranges, or of looped_ranges.
+Result<Subject> subject_over_joints(core::model::Model model);
 
 /// A deviation where a pair is worst.
 struct WorstDeviation {

@@ -72,6 +72,7 @@ std::string line_of(const char* what, const List& list, const Text& text) {
 
 const char* domain_name(const Certificate& certificate) {
     if (certificate.toleranced && certificate.toleranced->duration > 0) return "over the prescribed motion, within tolerances";
+    if (certificate.toleranced && certificate.toleranced->deviations.empty()) return "over all positions of the joints";
     if (certificate.toleranced)
         return is_over_ranges(*certificate.toleranced) ? "over all positions of the joints, within tolerances"
                                                        : "as assembled, within tolerances";
@@ -90,7 +91,7 @@ Json domain_json(const Certificate& certificate, const core::stepper::Trajectory
                                   {"high", span.high},
                                   {"unit", span.is_angle ? "rad" : "m"},
                                   {"whole_turn", span.is_whole_turn}});
-    if (certificate.toleranced) {
+    if (certificate.toleranced && !certificate.toleranced->deviations.empty()) {
         json["tolerances"] = Json::array();
         for (const Deviation& d : certificate.toleranced->deviations)
             json["tolerances"].push_back({{"of", d.of}, {"lower", d.lower}, {"upper", d.upper}});

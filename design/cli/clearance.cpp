@@ -11,6 +11,7 @@
 #include "design/cli/clearance_files.hpp"
 #include "design/cli/clearance_text.hpp"
 #include "design/cli/inputs.hpp"
+#include "design/cli/step_options.hpp"
 #include "design/tolerances/known_processes.hpp"
 #include "design/tolerances/process_clearance.hpp"
 
@@ -29,6 +30,7 @@ struct ClearanceArguments {
     std::vector<std::string> files;
     std::string minimum, tolerance, csv, baseline, certificate, out;
     int explain = 0;
+    double budget = 1;
     bool no_report = false;
 };
 
@@ -90,6 +92,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
     question.pairs = options.pairs;
     question.pairs.minimum = lengths->minimum;
     question.tolerance = lengths->tolerance;
+    question.budget = options.budget;
     question.margins = !options.csv.empty();
     question.all_witnesses = options.explain > 0;
     question.proof = !options.certificate.empty();
@@ -112,6 +115,7 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("--unit", options.subject.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
     app.flag("--split", options.subject.split,
              "Each solid of a mesh is a body of its own, with its cavities: box#1, box#2 (a print in place is one file)");
+    add_step_options(app, options.subject.step);
     app.option("--minimum", options.minimum, "Required clearance per side, with its unit: 0.3mm (without any: distances and clashes)");
     app.option(
            "--process", options.pairs.process,
@@ -130,6 +134,11 @@ void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("--group", options.pairs.groups, "name=a,b,c: bodies that are one rigid set (can be given several times)").one_value_each();
     app.option("--tolerance", options.tolerance,
                "How far the two bounds may be apart (default: the lesser of 0.001mm and 0.1% of the minimum)");
+    app.option(
+           "--budget", options.budget,
+           "How many times as much work as by default may be spent on one pair before it is undecided (default: 1; over ranges of joints "
+           "4 million bounds)")
+        .above(0);
     Option motion =
         app.flag("--motion", options.subject.motion, "Over the motion, which is simulated first (a trajectory: always); else as assembled");
     Option kinematic = app.flag("--kinematic", options.subject.kinematic,

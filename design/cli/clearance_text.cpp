@@ -74,9 +74,9 @@ std::string position_text(const Subject& subject, const PairClearance& pair, con
                         (joint.is_angle ? formatted(" %.6g deg", value * degrees) : " " + lengths.plain(value) + " " + lengths.unit()));
     });
     if (pair.as_assembled) return "as assembled";
-    if (subject.toleranced)
+    if (subject.has_deviations())
         for (const clearance::WorstDeviation& d : worst_deviations(subject, pair)) parts.push_back(deviation_text(d));
-    return parts.empty() ? subject.toleranced ? "no tolerance matters" : "nothing moves one against the other" : joined(parts);
+    return parts.empty() ? subject.has_deviations() ? "no tolerance matters" : "nothing moves one against the other" : joined(parts);
 }
 
 // Within tolerances: what does not matter for which pair.
@@ -223,7 +223,12 @@ std::string round_surfaces(const ReportedPair& pair, const Subject& subject, con
     std::string text =
         "   of the round surfaces that the facets stand for: at least " + bound(lengths.down(parts->lower, 3), parts->lower_is_proven);
     if (std::isfinite(parts->upper)) text += ", at most " + bound(lengths.up(parts->upper, 3), parts->upper_is_proven);
-    return text + " " + lengths.unit() + "\n";
+    text += " " + lengths.unit();
+    double declared = 0;
+    for (const int body : {pair.least.a, pair.least.b})
+        if (const auto& deviation = subject.model.bodies[body].mesh.deviation) declared += deviation->declared;
+    if (declared > 0) text += " (assumed: the edges of the STEP files are as exact as these declare, " + lengths.rough(declared) + ")";
+    return text + "\n";
 }
 
 // Where the two share most is not searched for: known is the worst of the places that were looked at.
@@ -415,7 +420,7 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, i
         text +=
             "\nno line is about round surfaces: a trajectory holds the meshes alone; give the scene or design (with --motion), only they "
             "know the surfaces that facets stand for\n";
-    if (subject.toleranced) text += without_influence(report, subject);
+    if (subject.has_deviations()) text += without_influence(report, subject);
     text += "\n" + summary(report, subject);
     const auto far = std::count_if(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.least.is_far; });
     if (far > 0)

@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "core/files/json_text.hpp"
@@ -60,7 +62,13 @@ Result<DaskCluster> DaskCluster::connect(const std::string& address, const DaskD
     const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
     setenv("PYTHONPATH", module_path(program).c_str(), 1);
     // -P: the current folder, which may be anyone's, is no place of modules; nor is it for the processes that Python starts.
-    DaskCluster cluster(TalkingProcess({interpreter(program), "-P", "-m", "fettle", "explore-on-dask"}));
+    std::optional<TalkingProcess> python;
+    try {
+        python.emplace(std::vector<std::string>{interpreter(program), "-P", "-m", "fettle", "explore-on-dask"});
+    } catch (const std::system_error& error) {
+        return Error{ErrorCode::file_not_found, "--dask", "python3 could not be started: " + error.code().message()};
+    }
+    DaskCluster cluster(*std::move(python));
     const Json request{{"address", address},
                        {"design", fs::absolute(design.path).string()},
                        {"mesh_dirs", design.mesh_dirs},

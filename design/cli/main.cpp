@@ -200,13 +200,13 @@ std::vector<Command> add_commands(CommandLine& program, const CommonOptions& com
     };
     add("Start", {add_new(program), add_shapes(program), add_joints(program), add_quantities(program), add_optimisers(program)});
     add("Check", {add_validate(program, common), add_check(program, common), add_clearance(program, common), add_ranges(program, common),
-                  add_check_resolution(program, common), add_tolerance(program, common)});
+                  add_features(program, common), add_check_resolution(program, common), add_tolerance(program, common)});
     add("Measure your printer", {add_coupon(program), add_process(program)});
     add("Simulate and tune",
         {add_simulate(program, common), add_optimise(program, common), add_explore(program, common), add_gradient(program, common)});
     add("Show and export",
         {add_report(program, common), add_draw(program, common), add_export(program, common), add_import(program, common)});
-    add("About the program", {add_mcp(program, common), add_completion(program), add_manual(program)});
+    add("About the program", {mcp::add_mcp(program, common), add_completion(program), add_manual(program)});
     return all;
 }
 

@@ -96,7 +96,7 @@ std::string line_of(const StartResult& start) {
 
 struct Running {
     size_t start;
-    ChildProcess process;
+    core::files::Process process;
 };
 
 // Those that have ended leave the list.
@@ -150,8 +150,7 @@ std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOp
                                 exit_bad_input};
                 continue;
             }
-            running.push_back(
-                {next, ChildProcess::start(arguments_of(request, starts[next], common, cores / at_once), folder / "log.txt")});
+            running.push_back({next, start_self(arguments_of(request, starts[next], common, cores / at_once), folder / "log.txt")});
         }
         if (collect(running, starts, console)) {
             const auto done = static_cast<int>(next - running.size());

@@ -41,10 +41,13 @@ Command add_check(CommandLine& program, const CommonOptions& common);
 Command add_coupon(CommandLine& program);
 Command add_draw(CommandLine& program, const CommonOptions& common);
 Command add_export(CommandLine& program, const CommonOptions& common);
+Command add_features(CommandLine& program, const CommonOptions& common);
 Command add_import(CommandLine& program, const CommonOptions& common);
 Command add_joints(CommandLine& program);
 Command add_manual(CommandLine& program);
+namespace mcp {
 Command add_mcp(CommandLine& program, const CommonOptions& common);
+}
 Command add_new(CommandLine& program);
 Command add_optimisers(CommandLine& program);
 Command add_process(CommandLine& program);

@@ -108,10 +108,18 @@ std::string hold_joints(const std::string& allowed, const core::model::Model& mo
 // With --out: what is written while the motion grows.
 struct Writing {
     Writing(const SimulateArguments& options, const LoadedModel& loaded)
-        : trajectory(options.out, loaded.model, loaded.scene_path, options.earlier), tables(options.out, loaded.model) {}
+        : trajectory(options.out, loaded.model, loaded.scene_path, options.earlier), tables(options.out, loaded.model) {
+        if (!options.no_report && options.earlier.empty()) steps.emplace(loaded.model, report::linear_motors(loaded.model));
+    }
+
+    void add(const Simulation& so_far, const core::model::Model& model) {
+        tables.write(so_far);
+        if (steps) steps->add(so_far.outputs.back(), model);
+    }
 
     answers::GrowingTrajectory trajectory;
     answers::GrowingTables tables;
+    std::optional<report::StepCurves> steps;  // for the report; none of a run that goes on: tables have what was before
 };
 
 struct FinishedRun {
@@ -261,7 +269,8 @@ int finish(const SimulateArguments& options, const CommonOptions& common, const 
     if (run.writing && (written || !writes_out)) run.writing->trajectory.remove();
     if (written && !options.no_report)
         leave_report(options.out, common, console, json, told,
-                     {.motion = report::Motion{model, std::move(simulation.trajectory), run.loaded.scene_path}});
+                     {.motion = report::Motion{model, std::move(simulation.trajectory), run.loaded.scene_path},
+                      .steps = std::move(run.writing->steps)});
     const CheckOutcome checked = outcome.exit_code == exit_done ? CheckOutcome::passed : CheckOutcome::undecided;
     console.found({"the motion is simulated and proven", checked, outcome.status, outcome.message, options.path});
     console.result(json, told);
@@ -292,7 +301,7 @@ int run_simulate(SimulateArguments options, const CommonOptions& common, Console
         if (writing) {
             const std::string fault = writing->trajectory.write(*p.so_far);
             if (!fault.empty()) console.narrate("warning: " + fault + "; a run that is killed from here on leaves less");
-            writing->tables.write(*p.so_far);
+            writing->add(*p.so_far, model);
         }
         if (!adds_nodes) prover.follow(*p.so_far);
         console.progress("simulating", p.step, p.steps);

@@ -9,7 +9,7 @@
 #include "design/answers/output_folder.hpp"
 #include "design/answers/tolerance_json.hpp"
 #include "design/cli/inputs.hpp"
-#include "design/report/tolerance_report.hpp"
+#include "design/report/tolerance_data.hpp"
 #include "design/studies/tolerance_file.hpp"
 #include "design/tolerances/known_processes.hpp"
 
@@ -40,7 +40,7 @@ void leave_report(const Options& options, const CommonOptions& common, const rep
                   nlohmann::ordered_json& json, std::string& told) {
     if (options.report.empty()) return;
     report::ToleranceReportSource whole = source;
-    whole.answer = told;
+    whole.text = told;
     whole.command = common.command;
     const Errors errors = report::write_tolerance_report(options.report, whole);
     console.unwritten(errors);

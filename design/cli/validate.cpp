@@ -18,6 +18,8 @@
 #include "design/cli/answers.hpp"
 #include "design/cli/body_facts.hpp"
 #include "design/cli/inputs.hpp"
+#include "design/cli/step_facts.hpp"
+#include "design/cli/step_options.hpp"
 #include "design/cli/validate_certificate.hpp"
 #include "design/problem/buildable.hpp"
 #include "design/problem/design_problem.hpp"
@@ -42,6 +44,35 @@ std::string without_unit(std::string text) {
         if (at + 4 == text.size() || std::isalnum(static_cast<unsigned char>(text[at + 4])) == 0) text.erase(at + 1, 3);
     }
     return text;
+}
+
+// The verdict on a STEP file, whose solids are bodies of their own.
+Verdict validate_step_file(const std::string& path, const reading::StepWishes& wishes, bool strict) {
+    Verdict verdict;
+    core::mesh_files::MeshReadOptions options{1, true, interrupted};
+    verdict.errors = reading::take_step_wishes(wishes, options);
+    if (!verdict.errors.empty()) return verdict;
+    Result<std::vector<core::geometry::Mesh>> items = core::mesh_files::read_mesh_parts(path, options);
+    if (!items) {
+        verdict.errors = items.errors();
+        return verdict;
+    }
+    for (core::geometry::Mesh& mesh : *items) {
+        const auto named = [&](const std::string& text) { return "item `" + mesh.name + "`: " + text; };
+        core::solids::MeshFindings found;
+        if (strict) {
+            found.errors = core::solids::validate_mesh(mesh, {});
+        } else {
+            for (const std::string& done : core::solids::repair_mesh(mesh)) verdict.warnings.push_back(named(done));
+            found = core::solids::judge_mesh(mesh, true);
+        }
+        for (Error& error : found.errors) verdict.errors.push_back({error.code, path, named(error.message)});
+        for (const std::string& warning : found.warnings) verdict.warnings.push_back(named(warning));
+    }
+    verdict.facts["unit"] = "mm";
+    verdict.facts["items"] = step_items_json(*items);
+    verdict.text = step_items_text(*items);
+    return verdict;
 }
 
 // @param unit  The unit of a file that states none; empty: its places are numbers.
@@ -138,6 +169,7 @@ Verdict validate_model(const std::string& path, FileKind kind, const CommonOptio
 
 struct ValidateArguments {
     std::string path, unit, trajectory, source, minimum;
+    reading::StepWishes step;
 };
 
 int run_validate(const ValidateArguments& options, const CommonOptions& common, Console& console) {
@@ -154,11 +186,16 @@ int run_validate(const ValidateArguments& options, const CommonOptions& common, 
             not_taken.push_back(
                 {ErrorCode::inconsistent, option,
                  std::string("is for a certificate") + (option == std::string_view("--source") ? "" : "; use fettle clearance")});
+    const bool is_step = kind == FileKind::mesh && core::mesh_files::is_step(path);
+    for (const auto& [option, value] :
+         {std::pair{"--facets", options.step.facets}, {"--surface-tolerance", options.step.surface_tolerance}})
+        if (!value.empty() && !is_step) not_taken.push_back({ErrorCode::inconsistent, option, "is for STEP files"});
     if (!not_taken.empty()) return console.input_errors(not_taken);
     if (core::records::is_poses_file(path))
         return console.input_errors(
             {{ErrorCode::unsupported, path, "poses are checked with their scene: fettle clearance SCENE --poses FILE"}});
-    const Verdict verdict = kind == FileKind::mesh         ? validate_mesh_file(path, options.unit, common.strict)
+    const Verdict verdict = is_step                        ? validate_step_file(path, options.step, common.strict)
+                            : kind == FileKind::mesh       ? validate_mesh_file(path, options.unit, common.strict)
                             : kind == FileKind::trajectory ? validate_trajectory(path)
                                                            : validate_model(path, kind, common);
     if (!verdict.errors.empty()) return console.input_errors(verdict.errors);
@@ -187,6 +224,7 @@ Command add_validate(CommandLine& program, const CommonOptions& common) {
                "Scene, design, part, trajectory, certificate (.json) or mesh (" + core::mesh_files::mesh_extensions() + ")")
         .required();
     app.option("--unit", options->unit, "Unit of a mesh that states none: mm, um, cm, m, in, ft");
+    add_step_options(app, options->step);
     app.option("--trajectory", options->trajectory,
                "For a certificate: the path that it is about (default: FILE's name, .trajectory.json)");
     app.option("--source", options->source,

@@ -7,6 +7,8 @@ VectorX Quantity::deviations(const Simulated&) const { return {}; }
 
 void Quantity::add_deviation_seeds(const Simulated&, int, double, Seeds&) const {}
 
+std::vector<double> Quantity::curve(const Simulated&) const { return {}; }
+
 std::vector<Branch> Quantity::branches(const Simulated&, const Measurement&, double) const { return {}; }
 
 std::optional<Continuation> Quantity::continuation(const Simulated&, const Measurement&, const Bounds&) const { return std::nullopt; }

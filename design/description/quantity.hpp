@@ -15,6 +15,7 @@
 #include "core/clearance/pair_clearance.hpp"
 #include "core/model/model.hpp"
 #include "core/stepper/trajectory.hpp"
+#include "design/description/quantity_facts.hpp"
 
 namespace fettle::design::description {
 
@@ -70,6 +71,9 @@ public:
     /// What it measures: a bound in a unit of another dimension is an error, and reports count in a unit of this one.
     virtual Dimension dimension() const = 0;
 
+    /// What others have to know of it. Const and pure, as all of these functions.
+    virtual QuantityFacts facts() const { return {}; }
+
     /// Const and pure: called from several threads at once.
     virtual Measurement value(const Simulated& simulated) const = 0;
 
@@ -82,6 +86,9 @@ public:
 
     /// Adds scale * d(r_i) to the seeds. Contract: 0 <= i < deviations().size().
     virtual void add_deviation_seeds(const Simulated& simulated, int i, double scale, Seeds& seeds) const;
+
+    /// The numbers to draw over the motion, at the steps' ends, where facts() has the dimension of a curve.
+    virtual std::vector<double> curve(const Simulated& simulated) const;
 
     /// The branches of a value that is the least of several smooth functions (a clearance: of the distances at its witnesses): first the
     /// one that add_seeds differentiates, then a few of the others that are at most `limit` (SI), which say most about where the value can

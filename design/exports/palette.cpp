@@ -44,7 +44,11 @@ std::vector<Colour> part_colours(const core::model::Model& model) {
     std::vector<Colour> colours;
     int fixed = 0, moving = 0;
     for (const core::model::Body& body : model.bodies)
-        colours.push_back(is_fixed(body) && !nothing_moves ? fixed_colour(fixed++) : part_colour(moving++));
+        if (body.mesh.colour) {
+            colours.push_back(*body.mesh.colour);
+        } else {
+            colours.push_back(is_fixed(body) && !nothing_moves ? fixed_colour(fixed++) : part_colour(moving++));
+        }
     return colours;
 }
 

@@ -6,17 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/linear/factorisations.hpp"
+#include "core/linear/positive_part.hpp"
 
 namespace fettle::design::optimisers {
 
 namespace {
-
-MatrixX positive_part(const MatrixX& symmetric) {
-    const core::linear::SymmetricEigen<Eigen::Dynamic> eigen = core::linear::symmetric_eigen<Eigen::Dynamic>(symmetric);
-    const VectorX values = eigen.values.cwiseMax(0);
-    return eigen.vectors * values.asDiagonal() * eigen.vectors.transpose();
-}
 
 bool is_first(const Branches& b, size_t k) { return k == 0 || b.of[k] != b.of[k - 1]; }
 
@@ -157,7 +151,7 @@ QuadraticSolution best_step(const Evaluator& evaluator, const VectorX& point, co
     QuadraticProgram program;
     program.gradient = e.gradient;
     program.hessian = residual_curvature(e);
-    if (rest != nullptr) program.hessian = positive_part(program.hessian + *rest);
+    if (rest != nullptr) program.hessian = positive_part(core::linear::symmetric_eigen<Eigen::Dynamic>(program.hessian + *rest));
     program.rows = e.jacobian;
     program.lower = evaluator.scaled_constraint_lower() - e.constraints;
     program.upper = evaluator.scaled_constraint_upper() - e.constraints;

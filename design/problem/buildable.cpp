@@ -2,9 +2,9 @@
 #include "design/problem/buildable.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
+#include "core/base/kronecker.hpp"
 #include "core/base/parallel.hpp"
 
 namespace fettle::design::problem {
@@ -30,18 +30,6 @@ std::vector<bool> broken_inequalities(const DesignProblem& problem, const Vector
 }
 
 bool any(const std::vector<bool>& flags) { return std::find(flags.begin(), flags.end(), true) != flags.end(); }
-
-// Sample number `index` of the unit cube: frac(1/2 + index / g^(k + 1)), g the positive root of g^(n + 1) = g + 1.
-VectorX spread(int index, int n) {
-    double g = 2;
-    for (int k = 0; k < 60; ++k) g = std::pow(1 + g, 1.0 / (n + 1));
-    VectorX x(n);
-    for (int k = 0; k < n; ++k) {
-        const double y = 0.5 + index * std::pow(g, -(k + 1));
-        x[k] = y - std::floor(y);
-    }
-    return x;
-}
 
 std::string amount(double si, const Unit& unit) {
     char text[80];
@@ -115,13 +103,11 @@ BoundsReport try_bounds(const DesignProblem& problem) {
         if (!end.reach.obstacles.empty()) report.unreachable.push_back(std::move(end));
     }
     std::vector<VectorX> points;
+    const core::base::Kronecker spread(n);
     const int samples = has_costly_shapes(problem.design()) ? 2 * n : 8 * n;
     for (int index = 1; index <= std::min(64, samples); ++index) {
-        VectorX p = spread(index, n);
-        for (int k = 0; k < n; ++k) {
-            const Parameter& parameter = parameters[k];
-            p[k] = parameter.lower + p[k] * (parameter.upper - parameter.lower);
-        }
+        VectorX p(n);
+        for (int k = 0; k < n; ++k) p[k] = parameters[k].lower + spread.at(index, k) * (parameters[k].upper - parameters[k].lower);
         if (!any(broken_inequalities(problem, p))) points.push_back(std::move(p));
     }
     std::vector<Errors> found(points.size());

@@ -43,7 +43,7 @@ struct BoundsReport {
 };
 
 /// Tries the designs that differ from the start in one parameter, on the way to each end of its bounds, and samples of all parameters
-/// together (8 per parameter, at most 64, the same ones on every run: multiples of the powers of a generalised golden ratio, modulo 1).
+/// together (8 per parameter, at most 64, the same ones on every run: core/base/kronecker.hpp).
 /// What an inequality between parameters excludes is not tried: it is no trap if the design says so itself. For parts that are costly to
 /// make (Shape::is_costly) the ends themselves are tried, and 2 samples per parameter. Empty if the start itself cannot be built: its
 /// evaluation says why.

@@ -7,16 +7,14 @@
 
 #include "core/base/text.hpp"
 #include "design/description/requirement_text.hpp"
-#include "design/quantities/expression.hpp"
-#include "design/quantities/in_scenario.hpp"
 #include "design/quantities/step_series.hpp"
-#include "design/quantities/worst.hpp"
 
 namespace fettle::design::problem {
 
 namespace {
 
 using description::Quantity;
+using description::QuantityFacts;
 using description::Simulated;
 using quantities::Over;
 using quantities::StepSeries;
@@ -40,7 +38,7 @@ public:
         for (const description::ObjectiveTerm& term : design_.objective)
             look_at(*term.quantity, "objective `" + term.name + "`", term.unit);
         for (const description::Constraint& constraint : design_.constraints) {
-            const auto* series = dynamic_cast<const StepSeries*>(constraint.quantity.get());
+            const StepSeries* series = quantities::series_of(*constraint.quantity);
             const bool is_to_be_negative = series != nullptr && series->over() == Over::largest && constraint.bounds.upper < 0;
             look_at(*constraint.quantity, "constraint `" + constraint.name + "`", constraint.bounds.unit, is_to_be_negative);
         }
@@ -64,22 +62,23 @@ private:
     }
 
     void collect(const Quantity& quantity, const Simulated& in, bool in_expression, std::vector<Asked>& out) const {
-        if (const auto* series = dynamic_cast<const StepSeries*>(&quantity)) {
+        if (const StepSeries* series = quantities::series_of(quantity)) {
             if (quantities::is_extreme(series->over())) out.push_back({series, &in, in_expression, false});
-        } else if (const auto* one = dynamic_cast<const quantities::InScenario*>(&quantity)) {
-            collect(*one->quantity(), in.in(one->scenario()), in_expression, out);
-        } else if (const auto* worst = dynamic_cast<const quantities::Worst*>(&quantity)) {
-            for (const auto& part : worst->parts()) collect(*part, in, in_expression, out);
-        } else if (const auto* expression = dynamic_cast<const quantities::Expression*>(&quantity)) {
-            std::vector<Asked> own;
-            for (const quantities::NamedQuantity& part : expression->parts()) collect(*part.quantity, in, true, own);
-            for (Asked& a : own)
-                a.both_extremes = std::any_of(own.begin(), own.end(), [&](const Asked& b) {
-                    return a.series->over() != b.series->over() &&
-                           a.series->window(*a.simulated).numbers == b.series->window(*b.simulated).numbers;
-                });
-            out.insert(out.end(), own.begin(), own.end());
+            return;
         }
+        const QuantityFacts facts = quantity.facts();
+        const bool is_formula = facts.kind == QuantityFacts::Kind::formula;
+        const Simulated& there = facts.kind == QuantityFacts::Kind::in_scenario ? in.in(facts.scenario) : in;
+        std::vector<Asked> own;
+        for (const description::NamedQuantity& part : facts.parts) collect(*part.quantity, there, in_expression || is_formula, own);
+        for (Asked& a : own)
+            if (is_formula) a.both_extremes = std::any_of(own.begin(), own.end(), [&](const Asked& b) { return is_opposite(a, b); });
+        out.insert(out.end(), own.begin(), own.end());
+    }
+
+    // The same numbers, of which the other extreme is taken.
+    static bool is_opposite(const Asked& a, const Asked& b) {
+        return a.series->over() != b.series->over() && a.series->window(*a.simulated).numbers == b.series->window(*b.simulated).numbers;
     }
 
     // The largest has another sign than what is larger.

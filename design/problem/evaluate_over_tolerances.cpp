@@ -47,10 +47,9 @@ Result<ProvenRow> proven_row(const Design& design, const EvaluateAsMade& as_made
     const VectorX here = made.extended(p);
     const Result<core::model::Model> model = as_made.model_at(base_point(made, here));
     if (!model) return model.errors();
-    const auto* quantity = dynamic_cast<const quantities::Clearance*>(design.constraints[constraint].quantity.get());
-    if (quantity == nullptr) return Error{ErrorCode::unsupported, design.constraints[constraint].name, "only a clearance can be proven"};
-    Result<ProvenClearance> found =
-        proven_clearance(made, here, *model, quantity->range(), proof_tolerance(design.constraints[constraint].bounds));
+    const quantities::ClearanceRange* range = design.constraints[constraint].quantity->facts().clearance;
+    if (range == nullptr) return Error{ErrorCode::unsupported, design.constraints[constraint].name, "only a clearance can be proven"};
+    Result<ProvenClearance> found = proven_clearance(made, here, *model, *range, proof_tolerance(design.constraints[constraint].bounds));
     if (!found) return found.errors();
     const std::optional<optimisers::Rows> rows = as_made.rest_rows(here + made.moved_by(found->deviations));
     if (!rows) return Error{ErrorCode::inconsistent, design.constraints[constraint].name, "its worst parts cannot be made"};

@@ -49,6 +49,13 @@ public:
 
     Result<Toleranced> run() {
         Errors refused = refused_places(probe_, model_, ranges_);
+        if (ranges_ && ranges_->of == LoopedRanges::Of::joints)
+            for (const Joint& joint : model_.mechanism.joints)
+                if (joint.kind == core::scene::JointKind::ball && !joint.is_motor)
+                    refused.push_back(
+                        {ErrorCode::unsupported, "joint `" + joint.name + "`",
+                         "over tolerances nothing is proven of the positions of a ball joint; as assembled it is, and without "
+                         "--tolerances"});
         if (!refused.empty()) return refused;
         hang();
         out_.deviations = numbers_.deviations();

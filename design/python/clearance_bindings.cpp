@@ -11,6 +11,7 @@
 #include "core/files/json_dump.hpp"
 #include "design/clearance/ranges_report.hpp"
 #include "design/clearance/report_json.hpp"
+#include "design/features/features_report.hpp"
 #include "design/python/arguments.hpp"
 #include "design/python/bindings.hpp"
 #include "design/python/errors.hpp"
@@ -143,7 +144,7 @@ void bind_ranges(py::module_& module) {
     module.def(
         "joint_ranges",
         [](const Model& model) { return std::make_shared<JointRanges>(value_or_raise(core::clearance::joint_ranges(model))); },
-        py::arg("model"), "The JointRanges of a model. Raises Error for balls, planar joints, loops, and coordinates without limits.");
+        py::arg("model"), "The JointRanges of a model. Raises Error for loops, and for coordinates without limits.");
     module.def(
         "certify_ranges",
         [](const Model& model, const py::object& pairs, const py::object& minimum, const py::object& tolerance,
@@ -230,7 +231,7 @@ clearance::Subject subject_from(const Model& model, const std::shared_ptr<Trajec
         return clearance::subject_of(model, *trajectory);
     }
     if (trajectory) refuse(ErrorCode::inconsistent, "ranges", "are in place of a trajectory");
-    if (py::isinstance<py::bool_>(ranges)) return clearance::subject_over(model, value_or_raise(core::clearance::joint_ranges(model)));
+    if (py::isinstance<py::bool_>(ranges)) return value_or_raise(clearance::subject_over_joints(model));
     if (!py::isinstance<JointRanges>(ranges)) refuse(ErrorCode::wrong_type, "ranges", shown(ranges) + ": True or JointRanges is expected");
     check_ranges(ranges.cast<const JointRanges&>(), model);
     return clearance::subject_over(model, ranges.cast<const JointRanges&>());
@@ -340,9 +341,42 @@ void bind_ranges_question(py::module_& module) {
         "found (0.01 deg, 0.01 mm). reach: how far slides are looked at. progress(done, of).");
 }
 
+void bind_features_question(py::module_& module) {
+    module.def(
+        "features",
+        [](const Model& model, const std::string& process, const py::object& tolerance, bool fits, bool triangles,
+           const py::object& progress) {
+            features::FeaturesQuestion question;
+            question.process = process;
+            question.fits = fits;
+            if (!tolerance.is_none()) {
+                question.options.tolerance = quantity_from(tolerance, Dimension::length, "tolerance");
+                check_above("tolerance", *question.options.tolerance, 0);
+            }
+            Watch watch(progress);
+            const Result<features::FeaturesReport> report = [&] {
+                const py::gil_scoped_release unlocked;
+                question.on_body = watch.on_count();
+                question.should_stop = watch.should_stop();
+                return features::ask_features(model, question);
+            }();
+            watch.end();
+            if (!report) raise_if_any(with_arguments(report.errors()));
+            return py::module_::import("json").attr("loads")(core::files::dumped(features::features_json(*report, triangles)));
+        },
+        py::arg("model"), py::arg("process") = "", py::arg("tolerance") = py::none(), py::arg("fits") = true, py::arg("triangles") = false,
+        py::arg("progress") = py::none(),
+        "What `fettle features` asks and answers, a dict with the keys of its JSON (SI): planes, bores, pins, cones, spheres and tori of "
+        "each "
+        "body as assembled, fitted, and which pin sits in which hole. process: by which a fit's play is judged. tolerance: how far corners "
+        "may "
+        "lie from their surface. triangles: lists those of each feature. progress(done, of).");
+}
+
 }  // namespace
 
 void bind_clearance(py::module_& module) {
+    bind_features_question(module);
     py::class_<Certificate, std::shared_ptr<Certificate>>(
         module, "Certificate", "The proof of clearances as data: over a path, as assembled, or over ranges of joints.")
         .def(py::init<>())

@@ -4,6 +4,7 @@
 
 #include "design/description/design.hpp"
 #include "design/problem/design_problem.hpp"
+#include "design/python/library_quantities.hpp"
 #include "design/python/motion_records.hpp"
 #include "design/python/own_quantity.hpp"
 #include "design/python/own_shape.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "design/python/scene_records.hpp"
 
+#include <algorithm>
+
 namespace fettle::design::python {
 
 namespace py = pybind11;
@@ -62,6 +64,8 @@ py::object mesh_to_python(core::geometry::Mesh mesh) {
     members["triangle_face"] = mesh.triangle_face;
     members["vertices"] = rows_of(std::move(mesh.vertices));
     members["deviation"] = mesh.deviation;
+    members["colour"] = py::none();
+    if (mesh.colour) members["colour"] = py::make_tuple((*mesh.colour)[0], (*mesh.colour)[1], (*mesh.colour)[2]);
     return record_class("Mesh")(**members);
 }
 
@@ -76,6 +80,13 @@ core::geometry::Mesh mesh_from_python(py::handle source) {
     mesh.triangle_face = member_of<std::vector<int>>(source, "Mesh", "triangle_face");
     check_faces(mesh, place);
     mesh.deviation = member_of<std::optional<core::geometry::Deviation>>(source, "Mesh", "deviation");
+    if (const auto colour = member_of<std::optional<std::vector<int>>>(source, "Mesh", "colour")) {
+        const bool is_colour =
+            colour->size() == 3 && std::all_of(colour->begin(), colour->end(), [](int part) { return part >= 0 && part <= 255; });
+        if (!is_colour) refuse(ErrorCode::out_of_range, place + "/colour", "three numbers from 0 to 255");
+        mesh.colour.emplace();
+        for (std::size_t k = 0; k < 3; ++k) (*mesh.colour)[k] = static_cast<unsigned char>((*colour)[k]);
+    }
     const auto edges = rows_from<2>(source.attr("loose_edges"), place + "/loose_edges", "a mesh has loose edges of shape (k, 2)");
     check_indices(mesh.triangles, mesh.vertices.cols(), place + "/triangles", "a triangle of a mesh");
     check_indices(edges, mesh.vertices.cols(), place + "/loose_edges", "a loose edge of a mesh");

@@ -54,7 +54,8 @@ FETTLE_WORDS(fettle::core::scene::MotorKind, "motion", "effort")
 FETTLE_WORDS(fettle::core::scene::Orientation::Kind, "angles", "vector")
 
 FETTLE_RECORD(fettle::core::geometry::Deviation, "Deviation", field("outside", &Type::out), field("inside", &Type::in),
-              field("outside_is_proven", &Type::out_is_proven), field("inside_is_proven", &Type::in_is_proven))
+              field("outside_is_proven", &Type::out_is_proven), field("inside_is_proven", &Type::in_is_proven),
+              field("declared", &Type::declared))
 FETTLE_RECORD(fettle::core::kinematics::Pose, "Pose", field("rotation", &Type::rotation), field("position", &Type::position))
 FETTLE_RECORD(fettle::core::scene::MotionCurve, "MotionCurve", field("rate", &Type::rate), field("times", &Type::times),
               field("values", &Type::values), field("stop_time", &Type::stop_time))
@@ -79,8 +80,8 @@ FETTLE_RECORD(fettle::core::scene::CoordinateForces, "CoordinateForces", field("
               field("limits", &Type::limits))
 FETTLE_RECORD(fettle::core::scene::Assemble, "Assemble", field("side", &Type::side), field("from_", &Type::from), field("to", &Type::to))
 FETTLE_RECORD(fettle::core::scene::Joint, "Joint", field("name", &Type::name), field("where", &Type::where), field("kind", &Type::kind),
-              field("a", &Type::a), field("b", &Type::b), field("pitch", &Type::pitch), field("of", &Type::of),
-              field("ratio", &Type::ratio), field("forces", &Type::forces), field("collide", &Type::collide),
+              field("a", &Type::a), field("b", &Type::b), field("pitch", &Type::pitch), field("swing", &Type::swing),
+              field("of", &Type::of), field("ratio", &Type::ratio), field("forces", &Type::forces), field("collide", &Type::collide),
               field("assemble", &Type::assemble))
 FETTLE_RECORD(fettle::core::scene::Spring, "Spring", field("name", &Type::name), field("where", &Type::where), field("joint", &Type::joint),
               field("a", &Type::a), field("b", &Type::b), field("forces", &Type::forces))

@@ -12,8 +12,6 @@
 /// closed, which have no inside, it is the distance of the surfaces.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,14 +20,7 @@
 
 namespace fettle::design::quantities {
 
-struct ClearanceRange {
-    int a = 0, b = 0;                               ///< bodies
-    bool motion = false;                            ///< over the trajectory; false: as assembled, or over the ranges
-    int window = 0, windows = 1;                    ///< which of how many equal parts of the motion, or of what `from` and `to` leave of it
-    std::optional<double> from{}, to{};             ///< the part of the motion [s]: all steps of which some of the time lies within
-    bool ranges = false;                            ///< over all positions of the joints (core/clearance/joint_ranges.hpp)
-    std::vector<std::string> faces_a{}, faces_b{};  ///< names of faces that count alone; empty: the whole body
-};
+using description::ClearanceRange;
 
 class Clearance : public description::Quantity {
 public:
@@ -39,6 +30,7 @@ public:
     const ClearanceRange& range() const { return range_; }
     double minimum() const { return minimum_; }
     Dimension dimension() const override { return Dimension::length; }
+    description::QuantityFacts facts() const override { return {.clearance = &range_}; }
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;

@@ -76,6 +76,10 @@ std::vector<T> Expression::inputs(const Simulated& simulated, PartValue part_val
     return out;
 }
 
+description::QuantityFacts Expression::facts() const {
+    return {.kind = description::QuantityFacts::Kind::formula, .parts = parts_, .formula = &formula_};
+}
+
 Measurement Expression::value(const Simulated& simulated) const {
     Measurement out;
     bool single = true;  // a number each, and no bounds

@@ -19,10 +19,7 @@
 
 namespace fettle::design::quantities {
 
-struct NamedQuantity {
-    std::string name;
-    std::shared_ptr<const description::Quantity> quantity;
-};
+using description::NamedQuantity;
 
 class Expression : public description::Quantity {
 public:
@@ -38,6 +35,7 @@ public:
     const core::expression::Formula& formula() const { return formula_; }
     const std::vector<NamedQuantity>& parts() const { return parts_; }
     Dimension dimension() const override { return dimension_; }
+    description::QuantityFacts facts() const override;
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;

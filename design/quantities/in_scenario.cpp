@@ -9,8 +9,10 @@ namespace fettle::design::quantities {
 
 using description::Measurement;
 using description::Quantity;
+using description::QuantityFacts;
 using description::Seeds;
 using description::Simulated;
+using Kind = QuantityFacts::Kind;
 
 Measurement InScenario::value(const Simulated& simulated) const { return quantity_->value(simulated.in(scenario_)); }
 
@@ -29,30 +31,27 @@ std::vector<description::Branch> InScenario::branches(const Simulated& simulated
 }
 
 std::shared_ptr<const Quantity> in_scenario(const std::shared_ptr<const Quantity>& quantity, int scenario) {
-    if (dynamic_cast<const InScenario*>(quantity.get()) != nullptr) return quantity;
-    const auto* expression = dynamic_cast<const Expression*>(quantity.get());
-    if (expression == nullptr) return std::make_shared<InScenario>(quantity, scenario);
-    std::vector<NamedQuantity> parts = expression->parts();
-    for (NamedQuantity& part : parts) part.quantity = in_scenario(part.quantity, scenario);
-    return Expression::create(expression->formula(), parts).value();
+    QuantityFacts facts = quantity->facts();
+    if (facts.kind == Kind::in_scenario) return quantity;
+    if (facts.kind != Kind::formula) return std::make_shared<InScenario>(quantity, scenario);
+    for (NamedQuantity& part : facts.parts) part.quantity = in_scenario(part.quantity, scenario);
+    return Expression::create(*facts.formula, facts.parts).value();
 }
 
 const Quantity& without_scenario(const Quantity& quantity) {
-    const auto* one = dynamic_cast<const InScenario*>(&quantity);
-    return one == nullptr ? quantity : *one->quantity();
+    const QuantityFacts facts = quantity.facts();
+    return facts.kind == Kind::in_scenario ? *facts.parts.front().quantity : quantity;
 }
 
-int scenario_of(const Quantity& quantity) {
-    const auto* one = dynamic_cast<const InScenario*>(&quantity);
-    return one == nullptr ? 0 : one->scenario();
-}
+int scenario_of(const Quantity& quantity) { return quantity.facts().scenario; }
 
 bool has_scenario(const Quantity& quantity) {
-    if (dynamic_cast<const InScenario*>(&quantity) != nullptr) return true;
-    const auto* expression = dynamic_cast<const Expression*>(&quantity);
-    return expression != nullptr && !expression->parts().empty() &&
-           std::all_of(expression->parts().begin(), expression->parts().end(),
-                       [](const NamedQuantity& part) { return has_scenario(*part.quantity); });
+    const QuantityFacts facts = quantity.facts();
+    if (facts.kind == Kind::in_scenario) return true;
+    return facts.kind == Kind::formula && !facts.parts.empty() &&
+           std::all_of(facts.parts.begin(), facts.parts.end(), [](const NamedQuantity& part) { return has_scenario(*part.quantity); });
 }
+
+const description::ClearanceRange* clearance_of(const Quantity& quantity) { return without_scenario(quantity).facts().clearance; }
 
 }  // namespace fettle::design::quantities

@@ -19,6 +19,9 @@ public:
     const std::shared_ptr<const Quantity>& quantity() const { return quantity_; }
     int scenario() const { return scenario_; }
     Dimension dimension() const override { return quantity_->dimension(); }
+    description::QuantityFacts facts() const override {
+        return {.kind = description::QuantityFacts::Kind::in_scenario, .parts = {{"", quantity_}}, .scenario = scenario_};
+    }
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
@@ -48,6 +51,9 @@ std::shared_ptr<const description::Quantity> in_scenario(const std::shared_ptr<c
 const description::Quantity& without_scenario(const description::Quantity& quantity);
 /// The number of the scenario that it is of; 0 where it is of none, or an expression of several.
 int scenario_of(const description::Quantity& quantity);
+
+/// What a clearance is over, in whichever scenario; null: it is none.
+const description::ClearanceRange* clearance_of(const description::Quantity& quantity);
 
 /// Is it of a scenario already, and an expression's parts each?
 bool has_scenario(const description::Quantity& quantity);

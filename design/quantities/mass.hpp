@@ -23,6 +23,7 @@ public:
 
     const std::vector<Of>& bodies() const { return bodies_; }
     Dimension dimension() const override { return Dimension::mass; }
+    description::QuantityFacts facts() const override { return {.is_number = true}; }
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;

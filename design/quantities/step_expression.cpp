@@ -5,9 +5,7 @@
 #include <cmath>
 
 #include "core/base/contract.hpp"
-#include "design/quantities/mass.hpp"
 #include "design/quantities/own_formula.hpp"
-#include "design/quantities/stroke.hpp"
 
 namespace fettle::design::quantities {
 
@@ -21,13 +19,8 @@ namespace {
 
 // Null: the quantity stands for its number.
 const StepSeries* stepwise(const Quantity& quantity) {
-    const auto* series = dynamic_cast<const StepSeries*>(&quantity);
+    const StepSeries* series = series_of(quantity);
     return series != nullptr && series->reduction().is_plain() ? series : nullptr;
-}
-
-bool is_exact_number(const Quantity& quantity) {
-    return dynamic_cast<const StepSeries*>(&quantity) != nullptr || dynamic_cast<const Stroke*>(&quantity) != nullptr ||
-           dynamic_cast<const Mass*>(&quantity) != nullptr;
 }
 
 }  // namespace
@@ -54,7 +47,7 @@ Result<std::shared_ptr<const StepExpression>> StepExpression::create(Formula for
     std::vector<NamedQuantity> used;
     for (const NamedQuantity& part : parts) {
         if (std::find(formula.inputs.begin(), formula.inputs.end(), part.name) == formula.inputs.end()) continue;
-        if (!is_exact_number(*part.quantity))
+        if (!part.quantity->facts().is_number)
             return Error{ErrorCode::unsupported, "",
                          "`" + part.name +
                              "` cannot stand in an expression over the steps: these name what each instant has a number of, strokes and "
@@ -78,6 +71,14 @@ StepExpression::StepExpression(Formula formula, std::vector<NamedQuantity> parts
 int StepExpression::part_of(const std::string& input) const {
     const auto found = std::find_if(parts_.begin(), parts_.end(), [&](const NamedQuantity& part) { return part.name == input; });
     return found == parts_.end() ? -1 : static_cast<int>(found - parts_.begin());
+}
+
+description::QuantityFacts StepExpression::facts() const {
+    description::QuantityFacts facts = StepSeries::facts();
+    facts.kind = description::QuantityFacts::Kind::step_formula;
+    facts.parts = parts_;
+    facts.formula = &formula_;
+    return facts;
 }
 
 bool StepExpression::has_start() const {

@@ -37,6 +37,7 @@ public:
     const core::expression::Formula& formula() const { return formula_; }
     const std::vector<NamedQuantity>& parts() const { return parts_; }
     Dimension instant_dimension() const override { return instant_dimension_; }
+    description::QuantityFacts facts() const override;
     bool has_start() const override;
     std::vector<std::string> parameters() const override;
     Errors check(const core::model::Model& model, int steps) const override;

@@ -13,6 +13,12 @@ void StepSeries::add_number_seeds(const Simulated& simulated, const std::vector<
     add_series_derivative_seeds(simulated, reduction_.derivative, weights, seeds);
 }
 
+const StepSeries* series_of(const description::Quantity& quantity) { return dynamic_cast<const StepSeries*>(&quantity); }
+
+std::shared_ptr<const StepSeries> series_of(const std::shared_ptr<const description::Quantity>& quantity) {
+    return std::dynamic_pointer_cast<const StepSeries>(quantity);
+}
+
 std::string instant_words(int instant) { return instant == 0 ? "the start" : "step " + std::to_string(instant); }
 
 StepSeries::Window StepSeries::window(const Simulated& simulated) const {
@@ -35,6 +41,14 @@ Dimension StepSeries::numbers_dimension() const {
 }
 
 Dimension StepSeries::dimension() const { return dimension_of(reduction_, instant_dimension()).value_or(Dimension::number); }
+
+description::QuantityFacts StepSeries::facts() const { return {.is_number = true, .curve = numbers_dimension()}; }
+
+std::vector<double> StepSeries::curve(const Simulated& simulated) const {
+    std::vector<double> out = numbers(simulated);
+    out.erase(out.begin(), out.end() - static_cast<std::ptrdiff_t>(simulated.trajectory.steps.size()));
+    return out;
+}
 
 Measurement StepSeries::value(const Simulated& simulated) const {
     return description::computed(number_of(reduction_, numbers(simulated), instants(simulated.trajectory.timestep)));

@@ -5,6 +5,7 @@
 /// step_expression.hpp.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ public:
     /// The dimension of numbers(). Contract of both: there is a unit of it, which check() sees to (until then: number).
     Dimension numbers_dimension() const;
     Dimension dimension() const final;
+    description::QuantityFacts facts() const override;
+    /// The numbers() of the steps' ends.
+    std::vector<double> curve(const description::Simulated& simulated) const override;
     /// Does the sign tell a direction, as of a torque about an axis? Not of magnitudes, nor of energies, whose zero is a convention.
     virtual bool has_direction() const { return false; }
     description::Measurement value(const description::Simulated& simulated) const override;
@@ -64,6 +68,10 @@ protected:
 private:
     Reduction reduction_;
 };
+
+/// The same quantity, as the series that it is; null: it is none. The only place that asks a quantity for its class.
+const StepSeries* series_of(const description::Quantity& quantity);
+std::shared_ptr<const StepSeries> series_of(const std::shared_ptr<const description::Quantity>& quantity);
 
 /// "the start", "step 3".
 std::string instant_words(int instant);

@@ -34,6 +34,13 @@ double Stroke::stroke(const Simulated& simulated) const {
 
 double Stroke::deviation(const Simulated& simulated) const { return stroke(simulated) - (target_ ? value_at(*target_, simulated) : 0); }
 
+std::vector<double> Stroke::curve(const Simulated& simulated) const {
+    const auto& poses = simulated.trajectory.poses;
+    std::vector<double> out;
+    for (std::size_t t = 1; t < poses.size(); ++t) out.push_back(axis_.dot(poses[t][body_].position - poses.front()[body_].position));
+    return out;
+}
+
 Measurement Stroke::value(const Simulated& simulated) const {
     const double s = deviation(simulated);
     return description::computed(target_ ? s * s : s);

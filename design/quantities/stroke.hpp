@@ -35,9 +35,12 @@ public:
     const std::optional<core::expression::Formula>& target() const { return target_; }
     const StrokeWindow& window() const { return window_; }
     Dimension dimension() const override { return target_ ? Dimension::area : Dimension::length; }
+    description::QuantityFacts facts() const override { return {.is_number = true, .curve = Dimension::length}; }
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
+    /// The way along the axis from the start.
+    std::vector<double> curve(const description::Simulated& simulated) const override;
     VectorX deviations(const description::Simulated& simulated) const override;
     void add_deviation_seeds(const description::Simulated& simulated, int i, double scale, description::Seeds& seeds) const override;
     std::vector<std::string> parameters() const override;

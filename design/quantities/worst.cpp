@@ -16,6 +16,12 @@ Worst::Worst(std::vector<std::shared_ptr<const Quantity>> parts, bool greatest) 
     FETTLE_ASSERT(!parts_.empty(), "the worst of nothing");
 }
 
+description::QuantityFacts Worst::facts() const {
+    description::QuantityFacts facts{.kind = description::QuantityFacts::Kind::worst};
+    for (const auto& part : parts_) facts.parts.push_back({"", part});
+    return facts;
+}
+
 Measurement Worst::value(const Simulated& simulated) const {
     Measurement out;
     for (const auto& part : parts_) out.parts.push_back(part->value(simulated));

@@ -20,6 +20,7 @@ public:
     const std::vector<std::shared_ptr<const Quantity>>& parts() const { return parts_; }
     bool greatest() const { return greatest_; }
     Dimension dimension() const override { return parts_.front()->dimension(); }
+    description::QuantityFacts facts() const override;
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;

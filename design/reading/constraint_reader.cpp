@@ -50,9 +50,9 @@ private:
     void check_proven(const JsonNode& node, const Constraint& constraint) const {
         const auto& over = constraint.bounds.over_tolerances;
         if (!over || over->kind != description::OverTolerances::Kind::proven) return;
-        const auto* clearance = dynamic_cast<const quantities::Clearance*>(constraint.quantity.get());
-        const bool can_be = clearance != nullptr && !clearance->range().motion && clearance->range().faces_a.empty() &&
-                            clearance->range().faces_b.empty() && context_.scenarios.names.size() < 2;
+        const quantities::ClearanceRange* range = constraint.quantity->facts().clearance;
+        const bool can_be =
+            range != nullptr && !range->motion && range->faces_a.empty() && range->faces_b.empty() && context_.scenarios.names.size() < 2;
         if (!can_be)
             node["over_tolerances"].fail(
                 ErrorCode::unsupported,
@@ -137,7 +137,7 @@ private:
             node.fail(ErrorCode::missing_key, "a constraint has `lower`, `upper` or both");
         }
         if (!quantity) return;
-        if (const auto* expression = dynamic_cast<const quantities::Expression*>(quantity.get()); expression && expression->parts().empty())
+        if (const auto facts = quantity->facts(); facts.kind == description::QuantityFacts::Kind::formula && facts.parts.empty())
             node["expression"].fail(ErrorCode::inconsistent,
                                     "this names none of the design's `quantities`; a condition between parameters alone is a `relation`");
         const auto lower = moving(node["lower"], quantity->dimension()), upper = moving(node["upper"], quantity->dimension());

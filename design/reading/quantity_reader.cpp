@@ -2,6 +2,7 @@
 #include "design/reading/quantity_reader.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "core/files/nearest_word.hpp"
 #include "core/geometry/named_faces.hpp"
@@ -29,8 +30,19 @@ namespace {
 using core::files::JsonNode;
 using description::Quantity;
 
-// For default names only: a wrong type is reported by the reading proper.
-std::string text(const JsonNode& node) { return node.is_string() ? *node.string() : std::string("?"); }
+// For default names only: a wrong type is reported by the reading proper. Lists: "wheel+axle".
+std::string text(const JsonNode& node) {
+    if (!node.is_array()) return node.is_string() ? *node.string() : std::string("?");
+    std::string entries;
+    for (const JsonNode& entry : node.elements()) entries += (entries.empty() ? "" : "+") + text(entry);
+    return entries;
+}
+
+// "stroke piston": the type, and what these keys say.
+template <class... Keys>
+std::function<std::string(const JsonNode&)> named_by(Keys... keys) {
+    return [keys...](const JsonNode& node) { return (text(node["type"]) + ... + (" " + text(node[keys]))); };
+}
 
 std::shared_ptr<const Quantity> read_stroke(const JsonNode& node, const ReadContext& context) {
     const auto body = context.body(node.require("body"));
@@ -205,21 +217,15 @@ const typename Parts::value_type* read_part(const JsonNode& node, const Parts& p
     return nullptr;
 }
 
-std::shared_ptr<const Quantity> read_joint_load(const JsonNode& node, const ReadContext& context, quantities::JointLoadKind kind) {
+// The force, or the torque.
+std::shared_ptr<const Quantity> read_joint_load(const JsonNode& node, const ReadContext& context) {
     const core::scene::Joint* joint = read_part(node.require("joint"), context.scene.mechanism.joints, "joint");
     const std::optional<Vector3> axis = node["axis"].exists() ? context.axis(node["axis"]) : Vector3(Vector3::Zero());
-    const bool is_force = kind == quantities::JointLoadKind::force;
+    const bool is_force = text(node["type"]) == "joint_force";
+    const auto kind = is_force ? quantities::JointLoadKind::force : quantities::JointLoadKind::torque;
     const quantities::Reduction reduction = read_reduction(node, is_force ? Dimension::force : Dimension::torque);
     if (joint == nullptr || !axis) return nullptr;
     return std::make_shared<quantities::JointLoad>(quantities::JointLoad::Of{kind, joint->name, *axis}, reduction);
-}
-
-std::shared_ptr<const Quantity> read_joint_force(const JsonNode& node, const ReadContext& context) {
-    return read_joint_load(node, context, quantities::JointLoadKind::force);
-}
-
-std::shared_ptr<const Quantity> read_joint_torque(const JsonNode& node, const ReadContext& context) {
-    return read_joint_load(node, context, quantities::JointLoadKind::torque);
 }
 
 bool turns(const core::scene::Joint& joint) {
@@ -235,7 +241,6 @@ std::shared_ptr<const Quantity> read_joint_position(const JsonNode& node, const 
 }
 
 std::shared_ptr<const Quantity> read_free_range(const JsonNode& node, const ReadContext& context) {
-    const DesignFormulas::Measuring measuring(context.formulas);
     const core::scene::Joint* joint = read_part(node.require("joint"), context.scene.mechanism.joints, "joint");
     const auto end = node.require("end").choice({"above", "below"});
     quantities::FreeRangeEnd::Of of;
@@ -317,7 +322,7 @@ bool read_law_places(const JsonNode& node, const ReadContext& context, quantitie
     std::vector<std::string_view> known;
     for (const quantities::NamedQuantity& each : context.quantities) {
         known.push_back(each.name);
-        if (each.name == *name) of.along = std::dynamic_pointer_cast<const quantities::StepSeries>(each.quantity);
+        if (each.name == *name) of.along = quantities::series_of(each.quantity);
     }
     if (!of.along) {
         const bool is_there = std::find(known.begin(), known.end(), *name) != known.end();
@@ -403,49 +408,20 @@ std::shared_ptr<const Quantity> read_expression(const JsonNode& node, const Read
     return told(quantities::StepExpression::create(std::move(formula).value(), context.quantities, reduction));
 }
 
-std::string stroke_name(const JsonNode& node) { return "stroke " + text(node["body"]); }
-std::string marker_name(const JsonNode& node) { return "marker_path " + text(node["body"]); }
-std::string marker_position_name(const JsonNode& node) { return "marker_position " + text(node["body"]); }
-std::string marker_speed_name(const JsonNode& node) { return "marker_speed " + text(node["body"]); }
 // "wheel", or "wheel slot+arc" of faces.
 std::string place_of_clearance(const JsonNode& node, std::string_view body, std::string_view faces) {
-    std::string name = text(node[body]);
-    if (!node[faces].is_array()) return name;
-    bool is_first = true;
-    for (const JsonNode& face : node[faces].elements()) {
-        name += (is_first ? " " : "+") + text(face);
-        is_first = false;
-    }
-    return name;
+    return text(node[body]) + (node[faces].is_array() ? " " + text(node[faces]) : "");
 }
 std::string clearance_name(const JsonNode& node) {
     const auto says = [&](std::string_view key) { return node[key].is_bool() && *node[key].boolean(); };
-    return "clearance " + place_of_clearance(node, "a", "faces_a") + ":" + place_of_clearance(node, "b", "faces_b") +
+    return text(node["type"]) + " " + place_of_clearance(node, "a", "faces_a") + ":" + place_of_clearance(node, "b", "faces_b") +
            (says("motion")   ? " over the motion"
             : says("ranges") ? " over the ranges"
                              : "");
 }
-std::string play_name(const JsonNode& node) {
-    return "play " + place_of_clearance(node, "a", "faces_a") + ":" + place_of_clearance(node, "b", "faces_b");
+std::string contact_name(const JsonNode& node) {
+    return text(node["type"]) + " " + text(node["body"]) + (node["of"].is_string() ? ":" + text(node["of"]) : "");
 }
-std::string mass_name(const JsonNode& node) {
-    std::string name = "mass";
-    if (!node["bodies"].is_array()) return name;
-    for (const JsonNode& body : node["bodies"].elements()) name += (name == "mass" ? " " : "+") + text(body);
-    return name;
-}
-
-std::string joint_force_name(const JsonNode& node) { return "joint_force " + text(node["joint"]); }
-std::string joint_torque_name(const JsonNode& node) { return "joint_torque " + text(node["joint"]); }
-std::string joint_position_name(const JsonNode& node) { return "joint_position " + text(node["joint"]); }
-std::string free_range_name(const JsonNode& node) { return "free_range " + text(node["joint"]) + " " + text(node["end"]); }
-std::string turn_name(const JsonNode& node) { return "turn " + text(node["body"]); }
-std::string motor_effort_name(const JsonNode& node) { return "motor_effort " + text(node["motor"]); }
-std::string contact_of(const JsonNode& node) { return text(node["body"]) + (node["of"].is_string() ? ":" + text(node["of"]) : ""); }
-std::string contact_force_name(const JsonNode& node) { return "contact_force " + contact_of(node); }
-std::string contact_torque_name(const JsonNode& node) { return "contact_torque " + contact_of(node); }
-std::string energy_name(const JsonNode& node) { return "energy " + text(node["of"]); }
-std::string law_name(const JsonNode&) { return "law"; }
 std::string expression_name(const JsonNode& node) { return text(node["expression"]); }
 
 }  // namespace
@@ -484,58 +460,59 @@ std::optional<quantities::ClearanceRange> read_clearance_range(const JsonNode& n
 const std::vector<QuantityType>& quantity_table() {
     static const std::vector<QuantityType> table{
         {"stroke",
-         {"body", "axis", "target", "from", "to"},
          read_stroke,
-         stroke_name,
+         {"body", "axis", "target", "from", "to"},
+         named_by("body"),
          "m",
          "how far a body travels along an axis over the motion; with `target`, in an objective, the square of what is missing"},
         {"marker_path",
-         {"body", "point", "points", "times"},
          read_marker_path,
-         marker_name,
+         {"body", "point", "points", "times"},
+         named_by("body"),
          "m^2",
          "how far a point of a body stays from points that it should go through, at given `times` or in free timing"},
-        {"marker_position", with_reduction({"body", "point", "axis", "origin"}), read_marker_position, marker_position_name, "m",
+        {"marker_position", read_marker_position, with_reduction({"body", "point", "axis", "origin"}), named_by("body"), "m",
          "where a point of a body is at the start and the steps' ends: along an `axis`, else its distance, from an `origin`"},
-        {"marker_speed", with_reduction({"body", "point", "axis"}), read_marker_speed, marker_speed_name, "m/s",
+        {"marker_speed", read_marker_speed, with_reduction({"body", "point", "axis"}), named_by("body"), "m/s",
          "velocity of a point of a body at the steps' ends: along an `axis`, else its magnitude"},
         {"play",
-         {"a", "b", "faces_a", "faces_b"},
          read_clearance,
-         play_name,
+         {"a", "b", "faces_a", "faces_b"},
+         clearance_name,
          "m",
          "certified least distance of two bodies, or of faces of theirs, as assembled, wanted small"},
         {"clearance",
-         {"a", "b", "faces_a", "faces_b", "motion", "from", "to", "ranges"},
          read_clearance,
+         {"a", "b", "faces_a", "faces_b", "motion", "from", "to", "ranges"},
          clearance_name,
          "m",
          "certified least distance of two bodies, or of faces of theirs: as assembled, over the motion or the ranges of the joints"},
-        {"mass", {"bodies"}, read_mass, mass_name, "kg", "mass of bodies"},
-        {"joint_force", with_reduction({"joint", "axis"}), read_joint_force, joint_force_name, "N",
+        {"mass", read_mass, {"bodies"}, named_by("bodies"), "kg", "mass of bodies"},
+        {"joint_force", read_joint_load, with_reduction({"joint", "axis"}), named_by("joint"), "N",
          "force that a joint carries at the steps' ends: along an `axis`, else its magnitude"},
-        {"joint_torque", with_reduction({"joint", "axis"}), read_joint_torque, joint_torque_name, "N m",
+        {"joint_torque", read_joint_load, with_reduction({"joint", "axis"}), named_by("joint"), "N m",
          "torque that a joint carries about its point: along an `axis`, else its magnitude"},
-        {"joint_position", with_reduction({"joint"}), read_joint_position, joint_position_name, "rad or m",
+        {"joint_position", read_joint_position, with_reduction({"joint"}), named_by("joint"), "rad or m",
          "angle of a joint that turns, travel of one that slides, at the start and the steps' ends; angles count turns"},
         {"free_range",
-         {"joint", "end", "clearance", "reach", "anywhere"},
          read_free_range,
-         free_range_name,
+         {"joint", "end", "clearance", "reach", "anywhere"},
+         named_by("joint", "end"),
          "rad or m",
          "how far a joint is proven free from its start on, `above` or `below`, before bodies come closer than a clearance"},
-        {"turn", with_reduction({"body", "axis"}), read_turn, turn_name, "rad",
+        {"turn", read_turn, with_reduction({"body", "axis"}), named_by("body"), "rad",
          "how far a body has turned about an axis since the start, at the steps' ends: of a part that a real pin holds"},
-        {"motor_effort", with_reduction({"motor"}), read_motor_effort, motor_effort_name, "N m or N",
+        {"motor_effort", read_motor_effort, with_reduction({"motor"}), named_by("motor"), "N m or N",
          "torque, or force, of a motor of angle, travel or speed"},
-        {"contact_force", with_reduction({"body", "of", "axis"}), read_contact_force, contact_force_name, "N",
+        {"contact_force", read_contact_force, with_reduction({"body", "of", "axis"}), contact_name, "N",
          "resultant force of contact on a body, `of` another or of all, at the steps' ends: along an `axis`, else its magnitude"},
-        {"contact_torque", with_reduction({"body", "of", "point", "axis"}), read_contact_torque, contact_torque_name, "N m",
+        {"contact_torque", read_contact_torque, with_reduction({"body", "of", "point", "axis"}), contact_name, "N m",
          "its torque about a point of the body (what a motor that holds a massless one there has to give, with the other sign)"},
-        {"energy", with_reduction({"of"}), read_energy, energy_name, "J", "kinetic, potential, spring or total energy at the steps' ends"},
-        {"law", with_reduction({"of", "times", "along", "positions", "values", "profile"}), read_law, law_name, "by its dimension",
+        {"energy", read_energy, with_reduction({"of"}), named_by("of"), "J",
+         "kinetic, potential, spring or total energy at the steps' ends"},
+        {"law", read_law, with_reduction({"of", "times", "along", "positions", "values", "profile"}), named_by(), "by its dimension",
          "a table over the time, or along another quantity, for expressions over the steps: what a motion is to follow"},
-        {"expression", with_reduction({"expression"}), read_expression, expression_name, "by its dimension",
+        {"expression", read_expression, with_reduction({"expression"}), expression_name, "by its dimension",
          "a formula of the design's named `quantities` and parameters, such as `max_force / mass`; with `over`, of what they are at each "
          "step"}};
     return table;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// The kinds of quantity (design/quantities/) by the `type` that a design file calls them, and their reading.
-/// Add one: a row here, the keys in design.schema.json.
+/// Add one: a row here, a branch of `quantity` in design.schema.json, a row and a dataclass of Python
+/// (design/python/library_quantities.hpp), and the line that tests/design/quantities/quantity_table_test.cpp asks for.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,12 +20,12 @@ namespace fettle::design::reading {
 
 struct QuantityType {
     std::string_view name;
-    std::vector<std::string_view> keys;  ///< besides those common to all terms and constraints
     /// @return nothing if something was wrong; the faults are with the document.
     std::shared_ptr<const description::Quantity> (*read)(const core::files::JsonNode& node, const ReadContext& context);
-    std::string (*default_name)(const core::files::JsonNode& node);  ///< "stroke piston"
-    std::string_view unit;                                           ///< of its value
-    std::string_view meaning;                                        ///< for people: one line
+    std::vector<std::string_view> keys;                                          ///< besides those common to all terms and constraints
+    std::function<std::string(const core::files::JsonNode& node)> default_name;  ///< "stroke piston"
+    std::string_view unit;                                                       ///< of its value
+    std::string_view meaning;                                                    ///< for people: one line
 };
 const std::vector<QuantityType>& quantity_table();
 std::vector<std::string_view> quantity_names();

@@ -3,14 +3,22 @@
 #pragma once
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/files/atomic_file.hpp"
 #include "core/files/json_text.hpp"
 
 namespace fettle::design::report {
 
 inline constexpr double millimetre = 1e-3;  ///< [m]
+
+/// The file's text; empty if it cannot be read.
+inline std::string text_or_empty(const std::filesystem::path& file) {
+    const Result<std::string> text = core::files::read_file(file);
+    return text ? *text : std::string();
+}
 
 /// Discarded if it is not JSON.
 inline nlohmann::ordered_json parsed_json(const std::string& text) {

@@ -41,9 +41,7 @@ Json row_json(const std::string& name, const Json& told, const description::Boun
             {"in_doubt", false}};
 }
 
-bool is_clearance(const description::Constraint& constraint) {
-    return dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*constraint.quantity)) != nullptr;
-}
+bool is_clearance(const description::Constraint& constraint) { return quantities::clearance_of(*constraint.quantity) != nullptr; }
 
 // How many of the constraints are clearances: each has a pair in the result, in their order.
 bool pairs_match(const description::Design& design, const Json& result) {
@@ -63,6 +61,37 @@ Json away(const description::Design& design, const Json& from, const Json& to) {
         most = std::max(most, std::abs(a.get<double>() - b.get<double>()) / range);
     }
     return in_unit(most, 1);
+}
+
+// The numbers of all runs of one entry of `resolution`, and whether they are met.
+Json resolved_row(const Json& entry, const char* of, double unit, Dimension dimension, const Json& runs, const Json& flips) {
+    Json finer = Json::array();
+    for (const Json& run : runs) finer.push_back(in_unit(member(entry, run["run"].get<std::string>()), unit));
+    return {{"name", member(entry, "name")},
+            {"of", of},
+            {"unit", core::base::unit_name(dimension, unit)},
+            {"found", in_unit(member(entry, "found"), unit)},
+            {"finer", finer},
+            {"change", in_unit(member(entry, "change"), 1)},
+            {"met", member(entry, "met")},
+            {"met_finer", member(entry, "met_finer")},
+            {"flips", flips.is_array() && std::find(flips.begin(), flips.end(), member(entry, "name")) != flips.end()}};
+}
+
+// The objective, which the check tells by run.
+Json resolved_objective(const Json& result, const Json& told) {
+    const Json found = member(result, "objective");
+    Json finer = Json::array(), change;
+    for (const Json& run : told) {
+        finer.push_back(in_unit(member(run, "objective"), 1));
+        if (!finer.back().is_number() || !found.is_number()) continue;
+        const double a = found.get<double>(), b = finer.back().get<double>(), size = std::max(std::abs(a), std::abs(b));
+        const double share = size > 0 ? std::abs(a - b) / size : 0;
+        change = change.is_number() ? std::max(change.get<double>(), share) : share;
+    }
+    return {{"name", "objective"}, {"of", "objective"}, {"unit", ""},    {"found", in_unit(found, 1)},
+            {"finer", finer},      {"change", change},  {"met", Json()}, {"met_finer", Json()},
+            {"flips", false}};
 }
 
 double number_or_infinity(const Json& json) { return json.is_number() ? json.get<double>() : std::numeric_limits<double>::infinity(); }
@@ -117,6 +146,34 @@ Json requirement_rows(const description::Design& design, const Json& result) {
         rows.push_back(std::move(row));
     }
     return rows;
+}
+
+Json resolution_data(const description::Design& design, const Json& result) {
+    const Json resolution = member(result, "resolution"), told = member(resolution, "runs");
+    Json runs = Json::array(), rows = Json::array();
+    if (!told.is_array()) return {};
+    for (const Json& run : told) {
+        if (!member(run, "run").is_string()) return {};
+        const Json failure = member(run, "failure");
+        runs.push_back({{"run", run["run"]},
+                        {"failure", failure.is_string() ? failure : Json()},
+                        {"change_of_best", in_unit(member(run, "change_of_best"), 1)}});
+    }
+    const Json terms = member(resolution, "terms"), constraints = member(resolution, "constraints"), flips = member(resolution, "flips");
+    if (runs.empty() || !terms.is_array() || !constraints.is_array()) return {};
+    const Json none{{"runs", runs}, {"rows", rows}};  // no run has numbers
+    if (terms.size() != design.objective.size() || constraints.size() != design.constraints.size()) return none;
+    if (design.objective.size() > 1) rows.push_back(resolved_objective(result, told));
+    for (std::size_t k = 0; k < design.objective.size(); ++k) {
+        const Dimension dimension = design.objective[k].quantity->dimension();
+        rows.push_back(resolved_row(terms[k], "term", shown_unit(dimension, design.objective[k].unit), dimension, runs, flips));
+    }
+    for (std::size_t i = 0; i < design.constraints.size(); ++i) {
+        const Dimension dimension = design.constraints[i].quantity->dimension();
+        rows.push_back(
+            resolved_row(constraints[i], "constraint", shown_unit(dimension, design.constraints[i].bounds.unit), dimension, runs, flips));
+    }
+    return {{"runs", runs}, {"rows", rows}};
 }
 
 Json parameter_rows(const description::Design& design, const Json& result) {

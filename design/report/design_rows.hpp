@@ -27,4 +27,10 @@ nlohmann::ordered_json parameter_rows(const description::Design& design, const n
 /// limits: texts, message}, the best first; empty where there was one start.
 nlohmann::ordered_json start_rows(const description::Design& design, const nlohmann::ordered_json& result);
 
+/// The check of resolution: {runs: list of {run: "finer_facets", "finer_steps", failure: null or text, change_of_best: about how much the
+/// best objective changes by, null where not known}, rows: list of {name, of: "objective", "term", "constraint", unit, found, finer: list,
+/// by run, null in one that failed, change: the largest, as a share, null where not known, met, met_finer: null but for constraints, flips:
+/// does it count as met in one and not in the other}}; null where there was no check.
+nlohmann::ordered_json resolution_data(const description::Design& design, const nlohmann::ordered_json& result);
+
 }  // namespace fettle::design::report

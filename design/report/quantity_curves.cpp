@@ -8,10 +8,6 @@
 #include <set>
 
 #include "core/base/units.hpp"
-#include "design/quantities/in_scenario.hpp"
-#include "design/quantities/step_expression.hpp"
-#include "design/quantities/stroke.hpp"
-#include "design/quantities/worst.hpp"
 #include "design/report/packed_numbers.hpp"
 
 namespace fettle::design::report {
@@ -19,8 +15,9 @@ namespace fettle::design::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using description::NamedQuantity;
 using description::Quantity;
-using quantities::NamedQuantity;
+using description::QuantityFacts;
 
 constexpr std::size_t most_curves = 12, most_points = 2000;
 
@@ -52,26 +49,6 @@ std::string without_scenario(std::string name, const description::Design& design
     return name;
 }
 
-// At the steps' ends.
-std::vector<double> numbers_of(const Quantity& quantity, const description::Simulated& simulated) {
-    std::vector<double> numbers;
-    if (const auto* series = dynamic_cast<const quantities::StepSeries*>(&quantity)) {
-        numbers = series->numbers(simulated);
-    } else {
-        const auto& stroke = dynamic_cast<const quantities::Stroke&>(quantity);
-        for (const auto& poses : simulated.trajectory.poses)
-            numbers.push_back(
-                stroke.axis().dot(poses[stroke.body()].position - simulated.trajectory.poses.front()[stroke.body()].position));
-    }
-    numbers.erase(numbers.begin(), numbers.end() - static_cast<std::ptrdiff_t>(simulated.trajectory.steps.size()));  // the start
-    return numbers;
-}
-
-Dimension dimension_of(const Quantity& quantity) {
-    const auto* series = dynamic_cast<const quantities::StepSeries*>(&quantity);
-    return series != nullptr ? series->numbers_dimension() : Dimension::length;
-}
-
 std::vector<double> thinned(const std::vector<double>& all) {
     const std::size_t every = std::max<std::size_t>(1, (all.size() + most_points - 1) / most_points);
     std::vector<double> kept;
@@ -88,20 +65,10 @@ std::vector<NamedQuantity> quantities_with_curves(const std::vector<NamedQuantit
     const std::function<void(const std::string&, const std::shared_ptr<const Quantity>&)> add =
         [&](const std::string& name, const std::shared_ptr<const Quantity>& quantity) {
             if (!quantity || !known.insert(quantity.get()).second) return;
-            const Quantity* kind = quantity.get();
-            if (const auto* one = dynamic_cast<const quantities::InScenario*>(kind)) return add(name, one->quantity());
-            if (const auto* worst = dynamic_cast<const quantities::Worst*>(kind)) {
-                for (const auto& part : worst->parts()) add(name, part);
-                return;
-            }
-            const auto* series = dynamic_cast<const quantities::StepSeries*>(kind);
-            if ((series != nullptr || dynamic_cast<const quantities::Stroke*>(kind) != nullptr) &&
-                names.insert(without_scenario(name, design)).second)
+            const QuantityFacts facts = quantity->facts();
+            if (facts.curve && names.insert(without_scenario(name, design)).second)
                 all.push_back({without_scenario(name, design), quantity});
-            if (const auto* expression = dynamic_cast<const quantities::Expression*>(kind))
-                for (const NamedQuantity& part : expression->parts()) add(part.name, part.quantity);
-            if (const auto* expression = dynamic_cast<const quantities::StepExpression*>(kind))
-                for (const NamedQuantity& part : expression->parts()) add(part.name, part.quantity);
+            for (const NamedQuantity& part : facts.parts) add(part.name.empty() ? name : part.name, part.quantity);
         };
     for (const NamedQuantity& each : named) add(each.name, each.quantity);
     for (const description::ObjectiveTerm& term : design.objective) add(term.name, term.quantity);
@@ -119,8 +86,8 @@ Json quantity_curves(const std::vector<NamedQuantity>& quantities, const descrip
         std::size_t count = 0;
         const double unit = *shown.unit == '\0' ? 1 : core::base::to_si(1, *core::base::find_unit(shown.unit));
         for (const NamedQuantity& each : quantities) {
-            if (dimension_of(*each.quantity) != shown.dimension || !each.quantity->check(simulated.model, steps).empty()) continue;
-            std::vector<double> numbers = numbers_of(*each.quantity, simulated);
+            if (each.quantity->facts().curve != shown.dimension || !each.quantity->check(simulated.model, steps).empty()) continue;
+            std::vector<double> numbers = each.quantity->curve(simulated);
             if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); })) continue;
             if (++count > most_curves) continue;
             for (double& number : numbers) number /= unit;

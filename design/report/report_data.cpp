@@ -76,9 +76,9 @@ std::vector<StepRange> steps_of(const ReportSource& source, std::size_t pairs) {
     if (source.kind == ReportKind::clearance) return std::vector<StepRange>(pairs, {0, member(source.result, "motion") == true ? all : 0});
     std::vector<StepRange> steps;
     for (const auto& constraint : source.design ? source.design->constraints : std::vector<description::Constraint>()) {
-        const auto* clearance = dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*constraint.quantity));
+        const quantities::ClearanceRange* clearance = quantities::clearance_of(*constraint.quantity);
         if (clearance == nullptr) continue;
-        const quantities::ClearanceRange& range = clearance->range();
+        const quantities::ClearanceRange& range = *clearance;
         if (!range.motion || is_of_faces(range) || quantities::scenario_of(*constraint.quantity) != shown_scenario) {
             steps.emplace_back();
             continue;
@@ -97,10 +97,10 @@ void add_note(Json& row, const std::string& note) {
 void note_ranges(const description::Design& design, Json& rows) {
     std::size_t k = 0;
     for (const description::Constraint& constraint : design.constraints) {
-        const auto* clearance = dynamic_cast<const quantities::Clearance*>(&quantities::without_scenario(*constraint.quantity));
+        const quantities::ClearanceRange* clearance = quantities::clearance_of(*constraint.quantity);
         if (clearance == nullptr || k >= rows.size()) continue;
         Json& row = rows[k++];
-        const quantities::ClearanceRange& range = clearance->range();
+        const quantities::ClearanceRange& range = *clearance;
         const int scenario = range.motion ? quantities::scenario_of(*constraint.quantity) : shown_scenario;
         const bool is_elsewhere = range.ranges || scenario != shown_scenario;  // than on the path
         if (is_elsewhere) row["point_a"] = row["point_b"] = Json();
@@ -130,15 +130,12 @@ Json pairs_of(const ReportSource& source, const std::function<bool()>& should_st
     return rows;
 }
 
-Json scenario_data(const ReportSource& source, const Json& name, const std::string& view, const Motion& motion, const StepTables& tables) {
-    std::set<std::string> fixed;
-    for (const core::model::Body& body : motion.model.bodies)
-        if (body.type == core::scene::BodyType::static_body) fixed.insert(body.name);
+Json scenario_data(const ReportSource& source, const Json& name, const std::string& view, const Motion& motion, const StepCurves& steps) {
     Json curves = Json::array();
     if (source.design)
         curves = quantity_curves(source.quantities, {motion.model, motion.trajectory, source.design->clearance_tolerance,
                                                      description::names_of(source.design->parameters), source.values});
-    return {{"name", name}, {"view", view}, {"quantities", curves}, {"series", step_curves(tables, fixed, source.linear)}};
+    return {{"name", name}, {"view", view}, {"quantities", curves}, {"series", steps.charts()}};
 }
 
 void add_motion(Json& data, const ReportSource& source, const std::function<bool()>& should_stop) {
@@ -159,11 +156,11 @@ void add_motion(Json& data, const ReportSource& source, const std::function<bool
     leave_out_distances(data["pairs"]);
     data["scenarios"] = Json::array();
     const Json name = source.scenario.empty() ? Json() : Json(source.scenario);
-    data["scenarios"].push_back(scenario_data(source, name, "after", *source.motion, source.tables));
+    data["scenarios"].push_back(scenario_data(source, name, "after", *source.motion, source.steps));
     for (const ScenarioMotion& other : source.others) {
         const std::string view = "scenario " + other.name;
         add_view(data, view, other.motion.model, other.motion.trajectory);
-        data["scenarios"].push_back(scenario_data(source, other.name, view, other.motion, other.tables));
+        data["scenarios"].push_back(scenario_data(source, other.name, view, other.motion, other.steps));
     }
 }
 
@@ -191,6 +188,7 @@ Json report_data(const ReportSource& source, const std::function<bool()>& should
     data["margins"] = data["history"] = data["series_note"] = Json();
     data["requirements"] = source.design ? requirement_rows(*source.design, source.result) : Json::array();
     data["parameters"] = source.design ? parameter_rows(*source.design, source.result) : Json::array();
+    data["resolution"] = source.design ? resolution_data(*source.design, source.result) : Json();
     data["starts"] = source.design ? start_rows(*source.design, source.result) : Json::array();
     data["ranges"] = member(source.result, "source") == "over the ranges of the joints";
     data["files"] = source.files;

@@ -3,7 +3,8 @@
 ///   format          1
 ///   program         version that made the results; made_by_other: this page's, if it is another
 ///   command         that made the results; null if not known
-///   kind            "optimise", "simulate", "clearance"
+///   kind            "optimise", "simulate", "clearance"; of pages with data of their own "explore" (exploration_data.hpp), "tolerance"
+///                   (tolerance_data.hpp)
 ///   name, folder, description (null: the files have none), up: the direction against gravity
 ///   status, message
 ///   why_not_optimal, evaluations, failed, violation, optimality {worth}, repair, objective {start, end}: of an optimisation
@@ -14,7 +15,7 @@
 ///   scenarios       list of {name: null of a design without, view: the name of its view, quantities: quantity_curves.hpp, series:
 ///                   step_curves.hpp}: first the one of `motion`, whose view is "after"
 ///   ranges          is a clearance over all positions of the joints?
-///   requirements, parameters, starts: design_rows.hpp
+///   requirements, parameters, starts, resolution: design_rows.hpp
 ///   limits          texts
 ///   history         search_curves.hpp; null if there is none
 ///   series_note, notices: texts
@@ -46,7 +47,7 @@ struct Motion {
 struct ScenarioMotion {
     std::string name;
     Motion motion;
-    StepTables tables;
+    StepCurves steps;
 };
 
 enum class ReportKind { optimise, simulate, clearance };
@@ -60,8 +61,7 @@ struct ReportSource {
     std::optional<Motion> motion, before;
     std::optional<description::Design> design;
     std::string history;
-    StepTables tables;
-    LinearMotors linear;
+    StepCurves steps;
     std::string scenario;                               ///< whose motion it is; empty: the design has none
     std::vector<ScenarioMotion> others;                 ///< the design's other scenarios, in their order
     std::vector<quantities::NamedQuantity> quantities;  ///< that have curves

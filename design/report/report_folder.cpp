@@ -14,6 +14,7 @@
 #include "design/reading/design_reader.hpp"
 #include "design/reading/scene_shapes.hpp"
 #include "design/report/answer_values.hpp"
+#include "design/report/kept_steps.hpp"
 #include "design/report/quantity_curves.hpp"
 #include "design/report/report_page.hpp"
 #include "design/studies/history.hpp"
@@ -26,11 +27,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using core::model::Model;
 using core::stepper::Simulation;
-
-std::string text_or_empty(const fs::path& file) {
-    const Result<std::string> text = core::files::read_file(file);
-    return text ? *text : std::string();
-}
 
 Result<Json> read_result(const fs::path& folder) {
     const fs::path file = folder / "result.json";
@@ -63,44 +59,28 @@ Vector3 gravity_in(const std::string& text) {
     return gravity;
 }
 
-// Motors that move something along a line: their efforts are forces.
-LinearMotors linear_motors(const core::scene::Mechanism& mechanism) {
-    LinearMotors linear;
-    for (const core::scene::Motor& motor : mechanism.motors)
-        for (const core::scene::Joint& joint : mechanism.joints)
-            if (joint.name == motor.joint &&
-                (joint.kind == core::scene::JointKind::prismatic || joint.kind == core::scene::JointKind::cylindrical))
-                linear.insert(motor.name);
-    return linear;
-}
-
-StepTables read_tables(const fs::path& folder) {
-    return {text_or_empty(folder / "steps.csv"), text_or_empty(folder / "contacts.csv"), text_or_empty(folder / "drives.csv"),
-            text_or_empty(folder / "joints.csv")};
-}
-
 std::vector<std::string> names_of(const Model& model) {
     std::vector<std::string> names;
     for (const auto& body : model.bodies) names.push_back(body.name);
     return names;
 }
 
-StepTables tables_of(const Simulation& simulation, const Model& model) {
-    StepTables tables{core::records::steps_csv(simulation),
-                      core::records::contacts_csv(simulation, names_of(model)),
-                      core::records::drives_csv(simulation, names_of(model)),
-                      {}};
-    if (!model.mechanism.joints.empty()) tables.joints = core::records::joints_csv(simulation, model.mechanism);
-    return tables;
+StepCurves curves_of(const Simulation& simulation, const Model& model) {
+    StepCurves curves(model, linear_motors(model));
+    for (const core::stepper::StepOutputs& step : simulation.outputs) curves.add(step, model);
+    return curves;
 }
 
-Errors add_tables(core::files::FilesTogether& files, const fs::path& folder, const StepTables& tables) {
-    for (const auto& [name, text] : {std::pair{"steps.csv", &tables.steps}, std::pair{"contacts.csv", &tables.contacts},
-                                     std::pair{"drives.csv", &tables.drives}, std::pair{"joints.csv", &tables.joints}}) {
-        if (text->empty()) continue;
-        if (Errors errors = files.add(folder / name, *text); !errors.empty()) return errors;
-    }
-    return {};
+// For the next report of this folder.
+Errors add_tables(core::files::FilesTogether& files, const fs::path& folder, const Simulation& simulation, const Model& model) {
+    const std::vector<std::string> names = names_of(model);
+    const auto add = [&](const char* name, const std::string& text) { return files.add(folder / name, text); };
+    Errors errors = add("steps.csv", core::records::steps_csv(simulation));
+    if (errors.empty()) errors = add("contacts.csv", core::records::contacts_csv(simulation, names));
+    if (errors.empty()) errors = add("drives.csv", core::records::drives_csv(simulation, names));
+    if (errors.empty() && !model.mechanism.joints.empty())
+        errors = add("joints.csv", core::records::joints_csv(simulation, model.mechanism));
+    return errors;
 }
 
 // What a reader of the page may want to take from beside it.
@@ -151,17 +131,29 @@ public:
         const std::string scene = text_or_empty(scene_path_);
         source_.description = description_of(scene);
         source_.gravity = gravity_in(scene);
-        source_.tables = source_.kind == ReportKind::simulate ? read_tables(folder_) : StepTables{};
         source_.name = name_of(scene_path_, folder_);
-        if (!source_.tables.joints.empty() && !scene.empty()) {
-            const auto read =
-                core::scene_files::read_scene(scene_path_, reading::scene_read_options(options_.mesh_dirs, options_.programs));
-            if (read) source_.linear = linear_motors(read->mechanism);
-        }
+        if (source_.kind == ReportKind::simulate && source_.motion) take_steps(scene);
         return {};
     }
 
 private:
+    // Forces and energies of a simulation: of the run itself, or as its tables have them.
+    void take_steps(const std::string& scene) {
+        if (options_.at_hand.steps) {
+            source_.steps = *std::move(options_.at_hand.steps);
+            return;
+        }
+        const StepTables tables = read_step_tables(folder_);
+        LinearMotors linear;
+        if (!tables.joints.empty() && !scene.empty()) {
+            const auto read =
+                core::scene_files::read_scene(scene_path_, reading::scene_read_options(options_.mesh_dirs, options_.programs));
+            if (read) linear = linear_motors(read->mechanism);
+        }
+        source_.steps = StepCurves(source_.motion->model, std::move(linear));
+        add_steps(tables, source_.steps);
+    }
+
     Errors read_motion() {
         if (source_.result.value("status", "") == "start_failed") return {};  // a trajectory that is there is not its own
         if (options_.at_hand.motion) {
@@ -190,7 +182,6 @@ private:
         source_.description = description_of(file.text);
         source_.gravity = file.design.scene.gravity;
         source_.name = name_of(file.scene_path, folder_);
-        source_.linear = linear_motors(file.design.scene.mechanism);
         if (Errors errors = read_history(); !errors.empty()) return errors;
         source_.design = file.design;
         for (Eigen::Index k = 0; k < values.size(); ++k) source_.design->parameters[k].value = values[k];
@@ -205,7 +196,7 @@ private:
         }
         const problem::DesignProblem& problem = known != nullptr ? *known : *made;
         if (!problem.design().scenarios.empty()) source_.scenario = problem.design().scenarios.front().name;
-        if (Errors errors = take_tables(problem, values); !errors.empty()) return errors;
+        if (Errors errors = take_steps(problem, values); !errors.empty()) return errors;
         if (Errors errors = take_scenarios(problem, values, file.scene_path); !errors.empty()) return errors;
         return take_before(problem, file.scene_path);
     }
@@ -224,9 +215,10 @@ private:
     }
 
     // Forces of the final design: as they are kept, or simulated once more, with the same bits.
-    Errors take_tables(const problem::DesignProblem& problem, const VectorX& values) {
-        source_.tables = read_tables(folder_);
-        if (!source_.tables.steps.empty() || options_.should_stop()) return {};
+    Errors take_steps(const problem::DesignProblem& problem, const VectorX& values) {
+        source_.steps = StepCurves(source_.motion->model, linear_motors(problem.design().scene.mechanism));
+        add_steps(read_step_tables(folder_), source_.steps);
+        if (!source_.steps.empty() || options_.should_stop()) return {};
         const Result<Model> model = problem.model_at(values);
         if (!model) return model.errors();
         const Simulation simulation = simulated(*model, problem.steps(), true, options_.should_stop);
@@ -236,13 +228,13 @@ private:
                     "No forces are shown: the scene or the program has changed since trajectory.json was written.");
             return {};
         }
-        source_.tables = tables_of(simulation, *model);
-        return add_tables(files_, folder_, source_.tables);
+        source_.steps = curves_of(simulation, *model);
+        return add_tables(files_, folder_, simulation, *model);
     }
 
     // The motions and forces of the design's other scenarios, simulated once more; their trajectories stay in the folder.
     Errors take_scenarios(const problem::DesignProblem& problem, const VectorX& values, const std::string& scene_path) {
-        if (source_.tables.steps.empty()) return {};  // a simulation now would not be the one that was
+        if (source_.steps.empty()) return {};  // a simulation now would not be the one that was
         for (int s = 1; s < problem.scenario_count() && !options_.should_stop(); ++s) {
             const std::string& name = problem.design().scenarios[s].name;
             const Result<Model> model = problem.model_at(values, s);
@@ -253,8 +245,8 @@ private:
             if (Errors errors = answers::others_file(file); !errors.empty()) return errors;
             if (Errors errors = core::records::add_trajectory(files_, file, simulation.trajectory, *model, scene_path); !errors.empty())
                 return errors;
-            const StepTables tables = tables_of(simulation, *model);
-            source_.others.push_back({name, Motion{*model, std::move(simulation.trajectory), scene_path}, tables});
+            StepCurves steps = curves_of(simulation, *model);
+            source_.others.push_back({name, Motion{*model, std::move(simulation.trajectory), scene_path}, std::move(steps)});
         }
         return {};
     }

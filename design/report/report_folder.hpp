@@ -38,6 +38,7 @@ struct AtHand {
     std::optional<nlohmann::ordered_json> answer = {};  ///< that of result.json
     std::optional<Motion> motion = {};                  ///< of the folder's trajectory, with its scene's path
     std::optional<FinalDesign> design = {};             ///< of design.final.json
+    std::optional<StepCurves> steps = {};               ///< of a simulation's tables
 };
 
 /// The values of an optimisation that has just ended; both must outlive it.

@@ -13,14 +13,6 @@ namespace fettle::design::report {
 
 std::string_view page_template() { return fettle_report_template(); }
 
-std::string_view page_style() {
-    const std::string_view page = page_template();
-    const std::size_t begin = page.rfind("<style"), end = page.rfind("</style>");
-    FETTLE_ASSERT(begin != std::string_view::npos && end != std::string_view::npos && begin < end, "the page has its style in it");
-    const std::size_t inside = page.find('>', begin) + 1;
-    return page.substr(inside, end - inside);
-}
-
 std::string page_of(const nlohmann::ordered_json& data) {
     constexpr std::string_view marker = "@FETTLE_REPORT_DATA@";
     const std::string_view page = page_template();

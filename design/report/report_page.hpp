@@ -13,9 +13,6 @@ namespace fettle::design::report {
 /// The built page, without data.
 std::string_view page_template();
 
-/// Its style: what pages without its scripts have in common with it (tolerance_report.hpp).
-std::string_view page_style();
-
 /// The page with `data` (report_data.hpp) in it. Whatever the data hold, texts of users' files too, is data: no '<' of theirs is one of the
 /// page's. Bytes that are no UTF-8 are replaced.
 std::string page_of(const nlohmann::ordered_json& data);

@@ -3,27 +3,26 @@
 
 #include <fcntl.h>
 #include <stdlib.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <numeric>
+#include <optional>
 #include <regex>
 #include <set>
 #include <sstream>
+#include <system_error>
 #include <thread>
 
 #include "core/base/read_record.hpp"
 #include "core/files/atomic_file.hpp"
 #include "core/files/input_file.hpp"
 #include "core/files/nearest_word.hpp"
+#include "core/files/process.hpp"
 #include "core/mesh_files/mesh_reader.hpp"
 
 namespace fettle::design::shapes {
@@ -33,8 +32,6 @@ namespace {
 namespace fs = std::filesystem;
 using description::ShapeDimension;
 using Clock = std::chrono::steady_clock;
-
-constexpr int could_not_start = 127;
 
 std::string program_number(double value) {
     char text[32];
@@ -74,43 +71,16 @@ private:
     fs::path path_;
 };
 
-// Between fork and exec, where nothing may allocate or lock: the parent has other threads.
-[[noreturn]] void become(char* const* words, const char* directory, const char* log, pid_t parent) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(could_not_start);
-    setpgid(0, 0);
-    const int in = open("/dev/null", O_RDONLY), out = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    if (in < 0 || out < 0 || dup2(in, 0) < 0 || dup2(out, 1) < 0 || dup2(out, 2) < 0) _exit(could_not_start);
-    if (*directory != '\0' && chdir(directory) != 0) _exit(could_not_start);
-    execvp(words[0], words);
-    _exit(could_not_start);
-}
-
-struct ProgramEnd {
-    int code = 0;  // 128 + the signal that killed it
-    bool out_of_time = false;
-};
-
-ProgramEnd wait_for(pid_t process, double time_limit) {
+// Its exit code; none: it took too long.
+std::optional<int> ended_within(core::files::Process& process, double time_limit) {
     const auto limit = Clock::now() + std::chrono::duration<double>(time_limit);
     auto pause = std::chrono::microseconds(500);
-    ProgramEnd end;
-    int status = 0;
     while (true) {
-        const pid_t reaped = waitpid(process, &status, end.out_of_time ? 0 : WNOHANG);
-        if (reaped == process) break;
-        if (reaped < 0 && errno != EINTR) return {could_not_start, end.out_of_time};
-        if (Clock::now() > limit) {
-            end.out_of_time = true;
-            kill(-process, SIGKILL);
-            kill(process, SIGKILL);
-            continue;
-        }
+        const std::optional<int> code = process.ended();
+        if (code || Clock::now() > limit) return code;
         std::this_thread::sleep_for(pause);
         pause = std::min(2 * pause, std::chrono::microseconds(10'000));
     }
-    end.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    return end;
 }
 
 // The same mesh in one order: programs write the same triangles in another order each time.
@@ -212,22 +182,21 @@ Result<core::geometry::Mesh> run_program(const MeshProgram& program, const std::
             return out.string();
         }));
     }
-    std::vector<char*> pointers;
-    for (std::string& word : words) pointers.push_back(word.data());
-    pointers.push_back(nullptr);
-    const std::string log_name = log.string();
-    const pid_t parent = getpid();
-    const pid_t process = fork();
-    if (process == 0) become(pointers.data(), program.directory.c_str(), log_name.c_str(), parent);
-    if (process < 0) return Error{ErrorCode::file_unreadable, name, "the system starts no further program"};
-    const ProgramEnd end = wait_for(process, program.time_limit);
-    if (end.out_of_time)
+    const core::files::Descriptor said(open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+    std::optional<core::files::Process> process;
+    try {
+        process.emplace(core::files::Launch{.words = words, .out = *said, .error = *said, .folder = program.directory});
+    } catch (const std::system_error& error) {
+        return Error{ErrorCode::file_not_found, name,
+                     "this program could not be started (" + error.code().message() + "): is it installed, and on the PATH?"};
+    }
+    const std::optional<int> code = ended_within(*process, program.time_limit);
+    process->kill();
+    if (!code)
         return Error{ErrorCode::inconsistent, name,
                      "the program took longer than " + program_number(program.time_limit) + " s; " + last_words(log)};
-    if (end.code == could_not_start)
-        return Error{ErrorCode::file_not_found, name, "this program could not be started: is it installed, and on the PATH?"};
-    if (end.code != 0 || !fs::exists(out)) {
-        const std::string what = end.code != 0 ? "ended with code " + std::to_string(end.code) : "wrote no " + program.format + " file";
+    if (*code != 0 || !fs::exists(out)) {
+        const std::string what = *code != 0 ? "ended with code " + std::to_string(*code) : "wrote no " + program.format + " file";
         return Error{ErrorCode::inconsistent, name, "the program " + what + "; " + last_words(log)};
     }
     Result<core::geometry::Mesh> mesh = core::mesh_files::read_mesh(out.string(), {program.unit, true});

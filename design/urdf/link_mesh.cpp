@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "core/geometry/mesh_transforms.hpp"
@@ -97,12 +98,17 @@ Result<Mesh> link_mesh(const Link& link, const MeshFolders& where) {
     std::vector<Vector3> vertices;
     std::vector<core::geometry::Triangle> triangles;
     std::vector<core::geometry::Edge> edges;
+    std::optional<core::geometry::Deviation> deviation;
     Errors errors;
     for (const Geometry& geometry : link.geometry()) {
         const Result<Mesh> mesh = mesh_of(geometry, where);
         for (const Error& error : mesh.errors())
             errors.push_back({error.code, "link \"" + link.name + "\": " + error.where, error.message});
         if (!mesh) continue;
+        if (mesh->deviation) {
+            if (!deviation) deviation.emplace();
+            deviation->add(*mesh->deviation);
+        }
         const int first = count_of(vertices);
         for (const auto& x : mesh->vertices.colwise()) vertices.push_back(core::kinematics::world_position(geometry.origin, x));
         for (const auto& t : mesh->triangles) triangles.push_back({first + t[0], first + t[1], first + t[2]});
@@ -115,6 +121,7 @@ Result<Mesh> link_mesh(const Link& link, const MeshFolders& where) {
     mesh.name = link.name;
     mesh.vertices = std::move(x);
     mesh.triangles = std::move(triangles);
+    mesh.deviation = deviation;
     core::geometry::build_connectivity(mesh, edges);
     return mesh;
 }

@@ -5,8 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
-#include <stdexcept>
 #include <utility>
 
 #include "core/files/atomic_file.hpp"
@@ -16,14 +14,6 @@ namespace fettle::design::cli::mcp {
 namespace {
 
 constexpr std::size_t most_of_error = 4000, most_of_answer = std::size_t{1} << 29U;
-
-// Both ends close when a program is started; reading does not wait.
-std::pair<int, int> make_pipe() {
-    int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("there is no pipe left: ") + std::strerror(errno));
-    fcntl(ends[0], F_SETFL, O_NONBLOCK);
-    return {ends[0], ends[1]};
-}
 
 std::string in_quotes(const std::string& word) {
     if (!word.empty() &&
@@ -44,37 +34,33 @@ Call::Call(const Tool& tool, std::vector<std::string> words, const std::vector<s
     words.insert(words.end(), passed_on.begin(), passed_on.end());
     if (std::string(tool.name) == "draw") words.push_back("--out=" + (folder_ / "picture.png").string());
     words.insert(words.end(), {"--json", "--markdown=" + (folder_ / "findings.md").string()});
-    const auto [out, its_out] = make_pipe();
-    out_from_ = out;
-    const auto [error, its_error] = make_pipe();
-    error_from_ = error;
-    process_.emplace(ChildProcess::start(words, {-1, its_out, its_error}));
-    close(its_out);
-    close(its_error);
+    core::files::Pipe out, error;
+    for (const core::files::Pipe* pipe : {&out, &error}) fcntl(*pipe->from, F_SETFL, O_NONBLOCK);  // reading does not wait
+    process_.emplace(core::files::Launch{.words = words, .out = *out.to, .error = *error.to});
+    out_from_ = std::move(out.from);
+    error_from_ = std::move(error.from);
 }
 
 Call::~Call() {
     process_.reset();
-    for (const int stream : {out_from_, error_from_})
-        if (stream >= 0) close(stream);
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
 }
 
 void Call::add_streams(std::vector<pollfd>& streams) const {
-    for (const int stream : {out_from_, error_from_})
-        if (stream >= 0) streams.push_back({stream, POLLIN, 0});
+    for (const core::files::Descriptor* stream : {&out_from_, &error_from_})
+        if (**stream >= 0) streams.push_back({**stream, POLLIN, 0});
 }
 
-bool Call::take(int& from, std::string& into) {
+bool Call::take(core::files::Descriptor& from, std::string& into) {
     bool has_more = false;
     char bytes[65536];
-    while (from >= 0) {
-        const ssize_t count = read(from, bytes, sizeof bytes);
+    while (*from >= 0) {
+        const ssize_t count = read(*from, bytes, sizeof bytes);
         if (count < 0 && errno == EINTR) continue;
         if (count < 0 && errno == EAGAIN) return has_more;
         if (count <= 0) {
-            close(std::exchange(from, -1));
+            from.close();
             return has_more;
         }
         if (into.size() < most_of_answer) into.append(bytes, static_cast<std::size_t>(count));
@@ -97,7 +83,7 @@ bool Call::listen() {
 
 std::optional<Ended> Call::ended() {
     listen();
-    if (out_from_ >= 0 || error_from_ >= 0) return std::nullopt;
+    if (*out_from_ >= 0 || *error_from_ >= 0) return std::nullopt;
     const std::optional<int> code = process_->ended();
     if (!code) return std::nullopt;
     const Result<std::string> findings = core::files::read_file(folder_ / "findings.md");

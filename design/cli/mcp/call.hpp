@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "design/cli/child_process.hpp"
+#include "core/files/process.hpp"
 #include "design/cli/mcp/answer.hpp"
 
 namespace fettle::design::cli::mcp {
 
 class Call {
 public:
-    /// Starts it. Throws std::runtime_error if the system has no process or pipe left.
+    /// Starts it. Throws std::system_error if the system has no process or pipe left.
     /// @param words   The command line's, without the program's name.
     /// @param folder  For its files, its own.
     Call(const Tool& tool, std::vector<std::string> words, const std::vector<std::string>& passed_on, std::filesystem::path folder);
@@ -42,13 +42,13 @@ public:
     std::string picture() const;
 
 private:
-    bool take(int& from, std::string& into);
+    bool take(core::files::Descriptor& from, std::string& into);
 
     const Tool& tool_;
     std::filesystem::path folder_;
     std::string typed_, out_, error_, doing_;
-    std::optional<ChildProcess> process_;
-    int out_from_ = -1, error_from_ = -1;
+    std::optional<core::files::Process> process_;
+    core::files::Descriptor out_from_, error_from_;
 };
 
 }  // namespace fettle::design::cli::mcp

@@ -6,7 +6,7 @@
 #include "design/cli/inputs.hpp"
 #include "design/cli/mcp/server.hpp"
 
-namespace fettle::design::cli {
+namespace fettle::design::cli::mcp {
 
 namespace {
 
@@ -16,13 +16,13 @@ int run_mcp(const std::vector<std::string>& roots, const CommandLine& program, c
         if (std::error_code ignored; !std::filesystem::is_directory(root, ignored))
             errors.push_back({ErrorCode::file_not_found, "--root", root + ": there is no such folder"});
     if (!errors.empty()) return console.input_errors(errors);
-    mcp::ServerOptions options;
+    ServerOptions options;
     options.roots = roots;
     options.program = program.facts();
     if (common.allow_programs) options.passed_on.emplace_back("--allow-programs");
     if (common.threads > 0) options.passed_on.push_back("--threads=" + std::to_string(common.threads));
     for (const std::string& folder : common.mesh_dirs) options.passed_on.push_back("--mesh-dir=" + folder);
-    mcp::serve(options);
+    serve(options);
     return exit_done;
 }
 
@@ -40,4 +40,4 @@ Command add_mcp(CommandLine& program, const CommonOptions& common) {
     return {app, [roots, program, &common](Console& console) { return run_mcp(*roots, program, common, console); }};
 }
 
-}  // namespace fettle::design::cli
+}  // namespace fettle::design::cli::mcp

@@ -245,7 +245,7 @@ const std::vector<Tool>& tools() {
          "Prove clearances",
          "clearance",
          {"FILE", "--minimum", "--process", "--pairs", "--ignore", "--allow-touch", "--motion", "--kinematic", "--ranges", "--tolerances",
-          "--steps", "--time", "--unit", "--split", "--certificate", "--out"},
+          "--steps", "--time", "--unit", "--split", "--budget", "--certificate", "--out"},
          "Seconds to minutes. Give one of motion, kinematic, ranges, tolerances, or none: as assembled. \"violated\" has a place and an "
          "instant; "
          "\"undecided\" is no pass and no failure. See what was left out.",

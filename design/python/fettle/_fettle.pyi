@@ -251,6 +251,14 @@ def free_ranges(
     reach: Optional[Number] = ...,
     progress: Optional[Count] = ...,
 ) -> Dict[str, Any]: ...
+def features(
+    model: Model,
+    process: str = ...,
+    tolerance: Optional[Number] = ...,
+    fits: bool = ...,
+    triangles: bool = ...,
+    progress: Optional[Count] = ...,
+) -> Dict[str, Any]: ...
 def as_assembled(model: Model) -> Trajectory: ...
 def joint_ranges(model: Model) -> JointRanges: ...
 def certify_ranges(

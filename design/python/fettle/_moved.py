@@ -76,7 +76,7 @@ class _Settler:
         return inner
 
     def joint(self, k: int, joint: Any) -> Any:
-        places = {"pitch": "pitch", "ratio": "radius" if joint.kind == "rack" else "ratio"}
+        places = {"pitch": "pitch", "swing": "swing", "ratio": "radius" if joint.kind == "rack" else "ratio"}
         return self.record(joint, f"/joints/{k}", places, self.attachments(joint, f"/joints/{k}"))
 
     def spring(self, k: int, spring: Any) -> Any:

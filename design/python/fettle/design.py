@@ -155,6 +155,8 @@ class Quantity(Measured):
     dimension: str = "number"
     #: Does a simulation change nothing of it (of the parts as assembled, or of their shapes alone)?
     at_rest: bool = False
+    #: Is its value a number without bounds? A StepExpression may name it then.
+    is_number: bool = False
 
     def value(self, simulated: "_fettle.Simulated") -> Union[float, Measurement]:
         """SI. A number that is known within bounds alone: a fettle.Measurement, lower <= value <= upper; requirements are judged by its
@@ -183,6 +185,7 @@ class FunctionQuantity(Record, Quantity):
     derivative: Callable[["_fettle.Simulated"], QuantityGradient]
     dimension: str = "number"  #: what it measures, as Quantity.dimension
     at_rest: bool = False
+    is_number: bool = False
 
     def value(self, simulated: "_fettle.Simulated") -> Union[float, Measurement]:
         return self.function(simulated)
@@ -207,6 +210,19 @@ class Clearance(Record, Measured):
     ranges: bool = False
     faces_a: List[str] = dataclasses.field(default_factory=list)  #: names of faces that count alone; empty: the whole body
     faces_b: List[str] = dataclasses.field(default_factory=list)
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class FreeRange(Record, Measured):
+    """The value of a joint's coordinate up to which it is proven free, from its start on, one way [rad or m], everything else as assembled:
+    how far a lid opens before it meets its frame."""
+
+    joint: str
+    end: str = "above"  #: or "below": the way on which the coordinate grows, or falls
+    coordinate_dimension: str = "angle"  #: "length" of a joint that slides
+    clearance: Number = number("length", 1e-6)  #: that all bodies keep on the way
+    reach: Number = number("length", 1.0)  #: how far a slide is looked at
+    anywhere: bool = False  #: the other joints anywhere within their limits, not where they start
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -379,26 +395,7 @@ class Worst(Record, Measured):
     greatest: bool = True
 
 
-AnyQuantity = Union[
-    Quantity,
-    Clearance,
-    Mass,
-    Stroke,
-    MarkerPath,
-    MarkerPosition,
-    MarkerSpeed,
-    JointLoad,
-    JointPosition,
-    BodyTurn,
-    ContactLoad,
-    Energy,
-    Law,
-    Expression,
-    StepExpression,
-    InScenario,
-    Worst,
-    "_fettle.OpaqueQuantity",
-]
+AnyQuantity = Union[Measured, "_fettle.OpaqueQuantity"]
 Term = Union[Measured, Operand]  # of an expression
 AnyShape = Union[Shape, MeshShape, ProgramShape, "_fettle.OpaqueShape"]
 
@@ -665,7 +662,7 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault], parameters
         if all(not isinstance(body, str) for body, _ in record.bodies):
             return record
         return Mass([(_body_number(body, names, "Mass/bodies", faults), of) for body, of in record.bodies])
-    if kind not in (Clearance, Stroke, MarkerPath, MarkerPosition, MarkerSpeed, BodyTurn, ContactLoad):
+    if not isinstance(record, Record) or isinstance(record, Quantity):
         return record
     members = {name: getattr(record, name) for name in ("a", "b", "body", "other") if name in kind.__dataclass_fields__}
     numbers = {

@@ -8,7 +8,7 @@ has a dimension may be given as a text with a unit; it is in SI once it is there
 """
 import dataclasses
 import os
-from typing import Any, Dict, List, Literal, Optional, Sequence, Union
+from typing import Any, Dict, List, Literal, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,6 +37,7 @@ class Deviation(Record):
     inside: Number = number("length", 0.0)  #: [m]
     outside_is_proven: bool = True
     inside_is_proven: bool = True
+    declared: Number = number("length", 0.0)  #: [m] of both: what rests on tolerances that a STEP file declares
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -50,7 +51,8 @@ class Mesh(Record):
     shell_names: List[str] = dataclasses.field(default_factory=list)  #: one per shell; empty: "name/0", ...
     face_names: List[str] = dataclasses.field(default_factory=list)  #: of a part that was drawn: "bore", "rim end"
     triangle_face: List[int] = dataclasses.field(default_factory=list)  #: per triangle, into face_names; empty: faces have no names
-    deviation: Optional[Deviation] = None  #: of a part that was drawn; None: the mesh stands for nothing but itself
+    deviation: Optional[Deviation] = None  #: of a part that was drawn, or a STEP file; None: the mesh stands for nothing but itself
+    colour: Optional[Tuple[int, int, int]] = None  #: sRGB, 0 to 255, of a STEP file
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
@@ -267,6 +269,7 @@ class Joint(Record):
     a: Attachment = dataclasses.field(default_factory=Attachment)
     b: Attachment = dataclasses.field(default_factory=Attachment)
     pitch: Number = number("length", 0.0)  #: screw: slide per turn [m]
+    swing: Optional[Number] = number("angle", None)  #: ball: how far apart the two axes may be [rad]
     of: Sequence[str] = ("", "")  #: gear, rack: two joints
     ratio: Number = number("any", 1.0)  #: of a gear; of a rack its radius [m]
     forces: CoordinateForces = dataclasses.field(default_factory=CoordinateForces)

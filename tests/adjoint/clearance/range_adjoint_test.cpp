@@ -45,19 +45,31 @@ struct Certified {
     PairClearance pair;
 };
 
-Certified certified(double low, double high) {
-    auto model = core::setup::build_model(arm_and_post(low, high));
+Certified certified(const core::scene::Scene& scene, double tolerance = 1e-6) {
+    auto model = core::setup::build_model(scene);
     for (const auto& error : model.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
     REQUIRE(model);
     auto ranges = core::clearance::joint_ranges(*model);
     REQUIRE(ranges);
     core::clearance::ClearanceOptions options;
-    options.tolerance = 1e-6;
+    options.tolerance = tolerance;
     const PairClearance found = core::clearance::certify_ranges(*model, *ranges, {{0, 1}}, options).front();
     PairClearance pair = settled_witness(*model, *ranges, found);
     CHECK(pair.upper <= found.upper);
     CHECK(pair.lower <= pair.upper);
     return {std::move(model).value(), std::move(ranges).value(), pair};
+}
+
+Certified certified(double low, double high) { return certified(arm_and_post(low, high)); }
+
+core::scene::Scene arm_on_a_ball(std::optional<double> swing) {
+    core::scene::Scene scene = arm_and_post(-1, 1);
+    core::scene::Joint& pivot = scene.mechanism.joints[0];
+    pivot.kind = core::scene::JointKind::ball;
+    pivot.a.axis = pivot.b.axis = Vector3::UnitX();
+    pivot.forces = {};
+    pivot.swing = swing;
+    return scene;
 }
 
 }  // namespace
@@ -99,6 +111,23 @@ TEST_CASE("a clearance over ranges that is least at the end of a range moves wit
     for (const double limit : bar.mechanism.term_reference) by_limit += limit;
     const double h = 1e-6;
     CHECK(by_limit == Approx(2 * (distance(high + h) - distance(high - h)) / (2 * h)).epsilon(1e-8));
+}
+
+TEST_CASE("a clearance over all turns of a ball joint is least where a corner passes; at the end of a swing it has no derivative") {
+    const Certified at = certified(arm_on_a_ball(std::nullopt), 2e-3);
+    const Vector3 corner(length, half_width, half_width);
+    CHECK(at.pair.upper == Approx(post_y - corner.norm()).margin(1e-6));
+    ModelGradient bar = zero_model_gradient(at.model, 0);
+    REQUIRE(range_clearance_adjoint(at.model, at.ranges, at.pair, 1, bar).empty());
+    CHECK(bar.bodies[1].pose_start_bar.col(3).isApprox(Vector3(0, 1, 0), 1e-4));
+    double by_length = 0;  // longer by dx: d(reach) = length / reach
+    for (int v = 0; v < 8; ++v)
+        if (at.model.bodies[0].mesh.vertices(0, v) > at.model.bodies[0].mesh.vertices.row(0).mean())
+            by_length += bar.bodies[0].vertices_bar(0, v);
+    CHECK(by_length == Approx(-length / corner.norm()).epsilon(1e-3));
+    const Certified end = certified(arm_on_a_ball(0.5), 2e-3);
+    ModelGradient other = zero_model_gradient(end.model, 0);
+    CHECK(range_clearance_adjoint(end.model, end.ranges, end.pair, 1, other).find("end of the swing of `pivot`") != std::string::npos);
 }
 
 }  // namespace fettle::adjoint::clearance::range_adjoint_test

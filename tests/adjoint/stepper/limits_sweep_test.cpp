@@ -93,6 +93,31 @@ TEST_CASE("a start on a stop: derivatives in limit, load and pose agree with dif
     }
 }
 
+TEST_CASE("a bar that lies on the end of its swing: the derivative in the swing agrees with differences", "[adjoint][limits]") {
+    core::scene::Scene scene = scene_of({bar("bar", 0.3)}, 0.01);
+    scene.integrator = GENERATE(Integrator::implicit_euler, Integrator::quasi_static);
+    scene.gravity = Vector3(0, 0, -gravity);
+    const Vector3 x_axis = Vector3::UnitX();
+    const double swing = 0.05;
+    scene.mechanism.joints = {joint("j", JointKind::ball, {"", Vector3::Zero(), x_axis}, {"bar", Vector3::Zero(), x_axis})};
+    scene.mechanism.joints[0].swing = swing;
+    constexpr int steps = 40;
+    const Model model = built(scene);
+    const auto trajectory = run(model, steps, true).trajectory;
+    const auto gradients = reverse_sweep(model, trajectory, {seed_of(trajectory)});
+    REQUIRE(gradients);
+    REQUIRE(model.mechanism.terms.size() == 1);
+    const double found = difference(
+        [&](double s) {
+            Model moved = model;
+            moved.mechanism.terms[0].reference += s;
+            return end_of(moved, steps);
+        },
+        1e-2 * core::model::stop_give * model.dhat / model.mechanism.terms[0].length);
+    CHECK(std::abs(found) > 1e-3);
+    CHECK((*gradients)[0].mechanism.term_reference[0] == Approx(found).epsilon(1e-4));
+}
+
 TEST_CASE("a linkage whose independent rows change: derivatives agree with differences", "[adjoint][rows]") {
     const Integrator integrator = GENERATE(Integrator::implicit_euler, Integrator::bdf2, Integrator::quasi_static);
     const auto [from, to] = GENERATE(std::pair(30.0, 45.0), std::pair(30.0, 60.0), std::pair(45.0, 50.0));

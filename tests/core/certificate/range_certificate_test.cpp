@@ -261,6 +261,16 @@ TEST_CASE("range certificates: written and read back, bit for bit", "[ranges]") 
     CHECK(read->pairs[0].lower == c.certificate.pairs[0].lower);
     CHECK(read->pairs[0].at == c.certificate.pairs[0].at);
     CHECK(read->pairs[0].boxes[0].splits == c.certificate.pairs[0].boxes[0].splits);
+    // One of version 3 says the same of what it has.
+    std::string text = tests::support::contents(file);
+    const std::string version = "\"fettle_certificate\": ";
+    const std::size_t at = text.find(version + "4");
+    REQUIRE(at != std::string::npos);
+    text[at + version.size()] = '3';
+    const auto old = read_certificate(folder.write("old.certificate.json", text));
+    REQUIRE(old);
+    CHECK(old->version == certificate_version);
+    CHECK(check_certificate(*old, c.tree.model, c.start).accepted());
     CHECK(read->pairs[0].boxes[0].normals == c.certificate.pairs[0].boxes[0].normals);
     CHECK(check_certificate(*read, c.tree.model, c.start).accepted());
 }

@@ -133,9 +133,9 @@ TEST_CASE("joint ranges: what cannot be covered is refused by name", "[ranges]")
     scene::Scene slide = hinged(std::nullopt);
     slide.mechanism.joints[0].kind = JointKind::prismatic;
     CHECK(contains(refusal(slide), "`hinge`: has no limits"));
-    scene::Scene ball = hinged(std::nullopt);
-    ball.mechanism.joints[0].kind = JointKind::ball;
-    CHECK(contains(refusal(ball), "`hinge`: a ball joint has no limits"));
+    scene::Scene planar = hinged(std::nullopt);
+    planar.mechanism.joints[0].kind = JointKind::planar;
+    CHECK(contains(refusal(planar), "`hinge`: has no limits on its two slides"));
     CHECK(contains(refusal(scene_of({bar("bar", 0.5)}, 0.01)), "there is no joint"));
     scene::Scene held = hinged(std::nullopt);
     held.bodies[0].prescribed[2] = scene::MotionCurve{};

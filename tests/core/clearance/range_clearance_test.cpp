@@ -186,14 +186,14 @@ TEST_CASE("ranges: one body within the other's material is a clash", "[ranges]")
 TEST_CASE("ranges: too many coordinates are told, not dealt with", "[ranges]") {
     std::vector<scene::Body> bodies;
     scene::Scene scene = scene_of({}, 0.01);
-    for (int i = 0; i < 6; ++i) scene.bodies.push_back(bar("b" + std::to_string(i), 0.1, Vector3(0.1 * i, 0, 0)));
-    for (int i = 1; i < 6; ++i)
+    for (int i = 0; i < 8; ++i) scene.bodies.push_back(bar("b" + std::to_string(i), 0.1, Vector3(0.1 * i, 0, 0)));
+    for (int i = 1; i < 8; ++i)
         scene.mechanism.joints.push_back(tests::mechanisms::joint("j" + std::to_string(i), JointKind::revolute,
                                                                   {"b" + std::to_string(i - 1), Vector3(0.1, 0, 0), z_axis},
                                                                   {"b" + std::to_string(i), Vector3::Zero(), z_axis}));
-    const PairClearance found = certified(scene, 0, 5, 1e-5);
+    const PairClearance found = certified(scene, 0, 7, 1e-5);
     CHECK(found.status == PairStatus::undecided);
-    CHECK(tests::support::contains(found.reason, "5 coordinates"));
+    CHECK(tests::support::contains(found.reason, "7 coordinates"));
 }
 
 TEST_CASE("ranges: no sampled combination of random trees is below the bound", "[ranges]") {

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/kinematics/mass_matrix.hpp"
+#include "core/model/limits.hpp"
 #include "tests/support/mechanisms.hpp"
 
 namespace fettle::core::stepper::joint_physics_test {
@@ -259,6 +260,30 @@ TEST_CASE("a mass on a spring has the period of its stiffness, and a damper take
         CAPTURE(damping, errors[0], errors[1], errors[2]);
         CHECK(errors[2] < 3e-3);
         CHECK(std::log2(errors[1] / errors[2]) > 1.7);
+    }
+}
+
+TEST_CASE("a ball joint's swing ends the fall in any direction, and tells its torque", "[joints]") {
+    for (const double turn : {0.0, 0.7, 2.5}) {
+        // The bar begins upright-ish to one side and falls about the ball until its axis is 0.5 rad from the world's.
+        scene::Scene scene = scene_of({bar("arm", 0.3, Vector3::Zero(), Vector3(0, 0, turn))}, 0.01);
+        scene.integrator = Integrator::quasi_static;
+        scene.gravity = Vector3(0, 0, -gravity);
+        const Vector3 along(std::cos(turn), std::sin(turn), 0);
+        scene.mechanism.joints = {joint("ball", JointKind::ball, {"", Vector3::Zero(), along}, {"arm", Vector3::Zero(), Vector3::UnitX()})};
+        scene.mechanism.joints[0].swing = 0.5;
+        const model::Model model = built(scene);
+        REQUIRE(model.mechanism.terms.size() == 1);
+        CHECK(is_swing(model.mechanism, model.mechanism.terms[0]));
+        const Simulation out = run(model, 60);
+        const Vector3 now = out.trajectory.poses.back()[0].rotation.col(0), centre = out.trajectory.poses.back()[0].position;
+        const double swing = std::acos(now.dot(along)), give = model::stop_give * model.dhat / model.mechanism.terms[0].length;
+        CHECK(swing > 0.499);
+        CHECK(std::cos(swing) > std::cos(0.5) - give);
+        CHECK(now.z() == Approx(-std::sin(swing)).margin(1e-3));
+        // At rest it holds the weight's moment.
+        const double moment = centre.head<2>().norm() * gravity * model.bodies[0].moments(3, 3);
+        CHECK(std::abs(out.outputs.back().joints.at(0).stop) == Approx(moment).epsilon(0.02));
     }
 }
 

@@ -157,7 +157,7 @@ TEST_CASE("clearance: without a minimum distances are told, and clashes all the 
 
 TEST_CASE("clearance: files that are none of what it reads are refused with a list of what is") {
     const OverlapFolder folder;
-    for (const char* name : {"part.step", "part.scad", "part.sldprt", "part.csv"}) {
+    for (const char* name : {"part.iges", "part.scad", "part.sldprt", "part.csv"}) {
         const Answer answer = run("clearance " + folder.write(name, "solid part\nendsolid part\n") + " --minimum 1mm", true);
         CAPTURE(name, answer.out);
         CHECK(answer.code == 3);

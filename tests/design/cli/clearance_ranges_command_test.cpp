@@ -349,4 +349,72 @@ TEST_CASE("kinematic: where joints are not proven to have bodies there is no bou
     CHECK(std::filesystem::exists(proof));
 }
 
+TEST_CASE("ranges: a ball and socket over its swing, with a certificate") {
+    const DesignFolder folder;
+    const auto scene = [&](const std::string& swing) {
+        return folder.write("ball.scene.json", R"json({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "bodies": [
+            {"name": "socket", "type": "static", "shape": {"part": "ball_socket", "dimensions": {"clearance": 0.4}}},
+            {"name": "stud", "density": 1000, "shape": {"part": "ball_stud"}}],
+            "joints": [{"name": "ball", "type": "ball", "a": "socket", "b": "stud", "point": [0, 0, 0], "axis": [0, 0, 1], "swing": )json" +
+                                                   swing + "}]}");
+    };
+    const std::string certificate = folder.file("fit.certificate.json");
+    const std::string command = "clearance " + scene("10") + " --ranges --pairs socket:stud --minimum 0.2mm ";
+    const Answer answer = run(command + "--json --certificate " + certificate);
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+    const Json pair = answer.pair("socket", "stud");
+    CHECK(pair["status"] == "clear");
+    CHECK(pair["coordinates"].size() == 3);
+    CHECK(coordinate(pair, "ball")["high"].get<double>() == Approx(M_PI / 18));
+    CHECK(contents(certificate).find("\"fettle_certificate\": 4") != std::string::npos);
+    const Answer checked = run("validate " + certificate);
+    CAPTURE(checked.out);
+    CHECK(checked.code == 0);
+    const std::string wider = scene("11");
+    CHECK(run("validate " + certificate, true).says("stale"));
+    CHECK(run("clearance " + scene("50") + " --ranges --pairs socket:stud --minimum 0.2mm").code == 1);
+    // The least work that there is decides nothing, and is told.
+    const Answer cut = run("clearance " + scene("10") + " --ranges --pairs socket:stud --minimum 0.2mm --budget 1e-6");
+    CAPTURE(cut.out);
+    CHECK(cut.code == 2);
+    CHECK(cut.says("budget"));
+    CHECK(run(command + "--budget 0").code == 3);
+}
+
+TEST_CASE("ranges: a four-bar over all positions of its crank, with a certificate") {
+    const DesignFolder folder;
+    const std::string joints = R"json("joints": [
+        {"name": "A", "type": "revolute", "b": "crank", "point": [0, 0, 0], "axis": [0, 0, 1], "limits": [-20, 20]},
+        {"name": "B", "type": "revolute", "a": "crank", "b": "coupler", "point": [0, 20, 4], "axis": [0, 0, 1]},
+        {"name": "C", "type": "revolute", "b": "rocker", "point": [60, 0, 8], "axis": [0, 0, 1]},
+        {"name": "D", "type": "revolute", "a": "coupler", "b": "rocker", "point": [60, 40, 8], "axis": [0, 0, 1]}])json";
+    const std::string bodies = R"json({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "bodies": [
+        {"name": "crank", "density": 1000, "position": [0, 10, 0], "shape": {"part": "box", "dimensions": {"size_x": 4, "size_y": 20, "size_z": 2}}},
+        {"name": "coupler", "density": 1000, "position": [30, 30, 4], "shape": {"part": "box", "dimensions": {"size_x": 60, "size_y": 4, "size_z": 2}}},
+        {"name": "rocker", "density": 1000, "position": [60, 20, 8], "shape": {"part": "box", "dimensions": {"size_x": 4, "size_y": 40, "size_z": 2}}},
+        {"name": "post", "type": "static", "position": [30, 60, 4], "shape": {"part": "box", "dimensions": {"size_x": 4, "size_y": 4, "size_z": 4}}}],
+        )json";
+    const std::string scene = folder.write("bars.scene.json", bodies + joints + "}"), certificate = folder.file("bars.certificate.json");
+    const Answer answer = run("clearance " + scene + " --ranges --minimum 1mm --json --certificate " + certificate);
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+    const Json report = answer.json();
+    CHECK(report["source"] == "over the ranges of the joints");
+    CHECK_FALSE(report.contains("tolerances"));
+    const Json pair = answer.pair("coupler", "post");
+    CHECK(pair["status"] == "clear");
+    CHECK(pair["coordinates"].size() >= 2);
+    CHECK_FALSE(pair.contains("worst_deviations"));
+    const Answer checked = run("validate " + certificate);
+    CAPTURE(checked.out);
+    CHECK(checked.code == 0);
+    CHECK(checked.says("over all positions of the joints"));
+    folder.write("bars.scene.json", bodies + fettle::tests::support::replaced(joints, "[-20, 20]", "[-20, 25]") + "}");
+    CHECK(run("validate " + certificate, true).says("stale"));
+    folder.write("bars.scene.json", bodies + fettle::tests::support::replaced(joints, ", \"limits\": [-20, 20]", "") + "}");
+    CHECK(run("clearance " + scene + " --ranges --minimum 1mm", true).says("that nothing drives"));
+    CHECK(run("ranges " + scene, true).says("closes a loop"));
+}
+
 }  // namespace fettle::design::cli::clearance_ranges_command_test

@@ -86,10 +86,31 @@ TEST_CASE("ranges: what is asked for is looked at, and nothing else is taken") {
     CHECK(answer.code == 1);
     CHECK(answer.says("free nowhere: lid:frame, they meet as assembled"));
     CHECK(run("ranges " + scene + " --minimum 40mm").says("free nowhere: lid:frame, closer than 40 mm as assembled"));
-    // A ball has no one coordinate; it is refused by name.
-    const std::string ball = folder.write(
-        "ball.scene.json", replaced(replaced(lid_scene, "\"revolute\"", "\"ball\""), ", \"axis\": [0, -1, 0], \"limits\": [0, 60]", ""));
-    CHECK(run("ranges " + ball, true).says("joint `hinge`"));
+}
+
+TEST_CASE("ranges: a stud swings in its socket as far as its neck lets it, and turns all round") {
+    const Folder folder;
+    const std::string scene = folder.write("ball.scene.json", R"json({"fettle_scene": 1, "units": "mm", "timestep": 0.01, "bodies": [
+        {"name": "socket", "type": "static", "shape": {"part": "ball_socket", "dimensions": {"clearance": 0.4}}},
+        {"name": "stud", "density": 1000, "shape": {"part": "ball_stud"}}],
+        "joints": [{"name": "ball", "type": "ball", "a": "socket", "b": "stud", "point": [0, 0, 0], "axis": [0, 0, 1], "swing": 10}]})json");
+    const Answer answer = run("ranges " + scene + " --tolerance 1deg --json");
+    CAPTURE(answer.out);
+    CHECK(answer.code == 0);
+    const Json joints = answer.json()["joints"];
+    REQUIRE(joints.size() == 2);
+    // Between the neck's line, 2.5 mm from its axis, and the corner of the mouth, 2.5 mm below the middle and 4.79 mm beside it.
+    const double end = std::atan2(std::sqrt(5.4 * 5.4 - 2.5 * 2.5), 2.5) - std::asin(2.5 / 5.4);
+    CHECK(joints[0]["joint"] == "ball");
+    CHECK(joints[0]["free"]["lower"] == 0);
+    CHECK(joints[0]["free"]["upper"].get<double>() == Approx(end).margin(0.08));
+    CHECK(joints[0]["limits"][1].get<double>() == Approx(M_PI / 18));
+    CHECK(joints[1]["joint"] == "ball (turn)");
+    CHECK(joints[1]["turns_freely"] == true);
+    const Answer text = run("ranges " + scene + " --tolerance 1deg --joint ball");
+    CAPTURE(text.out);
+    CHECK(text.says("ball: free from 0 to "));
+    CHECK(text.says("its limits, 0 to 10 deg, lie within"));
 }
 
 TEST_CASE("ranges: the two-armed robot's joints, one at a time and with the others anywhere") {

@@ -202,7 +202,8 @@ TEST_CASE("validate: a part file is a part") {
     const std::string faulty = folder.write("faulty.part.json", R"({"fettle_part": 1, "dimensions": {"long": 5},
         "solid": {"extrude": {"circle": 1}}})");
     const std::string broken = folder.write("broken.part.json", "{\"fettle_part\": 1,");
-    for (const std::string& command : {"validate ", "simulate ", "clearance --minimum 1mm "}) {
+    const std::vector<std::string> commands{"validate ", "draw --out " + folder.file("x.svg") + " ", "clearance --minimum 1mm "};
+    for (const std::string& command : commands) {
         const Answer answer = run(command + faulty, true);
         CAPTURE(answer.out);
         CHECK(answer.code == 3);

@@ -161,6 +161,17 @@ Case even_speeds() {
     return out;
 }
 
+// A ball in its socket.
+Case ball() {
+    core::scene::Scene scene = scene_of({standing(bar("head", 0.1, Vector3::Zero()))}, step);
+    scene.mechanism.joints = {joint("socket", JointKind::ball, {"", Vector3::Zero(), along_z}, {"head", Vector3::Zero(), along_z})};
+    scene.mechanism.joints[0].swing = 0.3;
+    Case out{"ball", {}, {{0, 1}}};
+    out.design.scene = std::move(scene);
+    add_post(out.design, Vector3(0.35, 0.35, 0));
+    return out;
+}
+
 // One body goes along one of its coordinates.
 Case script(int dof, double rate) {
     core::scene::Body cam = bar("cam", 0.2, Vector3(0, 0, 0));
@@ -199,7 +210,7 @@ Case linkage(CurveKind kind) {
 }
 
 std::vector<Case> cases() {
-    std::vector<Case> out{machine(false), machine(true), even_speeds(), linkage(CurveKind::linear), linkage(CurveKind::trapezoid)};
+    std::vector<Case> out{machine(false), machine(true), even_speeds(), linkage(CurveKind::linear), linkage(CurveKind::trapezoid), ball()};
     for (int dof = 0; dof < 6; ++dof) out.push_back(script(dof, dof < 3 ? 0.3 : 1.2));
     return out;
 }
@@ -393,7 +404,8 @@ void look_at(const Case& of, const Place& place, Question question, const Positi
     const Asked box = within(asked.design, asked.tolerances, of, question);
     if (!box.refused.empty()) {
         INFO(box.refused.front().message);
-        CHECK(box.refused.front().message.find("`" + pointer + "`") != std::string::npos);
+        const bool is_whole_question = box.refused.front().where == "joint `socket`";  // a ball over ranges
+        CHECK((is_whole_question || box.refused.front().message.find("`" + pointer + "`") != std::string::npos));
         ++counts.refused;
         return;
     }

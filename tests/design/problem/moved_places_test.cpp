@@ -73,6 +73,7 @@ core::scene::Scene arm() {
     hinge.forces = {3, 0.2, 0, 0.05, 0.03, std::array<double, 2>{-1.0, 0.5}};
     scene.mechanism.joints = {hinge,
                               joint("ball", JointKind::ball, {"upper", Vector3(0.3, 0, 0), z_axis}, {"lower", Vector3::Zero(), z_axis})};
+    scene.mechanism.joints[1].swing = 1.5;
     core::scene::Spring across;
     across.name = "across";
     across.a = {"", Vector3(0.1, 0.2, 0.4), z_axis};

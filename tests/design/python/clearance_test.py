@@ -112,6 +112,17 @@ def test_what_is_refused_is_named_as_the_argument_is():
         fettle.clearance(arm(), ranges=True, allow_touch="post:bar")
 
 
+def test_features_are_what_the_command_says():
+    crank = EXAMPLES / "slider_crank" / "slider_crank.scene.json"
+    model = fettle.build_model(fettle.read_scene(crank), check_start=False)
+    found = fettle.features(model, process="fdm", triangles=True)
+    told = subprocess.run([PROGRAM, "features", crank, "--process", "fdm", "--json", "--triangles"], capture_output=True, text=True)
+    assert found == json.loads(told.stdout)
+    assert any(fit["gap"]["proven"] for fit in found["fits"])
+    with pytest.raises(fettle.Error, match="more than 0"):
+        fettle.features(model, tolerance=0.0)
+
+
 def test_free_ranges_are_what_the_command_says():
     model = fettle.build_model(fettle.read_scene(TWO_ARM), check_start=False)
     found = fettle.free_ranges(model, joints="left_elbow", minimum="1mm", angle="0.1deg")

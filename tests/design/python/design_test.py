@@ -312,6 +312,20 @@ def test_a_file_is_optimised_into_a_folder(tmp_path):
         assert (tmp_path / "out" / left).stat().st_size > 0, left
     told = json.loads((tmp_path / "out" / "result.json").read_text())
     assert told["evaluations"] == outcome.report.evaluations and told["command"].startswith("fettle.optimise_file")
+    resolution = told["resolution"]
+    assert set(resolution) == {"runs", "terms", "constraints", "flips"}
+    keys = [run["run"] for run in resolution["runs"]]
+    assert keys == ["finer_facets", "finer_steps"]
+    assert all({"run", "objective", "change_of_best"} <= set(run) for run in resolution["runs"])
+    assert [each["name"] for each in resolution["constraints"]] == [each["name"] for each in told["constraints"]]
+    assert [each["name"] for each in resolution["terms"]] == [each["name"] for each in told["terms"]]
+    for each in resolution["terms"] + resolution["constraints"]:
+        assert {"name", "found", "change", *keys} <= set(each)
+    for each, judged in zip(resolution["constraints"], told["constraints"]):
+        assert each["met"] == judged["met"] and each["met_finer"] in (True, False)
+        values = [each["found"], *(each[key] for key in keys)]
+        assert each["change"] == pytest.approx(max(abs(v - each["found"]) / max(abs(v), abs(each["found"])) if v != each["found"] else 0 for v in values))
+    assert set(resolution["flips"]) <= {each["name"] for each in resolution["constraints"]}
     assert fettle.write_report(str(tmp_path / "out"), str(tmp_path / "again.html")) == str(tmp_path / "again.html")
     assert "<html" in (tmp_path / "again.html").read_text()
     final = fettle.read_design(str(tmp_path / "out" / "design.final.json"))

@@ -35,7 +35,7 @@ def test_members_with_a_dimension_take_units():
         fettle.MotionCurve: {"rate": ("90 deg/s", np.pi / 2), "times": (["1ms"], [1e-3]), "values": (["90deg"], [np.pi / 2])},
         fettle.Curve: {"rate": ("90 deg/s", np.pi / 2), "times": (["1ms"], [1e-3]), "values": (["3mm"], [3e-3])},
         fettle.CoordinateForces: {"limits": (("-30deg", "30deg"), (-np.pi / 6, np.pi / 6)), "stiffness": ("1N/mm", 1e3), "rest": ("1mm", 1e-3)},
-        fettle.Joint: {"pitch": ("2mm", 2e-3), "ratio": ("5mm", 5e-3)},
+        fettle.Joint: {"pitch": ("2mm", 2e-3), "swing": ("30deg", np.pi / 6), "ratio": ("5mm", 5e-3)},
         fettle.MeshProgram: {"unit": ("mm", 1e-3), "time_limit": ("1min", 60)},
         fettle.ShapeSpec: {"dimensions": ({"radius": "3mm"}, {"radius": 3e-3})},
         fettle.PairRequest: {"minimum": ("0.3mm", 3e-4), "far": ("1cm", 1e-2)},

@@ -2,6 +2,7 @@
 """The dataclasses have the library's members and defaults, and what passes through the library comes back as it was."""
 import dataclasses
 import json
+import pathlib
 import pickle
 
 import numpy as np
@@ -26,6 +27,7 @@ ALL_DESIGNS = without_programs(EXAMPLES.glob("*/*.design.json"))
 ROBUST = [path for path in ALL_DESIGNS if "over_tolerances" in path.read_text()]  # no fettle.Design holds them
 DESIGNS = [path for path in ALL_DESIGNS if path not in ROBUST]
 SCENES = without_programs(EXAMPLES.glob("*/*.scene.json"))
+EVERY_QUANTITY = pathlib.Path(__file__).resolve().parents[1] / "quantities" / "every_quantity" / "every_quantity.design.json"
 
 
 def test_there_are_examples():
@@ -132,6 +134,32 @@ LOADS = [
     ({"type": "marker_speed", "body": "rocker", "point": [1, 2, 3], "axis": [0, 1, 0]},
      fettle.MarkerSpeed(3, np.array([0.001, 0.002, 0.003]), axis=np.array([0, 1, 0]))),
 ]
+
+
+def test_every_quantity_of_a_file_has_a_class():
+    """Each kind of the table (quantity_table_test.cpp) arrives as its class, pickles, comes back, and measures the same bits."""
+    path = EVERY_QUANTITY
+    design = fettle.read_design(str(path)).design
+    assert "OpaqueQuantity" not in repr(design)
+    assert pickle.loads(pickle.dumps(design)) == design
+    assert fettle_for_tests.design_round_trip(design) == design
+    free = next(term.quantity for term in design.objective if isinstance(term.quantity, fettle.FreeRange))
+    assert free == fettle.FreeRange("hinge", "below", clearance="0.01 mm", anywhere=True)
+    reason, objective, gradient = fettle_for_tests.evaluate_file(str(path), 5)
+    problem = fettle.DesignProblem(_short(design, 5))
+    at = problem.evaluate(problem.values)
+    assert at.reason == reason == ""
+    assert at.objective == objective
+    assert np.array_equal(at.gradient, gradient)
+
+
+def test_a_free_range_is_refused_where_it_cannot_be_asked_for():
+    design = fettle.read_design(str(EVERY_QUANTITY)).design
+    for changes, message in (({"end": "up"}, "`up` is neither `above` nor `below`"), ({"clearance": 0.0}, "quantity/clearance: 0 is not allowed"),
+                             ({"reach": -1.0}, "quantity/reach: -1 is not allowed"), ({"joint": "hings"}, "did you mean|no joint")):
+        design.objective = [fettle.ObjectiveTerm("free", quantity=fettle.FreeRange(**{"joint": "hinge", **changes}))]
+        with pytest.raises(fettle.Error, match=message):
+            fettle.DesignProblem(design)
 
 
 def test_forces_of_contact_have_a_class(tmp_path):

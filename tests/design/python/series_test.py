@@ -72,6 +72,44 @@ def test_expressions_over_the_steps():
     assert pickle.loads(pickle.dumps(passed["law"])) == passed["law"]
 
 
+class LastHeight(fettle.Quantity):
+    """Where the part's reference point is in the end, which a law or an expression over the steps may be compared with."""
+
+    dimension = "length"
+    is_number = True
+
+    def value(self, simulated):
+        return simulated.positions[-1, 1, 2]
+
+    def gradient(self, simulated):
+        positions = np.zeros_like(simulated.positions)
+        positions[-1, 1, 2] = 1
+        return fettle.QuantityGradient(positions=positions)
+
+
+def test_an_own_number_stands_in_an_expression_over_the_steps():
+    z, own, design = fettle.MarkerPosition("part", POINT, axis=Z), LastHeight(), tilted_plate()
+    step = fettle.StepExpression("2 * z - own", {"z": z, "own": own})
+    design.constraints = [fettle.Constraint(name, quantity=of) for name, of in {"z": z, "own": own, "step": step}.items()]
+    problem = fettle.DesignProblem(design)
+    at = problem.evaluate(problem.values)
+    value = [measured.value for measured in at.constraints]
+    assert value[2] == pytest.approx(2 * value[0] - value[1], rel=1e-12)
+    assert np.any(at.jacobian[1] != 0)
+    assert at.jacobian[2] == pytest.approx(2 * at.jacobian[0] - at.jacobian[1], rel=1e-9)
+
+    class Bounded(LastHeight):
+        def value(self, simulated):
+            return fettle.Measurement(0, -1, 1)
+
+    design.constraints[1].quantity = Bounded()
+    problem = fettle.DesignProblem(design)
+    with pytest.raises(fettle.Error, match="says that it `is_number`"):
+        problem.evaluate(problem.values)
+    own.is_number = False
+    refused(lambda: fettle.DesignProblem(design), "unsupported", "constraint `step`/quantity", "cannot stand")
+
+
 def test_laws():
     z, height = fettle.MarkerPosition("part", POINT, axis=Z), tilted_plate().parameters[0]
     law = fettle.Law("length", [0.01, 0.05], ["1 mm", height / 2])

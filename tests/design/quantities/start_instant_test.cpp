@@ -108,7 +108,7 @@ TEST_CASE("start instant: every kind of quantity by every way to take it, and it
         INFO(at.reason);
         REQUIRE(at.usable);
         const problem::SimulatedDesign simulated(problem.design(), at);
-        const auto& first = dynamic_cast<const StepSeries&>(*problem.design().constraints[0].quantity);
+        const auto& first = *series_of(*problem.design().constraints[0].quantity);
         const std::vector<double> y = first.numbers(simulated.in(0));
         REQUIRE(count_of(y) == steps + (kind.has_start ? 1 : 0));
         const auto value = [&](int k) { return at.constraints[k].value; };

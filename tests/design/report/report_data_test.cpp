@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The contents of a report, against what was computed: meshes and poses read back, curves of tables, certified bands against known
-// distances,
-// the rows of a design, a page that users' names cannot break out of; and the command, from outside.
+// The contents of a report, against what was computed: meshes and poses read back, certified bands against known distances, a page that
+// users' names cannot break out of; and the command, from outside.
 #include "design/report/report_data.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <iterator>
@@ -16,14 +14,13 @@
 #include "core/stepper/scripted_motion.hpp"
 #include "design/exports/palette.hpp"
 #include "design/reading/design_reader.hpp"
-#include "design/report/design_rows.hpp"
 #include "design/report/moving_parts.hpp"
 #include "design/report/packed_numbers.hpp"
 #include "design/report/pair_rows.hpp"
 #include "design/report/report_folder.hpp"
 #include "design/report/report_page.hpp"
 #include "design/report/search_curves.hpp"
-#include "design/report/table_rows.hpp"
+#include "tests/design/report/packed.hpp"
 #include "tests/design/small_design.hpp"
 #include "tests/support/box_mesh.hpp"
 #include "tests/support/program.hpp"
@@ -35,28 +32,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using fettle::tests::design_support::DesignFolder;
+using fettle::tests::report_support::data_of;
+using fettle::tests::report_support::unpacked;
 using fettle::tests::support::contents;
 using fettle::tests::support::run;
-
-// The reverse of packed(), written for itself.
-template <class Number>
-std::vector<Number> unpacked(const Json& value, const char* key) {
-    const std::string text = value.at(key).get<std::string>(), digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string bytes;
-    unsigned bits = 0;
-    int held = 0;
-    for (const char c : text) {
-        if (c == '=') break;
-        bits = bits << 6 | static_cast<unsigned>(digits.find(c));
-        held += 6;
-        if (held < 8) continue;
-        held -= 8;
-        bytes += static_cast<char>(bits >> held & 255);
-    }
-    std::vector<Number> numbers(bytes.size() / sizeof(Number));
-    std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));  // of a machine with the lowest byte first
-    return numbers;
-}
 
 core::scene::Body box(const std::string& name, const Vector3& size, const Vector3& at) {
     core::scene::Body body;
@@ -83,59 +62,12 @@ Motion parting_cubes(int steps, double speed = 0.02) {
 
 const auto go_on = [] { return false; };
 
-// What stands in a page between its script element's ends.
-Json data_of(const std::string& page) {
-    const std::string begin = "id=\"fettle-report\">";
-    const size_t at = page.find(begin) + begin.size();
-    return Json::parse(page.substr(at, page.find("</script>", at) - at));
-}
-
 }  // namespace
 
 TEST_CASE("report: numbers are packed lowest byte first") {
     CHECK(packed(std::vector<std::uint32_t>{1}).at("u32") == "AQAAAA==");
     CHECK(packed(std::vector<float>{1.0F}).at("f32") == "AACAPw==");
     CHECK(unpacked<double>(packed(std::vector<double>{0.1, -3.0}), "f64") == std::vector<double>{0.1, -3.0});
-}
-
-TEST_CASE("report: tables with quoted words, rows that are cut off") {
-    const TableRows table("a,b\n\"x,\"\"y\",1.5\nz,\ncut");
-    REQUIRE(table.size() == 2);
-    CHECK(table.word(0, "a") == "x,\"y");
-    CHECK(table.number(0, "b") == 1.5);
-    CHECK(std::isnan(table.number(1, "b")));
-    CHECK(std::isnan(table.number(0, "c")));
-    CHECK(table.has("b"));
-    CHECK(TableRows("").size() == 0);
-}
-
-TEST_CASE("report: curves of forces, in the units that are told") {
-    StepTables tables;
-    tables.joints = "time,name,fx,fy,fz,tx,ty,tz,effort\n0.1,hinge,3,4,0,0,0,0,0\n0.1,turn,0,0,0,0,0,0,0.002\n0.1,push,0,0,1,0,0,0,7\n";
-    tables.drives = "time,body,fx,fy,fz,tx,ty,tz\n0.1,base,0,3,4,0,0,0\n0.1,crank,0,0,0,0,0,-0.5\n0.2,crank,0,0,0,0,0,0.25\n";
-    tables.contacts = "time,a,b,normal\n0.1,x,y,2\n0.3,x,z,1\n";
-    const Json curves = step_curves(tables, {"base"}, {"push"});
-    const auto curve = [&](const std::string& title) {
-        for (const Json& each : curves)
-            if (each["title"] == title) return each;
-        return Json();
-    };
-    const auto values = [](const Json& line) { return unpacked<double>(line["values"], "f64"); };
-    REQUIRE(curve("Motor torque")["lines"].size() == 1);
-    CHECK(curve("Motor torque")["lines"][0]["name"] == "turn");
-    CHECK(values(curve("Motor torque")["lines"][0]) == std::vector<double>{2});
-    CHECK(curve("Motor torque")["unit"] == "N mm");
-    CHECK(values(curve("Motor force")["lines"][0]) == std::vector<double>{7});
-    CHECK(values(curve("Joint force")["lines"][0]) == std::vector<double>{5});
-    REQUIRE(curve("Driving torque")["lines"].size() == 1);
-    CHECK(curve("Driving torque")["lines"][0]["name"] == "crank about z");
-    CHECK(values(curve("Driving torque")["lines"][0]) == std::vector<double>{-500, 250});
-    CHECK(values(curve("Force on fixed parts")["lines"][0]) == std::vector<double>{5});
-    CHECK(curve("Driving and guiding force").is_null());  // nothing but zeros
-    REQUIRE(curve("Contact")["lines"].size() == 2);
-    CHECK(unpacked<double>(curve("Contact")["time"], "f64") == std::vector<double>{0.1, 0.3});
-    CHECK(values(curve("Contact")["lines"][0]) == std::vector<double>{2, 0});  // what does not touch carries nothing
-    CHECK(values(curve("Contact")["lines"][1]) == std::vector<double>{0, 1});
 }
 
 TEST_CASE("report: parts in mm, copies once, still ones with one pose") {
@@ -243,78 +175,6 @@ TEST_CASE("report: a band is nowhere below what is proven of the same steps") {
     CHECK(lower_of(curve_of(wrong)) == alone);
 }
 
-TEST_CASE("report: rows of a design, what is required in mm, what it costs per mm") {
-    const DesignFolder folder;
-    const auto file = reading::read_design(folder.design());
-    REQUIRE(file);
-    Json result = Json::parse(R"({"status": "optimal", "parameters_start": {"height": 10, "density": 1000}, "parameters": {"height": 9},
-        "constraints": [{"name": "x", "lower": 0.0151, "upper": 0.0152, "proven": true, "met": true}],
-        "optimality": {"worth": 0.01, "held_by": {"height": "lower bound"}, "improvable": [{"parameter": "width", "step": 0.5}]}})");
-    const auto& constraints = file->design.constraints;
-    result["optimality"]["multipliers"][constraints[0].name] = 3.0;
-    const Json rows = requirement_rows(file->design, result);
-    REQUIRE(rows.size() == constraints.size());
-    CHECK(rows[0]["unit"] == "mm");
-    CHECK(rows[0]["required_lower"].get<double>() == Approx(15));
-    CHECK(rows[0]["required_upper"].is_null());
-    CHECK(rows[0]["lower"].get<double>() == Approx(15.1));
-    CHECK(rows[0]["proven"] == true);
-    CHECK(rows[1]["proven"] == false);
-    CHECK(rows[0]["met"] == true);
-    CHECK(rows[0]["cost"] == 3.0);
-    CHECK(rows[0]["counts"] == true);
-    CHECK(rows[0]["pair"].is_null());  // the answer has no pairs
-    CHECK(rows[1]["met"] == false);    // of what is not told nothing is met
-    const Json& mass = rows.back();
-    CHECK(mass["unit"] != "mm");
-    const Json parameters = parameter_rows(file->design, result);
-    CHECK(parameters[0]["start"] == 10);
-    CHECK(parameters[0]["end"] == 9);
-    CHECK(parameters[0]["lower"] == 6);
-    CHECK(parameters[0]["held"] == "lower bound");
-    CHECK(parameters[1]["step"] == 0.5);
-    CHECK(parameters[1]["start"].is_null());
-    CHECK(parameters[3]["unit"] == "kg/m^3");
-}
-
-TEST_CASE("report: starts, the one taken first, then as they would be chosen") {
-    const DesignFolder folder;
-    const auto file = reading::read_design(folder.design());
-    REQUIRE(file);
-    const auto values = [](double height, double place) {
-        return Json{{"height", height}, {"width", 20}, {"place", place}, {"density", 1000}, {"speed", 40}};
-    };
-    const auto start = [&](int seed, const char* status, const Json& objective, const Json& violation, const Json& parameters) {
-        return Json{{"seed", seed},
-                    {"status", status},
-                    {"message", "why"},
-                    {"objective", objective},
-                    {"evaluations", seed + 1},
-                    {"constraint_violation", violation},
-                    {"parameters", parameters},
-                    {"limited_by", {"mass"}}};
-    };
-    Json result{{"seed", 7}, {"parameters", values(10, 5)}, {"starts", Json::array()}};
-    CHECK(start_rows(file->design, Json::object()).empty());
-    result["starts"] = {start(0, "infeasible", 0.5, 0.3, values(10, 0)), start(6, "optimal", 3.0, 0.0, values(12, 5)),
-                        start(7, "optimal", 2.0, 0.0, values(10, 5)), start(8, "failed", Json(), Json(), Json())};
-    const Json rows = start_rows(file->design, result);
-    REQUIRE(rows.size() == 4);
-    std::vector<int> order;
-    for (const Json& row : rows) order.push_back(row["seed"].get<int>());
-    CHECK(order == std::vector<int>{7, 6, 0, 8});
-    CHECK(rows[0]["taken"] == true);
-    CHECK(rows[0]["away"] == 0.0);
-    CHECK(rows[1]["taken"] == false);
-    CHECK(rows[1]["away"].get<double>() == Approx(2.0 / 8));  // of height, between 6 and 14
-    CHECK(rows[2]["away"].get<double>() == Approx(5.0 / 25));
-    CHECK(rows[2]["violation"] == 0.3);
-    CHECK(rows[3]["away"].is_null());
-    CHECK(rows[3]["objective"].is_null());
-    CHECK(rows[3]["message"] == "why");
-    CHECK(rows[0]["limits"] == Json({"mass"}));
-}
-
 TEST_CASE("report: how a search went, with trials that failed and a line that was cut off") {
     const DesignFolder folder;
     const auto file = reading::read_design(folder.design());
@@ -392,6 +252,21 @@ TEST_CASE("report: simulate and clearance leave one beside their results, and re
     CHECK(run("report " + folder.file("nothing") + " --json").code == 3);
     folder.write("other/result.json", "{\"status\": \"ok\"}");
     CHECK(run("report " + folder.file("other") + " --json").json().at("errors")[0].at("code") == "unsupported");
+}
+
+TEST_CASE("report: of a run that went on it has the forces of all steps, and is made again from its tables") {
+    const DesignFolder folder;
+    const std::string out = folder.file("sim"), scene = folder.file("small.scene.json");
+    REQUIRE(run("simulate " + scene + " --steps 34 --no-report --out " + out).code == 0);
+    REQUIRE(run("simulate " + scene + " --steps 40 --continue " + out + "/trajectory.json --out " + out).code == 0);
+    const std::string page = contents(out + "/report.html");
+    const Json series = data_of(page)["scenarios"][0]["series"];
+    REQUIRE_FALSE(series.empty());
+    CHECK(unpacked<double>(series.back()["time"], "f64").size() == 40);
+    REQUIRE(run("report " + out).code == 0);
+    CHECK(contents(out + "/report.html") == page);
+    REQUIRE(run("simulate " + scene + " --steps 40 --out " + folder.file("whole")).code == 0);
+    CHECK(data_of(contents(folder.file("whole/report.html")))["scenarios"][0]["series"] == series);
 }
 
 TEST_CASE("report: how deep two parts are in each other, how much they share, and where") {

@@ -64,6 +64,59 @@ export function span(values, room = 0.04) {
   return [low - more, high + more];
 }
 
+// Draws the axes of a chart of two numbers, with lines at round ones. Answers where values lie: {x(v), y(v), left, top, w, h}.
+export function frame(c, width, height, [x0, x1], [y0, y1], xName, yName) {
+  const right = 16, top = 26, bottom = 44, up = ticks(y0, y1, 6), left = Math.max(56, ...up.map(({ text }) => 14 + c.measureText(text).width));
+  const w = width - left - right, h = height - top - bottom, across = ticks(x0, x1, Math.max(2, w / 90));
+  const place = { x: (v) => left + (w * (v - x0)) / (x1 - x0), y: (v) => top + h * (1 - (v - y0) / (y1 - y0)), left, top, w, h };
+  c.strokeStyle = css("--line");
+  c.fillStyle = css("--muted");
+  c.textAlign = "center";
+  for (const { value, text } of across) {
+    c.fillText(text, Math.min(place.x(value), width - c.measureText(text).width / 2), height - 24);
+    line(c, [place.x(value), top], [place.x(value), top + h]);
+  }
+  c.textAlign = "right";
+  for (const { value, text } of up) {
+    c.fillText(text, left - 8, place.y(value) + 4);
+    line(c, [left, place.y(value)], [left + w, place.y(value)]);
+  }
+  c.fillText(xName, left + w, height - 6, left + w);
+  c.textAlign = "left";
+  c.fillText(yName, 0, 14, width);
+  return place;
+}
+
+function line(c, from, to) {
+  c.beginPath();
+  c.moveTo(...from);
+  c.lineTo(...to);
+  c.stroke();
+}
+
+// A line across a chart at a value of "x" or "y", where the chart has it: what is required, unless it is told otherwise.
+export function rule(c, place, axis, value, colour = "--bad", dash = [6, 4]) {
+  const at = place[axis](value), beyond = axis === "x" ? at < place.left || at > place.left + place.w : at < place.top || at > place.top + place.h;
+  if (beyond) return;
+  c.strokeStyle = css(colour);
+  c.setLineDash(dash);
+  if (axis === "x") line(c, [at, place.top], [at, place.top + place.h]);
+  else line(c, [place.left, at], [place.left + place.w, at]);
+  c.setLineDash([]);
+}
+
+// Number of the item of `at` (index -> [x, y] in pixels or null) nearest to a point, within `far` pixels; -1: none.
+export function nearest(indices, at, x, y, far) {
+  let best = -1, least = far * far;
+  for (const i of indices) {
+    const p = at(i);
+    if (!p) continue;
+    const d = (p[0] - x) ** 2 + (p[1] - y) ** 2;
+    if (d < least) [best, least] = [i, d];
+  }
+  return best;
+}
+
 const ramp = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [226, 213, 70]];  // as viridis has it: light for much, any colour vision
 
 export function shadeOf(share) {

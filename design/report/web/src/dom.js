@@ -16,6 +16,9 @@ export function element(tag, attributes = {}, ...children) {
   return made;
 }
 
+// Words that a line's end does not cut at their hyphens.
+export const wholeWords = (text) => text.split(" ").flatMap((word, k) => [k ? " " : "", element("span", { class: "word" }, word)]);
+
 export const reducedMotion = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 export function announce(text) {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The page of an exploration: two chosen numbers of each design against each other, all of them side by side, and the design that is chosen.
-import { canvasChart, css, endTexts, shadeOf, span, ticks } from "./chart.js";
+import { canvasChart, css, endTexts, frame, nearest, rule, shadeOf, span } from "./chart.js";
 import { Designs } from "./designs.js";
 import { announce, byId, element } from "./dom.js";
-import { number, plural, withUnit } from "./numbers.js";
+import { number, plural, raised, withUnit } from "./numbers.js";
 import { cell, rangeDrawing, requiredWords, status, tableOf } from "./tables.js";
 
-const unitOf = (column) => column.unit.replace("^2", "\u00b2").replace("^3", "\u00b3");
-const named = (designs, k) => (designs.columns[k].unit ? `${designs.names[k]} [${unitOf(designs.columns[k])}]` : designs.names[k]);
-const told = (column, v) => withUnit(number(v), unitOf(column));
+const named = (designs, k) => (designs.columns[k].unit ? `${designs.names[k]} [${raised(designs.columns[k].unit)}]` : designs.names[k]);
+const told = (column, v) => withUnit(number(v), column.unit);
 const violates = (column, v) => column.group === "constraint" && ((column.lower !== null && v < column.lower) || (column.upper !== null && v > column.upper));
 
 // A list of columns to choose from, by kind.
@@ -22,20 +21,7 @@ function chooser(label, designs, chosen, none, onChange) {
   return element("label", { class: "field" }, label, select);
 }
 
-// Number of the item of `at` (index -> [x, y] in pixels or null) nearest to a point, within `far` pixels; -1: none.
-function nearest(indices, at, x, y, far) {
-  let best = -1, least = far * far;
-  for (const i of indices) {
-    const p = at(i);
-    if (!p) continue;
-    const d = (p[0] - x) ** 2 + (p[1] - y) ** 2;
-    if (d < least) [best, least] = [i, d];
-  }
-  return best;
-}
-
 function scatter(parent, designs) {
-  const room = { left: 66, right: 16, top: 14, bottom: 44 };
   let place, front = null;
   const point = (i) => {
     const x = designs.value(designs.x, i), y = designs.value(designs.y, i);
@@ -44,46 +30,10 @@ function scatter(parent, designs) {
   const all = designs.list.map((_, i) => i);
   const chart = canvasChart(parent, 400, (c, width, height) => {
     const cx = designs.columns[designs.x], cy = designs.columns[designs.y], [x0, x1] = span(cx.values), [y0, y1] = span(cy.values);
-    const up = ticks(y0, y1, 6), left = Math.max(room.left, ...up.map(({ text }) => 14 + c.measureText(text).width));
-    const w = width - left - room.right, h = height - room.top - room.bottom, across = ticks(x0, x1, Math.max(2, w / 90));
-    place = { x: (v) => left + (w * (v - x0)) / (x1 - x0), y: (v) => room.top + h * (1 - (v - y0) / (y1 - y0)) };
-    c.strokeStyle = css("--line");
-    c.fillStyle = css("--muted");
-    c.textAlign = "center";
-    for (const { value, text } of across) {
-      c.fillText(text, place.x(value), height - 24);
-      c.beginPath();
-      c.moveTo(place.x(value), room.top);
-      c.lineTo(place.x(value), room.top + h);
-      c.stroke();
-    }
-    c.textAlign = "right";
-    for (const { value, text } of up) {
-      c.fillText(text, left - 8, place.y(value) + 4);
-      c.beginPath();
-      c.moveTo(left, place.y(value));
-      c.lineTo(left + w, place.y(value));
-      c.stroke();
-    }
-    const arrow = (column) => (column.better < 0 ? " \u2193" : column.better > 0 ? " \u2191" : "");
-    c.textAlign = "right";
-    c.fillText(named(designs, designs.x) + (cx.better < 0 ? "  \u2190 better" : cx.better > 0 ? "  better \u2192" : ""), left + w, height - 6);
-    c.textAlign = "left";
-    c.fillText(named(designs, designs.y) + (arrow(cy) ? `  better${arrow(cy)}` : ""), left + 6, room.top + 4);
-    c.strokeStyle = css("--bad");
-    c.setLineDash([6, 4]);
-    for (const [column, line] of [[cx, (v) => [[place.x(v), room.top], [place.x(v), room.top + h]]], [cy, (v) => [[left, place.y(v)], [left + w, place.y(v)]]]]) {
-      if (column.group !== "constraint") continue;
-      for (const v of [column.lower, column.upper].filter((each) => each !== null)) {
-        const [from, to] = line(v);
-        if (from[0] < left || from[0] > left + w || from[1] < room.top || from[1] > room.top + h) continue;
-        c.beginPath();
-        c.moveTo(...from);
-        c.lineTo(...to);
-        c.stroke();
-      }
-    }
-    c.setLineDash([]);
+    const arrow = cy.better < 0 ? "  better \u2193" : cy.better > 0 ? "  better \u2191" : "", side = cx.better < 0 ? "  \u2190 better" : cx.better > 0 ? "  better \u2192" : "";
+    place = frame(c, width, height, [x0, x1], [y0, y1], named(designs, designs.x) + side, named(designs, designs.y) + arrow);
+    for (const [column, axis] of [[cx, "x"], [cy, "y"]])
+      if (column.group === "constraint") [column.lower, column.upper].filter((v) => v !== null).forEach((v) => rule(c, place, axis, v));
     front = designs.front();
     if (front?.length > 1) {
       c.strokeStyle = css("--accent");
@@ -272,7 +222,7 @@ function chosenTables(designs) {
     cell("Between its bounds", "", bounded(column) ? rangeDrawing({ start: column.values[i], end: column.values[i], lower: column.lower, upper: column.upper }) : "\u2013"))));
   const right = tableOf("What it reaches", [["Reached"], ["Value", "num"], ["Required", "num"]], results.map(({ column, k }) => element("tr", {},
     element("td", {}, designs.names[k]), cell("Value", violates(column, column.values[i]) ? "num bad" : "num", told(column, column.values[i])),
-    cell("Required", "num", column.group === "constraint" && (column.lower !== null || column.upper !== null) ? requiredWords({ required_lower: column.lower, required_upper: column.upper, unit: unitOf(column) }) : "\u2013"))));
+    cell("Required", "num", column.group === "constraint" && (column.lower !== null || column.upper !== null) ? requiredWords({ required_lower: column.lower, required_upper: column.upper, unit: column.unit }) : "\u2013"))));
   return [element("div", {}, left), element("div", {}, right)];
 }
 

@@ -3,19 +3,20 @@
 import "./style.css";
 import { readData } from "./data.js";
 import { repaintCharts } from "./chart.js";
-import { announce, byId, element } from "./dom.js";
+import { announce, byId, element, wholeWords } from "./dom.js";
 import { motionPlots, marginPlot, searchPlots } from "./curves.js";
 import { showExploration } from "./explore.js";
 import { startMotion } from "./motion.js";
 import { made as plots, repaintPlots, setPlotTime } from "./plots.js";
-import { costBars, interferenceTable, pairTable, parameterTable, requirementTable, startTable } from "./tables.js";
+import { costBars, interferenceTable, pairTable, parameterTable, requirementTable, resolutionTable, startTable } from "./tables.js";
+import { showTolerances } from "./tolerance.js";
 import { startPrinting, startTheme } from "./theme.js";
 import * as words from "./words.js";
 
 function fillVerdict(data) {
   document.title = `${data.name} \u2013 fettle report`;
   byId("name").textContent = data.name;
-  byId("kind").textContent = { optimise: "optimisation", simulate: "simulation", clearance: "clearance", explore: "exploration" }[data.kind];
+  byId("kind").textContent = { optimise: "optimisation", simulate: "simulation", clearance: "clearance", explore: "exploration", tolerance: "tolerances" }[data.kind];
   byId("asked").textContent = words.asked(data);
   const { tone, head, rest } = words.reached(data);
   byId("reached").append(element("strong", { class: `verdict-${tone}` }, head), ` ${rest}`);
@@ -31,13 +32,10 @@ function section(title, intro, ...children) {
   return made;
 }
 
-// Words that a line's end does not cut at their hyphens.
-const wholeWords = (text) => text.split(" ").flatMap((word, k) => [k ? " " : "", element("span", { class: "word" }, word)]);
-
 function fillFooter(data) {
   const lines = [];
   if (data.command) lines.push(element("p", {}, "Command: ", element("code", {}, ...wholeWords(data.command))));
-  lines.push(element("p", {}, `fettle ${data.program}${data.made_by_other ? `; this page was made by fettle ${data.made_by_other}` : ""}. Folder: `, element("code", {}, data.folder)));
+  lines.push(element("p", {}, `fettle ${data.program}${data.made_by_other ? `; this page was made by fettle ${data.made_by_other}` : ""}. ${data.kind === "tolerance" ? "Design" : "Folder"}: `, element("code", {}, data.folder)));
   const files = data.files.flatMap((name, k) => [k ? ", " : "", element("a", { href: name, download: name }, name), words.fileWords[name] ? ` (${words.fileWords[name]})` : ""]);
   if (files.length) lines.push(element("p", { id: "files" }, "Beside this page: ", ...files, "."));
   lines.push(element("p", {}, words.provenWords(data)));
@@ -74,6 +72,7 @@ function fillSections(data, motion) {
     byId("sections").lastElementChild?.append(box);
     marginPlot(box, data, pick);
   }
+  if (data.resolution) section("How exact these numbers are", words.resolutionIntro(data.resolution), ...resolutionTable(data.resolution));
   if (data.kind === "optimise") {
     fillLimits(data);
     section("Parameters", "The open dot is where it began, the full one where it ended.", parameterTable(data));
@@ -115,7 +114,8 @@ if (data.views.length) {
   byId("motion").hidden = true;
   byId("hero").classList.add("plain");
 }
-const exploration = data.kind === "explore" ? showExploration(data, section, motion) : fillSections(data, motion);
+const shown = { explore: () => ({ exploration: showExploration(data, section, motion) }), tolerance: () => ({ tolerances: showTolerances(data, section) }) }[data.kind] ?? (() => fillSections(data, motion));
+const parts = shown() ?? {};
 fillFooter(data);
 const repaint = () => {
   repaintPlots();
@@ -129,4 +129,4 @@ startPrinting(motion?.viewer, repaint);
 motion?.open();
 announce("");
 performance.mark("fettle-ready");
-window.fettleReport = { data, motion, plots, exploration };
+window.fettleReport = { data, motion, plots, ...parts };

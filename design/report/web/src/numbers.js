@@ -35,7 +35,16 @@ export function numberInSteps(x, step) {
   return minus(`${trimmed(mantissa)}e${Number(power)}`);
 }
 
-export const withUnit = (text, unit) => (unit && text !== none ? `${text}\u00a0${unit}` : text);
+// "mm^2" with its power raised.
+export const raised = (unit) => unit.replace("^2", "\u00b2").replace("^3", "\u00b3");
+export const withUnit = (text, unit) => (unit && text !== none ? `${text}\u00a0${raised(unit)}` : text);
+
+// A share in percent; one that is not whole is not told as 100 %.
+export function percent(share, digits = 2) {
+  if (!isNumber(share)) return none;
+  const text = number(100 * share, digits);
+  return text === "100" && share < 1 ? `>\u00a0${digits > 2 ? 99.99 : 99}\u00a0%` : `${text}\u00a0%`;
+}
 
 // As many decimals as tell one step from the next.
 export function seconds(t, step = 0.01) {

@@ -118,6 +118,7 @@ export class Plot {
     ctx.clip();
     ctx.font = `${12 * ratio}px ${css("--font")}`;
     ctx.textAlign = "right";
+    ctx.textBaseline = "alphabetic";
     for (const { value, name } of limits) {
       const y = Math.round(plot.valToPos(value, "y", true));
       ctx.fillStyle = `${css("--bad")}12`;

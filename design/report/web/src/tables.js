@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Tables: pairs or requirements (whose rows show their gap in the picture), parameters, what limits the design.
 import { element } from "./dom.js";
-import { lowerBound, number, plural, seconds, spaced, upperBound, withUnit } from "./numbers.js";
-import { depthRange, heldWords, isShared, isTouching, spansMuch, startName, touchWords, volumeRange } from "./words.js";
+import { lowerBound, number, percent, plural, seconds, spaced, upperBound, withUnit } from "./numbers.js";
+import { capital, depthRange, finerName, heldWords, isShared, isTouching, spansMuch, startName, touchWords, volumeRange } from "./words.js";
 
 export function tableOf(label, headings, rows) {
   const head = headings.map(([text, type]) => element("th", { scope: "col", class: type }, text));
@@ -59,6 +59,28 @@ export function requiredWords(r) {
   return low ? `\u2265 ${withUnit(number(r.required_lower), r.unit)}` : `\u2264 ${withUnit(number(r.required_upper), r.unit)}`;
 }
 
+// Is a requirement met in one of its simulations, as found and finer, and not in the other?
+const flips = (data, requirement) => data.resolution?.rows.some((row) => row.of === "constraint" && row.flips && row.name === requirement.name);
+
+const runName = (run) => capital(finerName(run));
+
+// The check of resolution: each number as found and in each finer run.
+export function resolutionTable({ runs, rows }) {
+  const then = (row) => status(row.met_finer ? "met" : "not met");
+  const made = rows.map((row) => element("tr", row.flips ? { class: "flips" } : {},
+    element("td", {}, row.name, row.of === "term" ? element("small", {}, "in the objective") : null),
+    cell("As found", "num", withUnit(number(row.found), row.unit)),
+    ...runs.map((run, k) => cell(runName(run), "num", withUnit(number(row.finer[k]), row.unit))),
+    cell("Change", "num", percent(row.change)),
+    cell("Met then", "", row.of === "constraint" ? then(row) : "\u2013", row.flips ? element("small", {}, row.met ? "met as found" : "not met as found") : null)));
+  const notes = runs.flatMap((run) => [
+    run.failure ? `${runName(run)} it could not be simulated: ${run.failure}` : null,
+    run.change_of_best ? `${runName(run)} the best objective near by changes by about ${number(run.change_of_best, 3)}.` : null]).filter(Boolean);
+  const list = notes.length ? element("ul", { class: "plain-list" }, ...notes.map((note) => element("li", {}, note))) : "";
+  if (!made.length) return [list];
+  return [tableOf("Numbers with finer facets and time steps", [["Number"], ["As found", "num"], ...runs.map((run) => [runName(run), "num"]), ["Change", "num"], ["Met then"]], made), list];
+}
+
 export function requirementTable(data, show) {
   const rows = data.requirements.map((r) => {
     const pair = r.pair === null ? null : data.pairs[r.pair], shared = pair !== null && isShared(pair);
@@ -69,7 +91,7 @@ export function requirementTable(data, show) {
       cell("At most", "num", shared ? "\u2013" : withUnit(upperBound(r.upper), r.unit)),
       cell("These are", "", r.proven ? "proven" : "computed"),
       cell("When", "num", pair && pair.motion ? seconds(pair.time, data.step) : "\u2013"),
-      cell("Verdict", "", status(r.met ? "met" : shared ? "interference" : "not met")));
+      cell("Verdict", "", status(r.met ? "met" : shared ? "interference" : "not met"), flips(data, r) ? element("small", {}, r.met ? "not when finer" : "met when finer") : null));
   });
   return tableOf("Requirements", [["Requirement"], ["Required", "num"], ["At least", "num"], ["At most", "num"], ["These are"], ["When", "num"], ["Verdict"]], rows);
 }

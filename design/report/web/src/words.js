@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The verdict in words: what was asked, what was reached, what of it is proven. What is not proven is not told as if it were.
 import { Designs } from "./designs.js";
-import { lowerBound, number, plural, upperBound, withUnit } from "./numbers.js";
+import { lowerBound, number, percent, plural, upperBound, withUnit } from "./numbers.js";
 
 const mm = (text) => withUnit(text, "mm");
 
@@ -29,7 +29,8 @@ export function touchWords(pair) {
 }
 export const acceptWords = (pair) => `if they are meant to touch, --allow-touch ${pair.a}:${pair.b} accepts it`;
 
-const sentence = (text) => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
+export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+const sentence = (text) => `${capital(text)}.`;
 
 const list = (names) => (names.length < 2 ? names.join("") : `${names.slice(0, -1).join(", ")} and ${names[names.length - 1]}`);
 const some = (names, most = 3) => (names.length <= most ? list(names) : `${names.slice(0, most).join(", ")} and ${names.length - most} more`);
@@ -40,6 +41,7 @@ const somePairs = (names, most = 3) => (names.length <= most ? names.join("; ") 
 export function asked(data) {
   if (data.description) return data.description;
   if (data.kind === "explore") return "An exploration of a design space.";
+  if (data.kind === "tolerance") return "What becomes of the design when its parts are made.";
   if (data.kind === "optimise")
     return `Change ${plural(data.parameters.length, "parameter")} so that ${plural(data.requirements.length, "requirement")} ${data.requirements.length === 1 ? "is" : "are"} met and the objective is least.`;
   if (data.ranges) return "Certified clearances over all positions of the joints within their limits, in every combination.";
@@ -147,7 +149,7 @@ function violatedOf(designs, i) {
   const violation = designs.of("violation")[0].column.values[i];
   const over = ({ column }) => Math.max(column.lower === null ? -Infinity : column.lower - column.values[i], column.upper === null ? -Infinity : column.values[i] - column.upper);
   const found = designs.of("constraint").find((each) => Math.abs(over(each) - violation) <= 1e-3 * violation);
-  return found ? { name: found.column.name, unit: found.column.unit.replace("^2", "\u00b2").replace("^3", "\u00b3") } : null;
+  return found ? { name: found.column.name, unit: found.column.unit } : null;
 }
 
 function exploredFacts(data) {
@@ -160,14 +162,45 @@ function exploredFacts(data) {
   return rows;
 }
 
+// "99.3 % (98.1 % to 99.8 %)": predicted, or counted with its interval.
+export const yieldWords = (found) => (found ? percent(found.within, 4) + (found.least === undefined ? "" : ` (${percent(found.least, 4)} to ${percent(found.most, 4)})`) : "\u2013");
+
+// Is something required of a number of a study of tolerances?
+export const isJudged = (response) => response.lower !== null || response.upper !== null;
+
+function made(data) {
+  const { responses, samples, message } = data.answer;
+  if (!responses.length) return { tone: "open", head: "Undecided.", rest: message };
+  if (samples.count) {
+    const failed = samples.failed ? ` ${plural(samples.failed, "sample")} could not be made or simulated.` : "";
+    const rest = `\u2013 a yield of ${yieldWords(samples.yield)} at ${percent(samples.yield.confidence)} confidence.${failed}`;
+    return { tone: samples.met === samples.count ? "good" : "open", head: `${samples.met} of ${samples.count} samples meet every requirement`, rest };
+  }
+  const worst = responses.filter(isJudged).sort((a, b) => a.linear.yield.within - b.linear.yield.within)[0];
+  if (!worst) return { tone: "open", head: "No requirement is at stake.", rest: "" };
+  return { tone: "open", head: "Predicted, not sampled.", rest: `${worst.name} is met least often: by the linear prediction in ${yieldWords(worst.linear.yield)} of what is made.` };
+}
+
+function madeFacts(data) {
+  const { tolerances, samples, responses, process } = data.answer, cpk = (r) => r.sampled?.cpk?.value ?? Infinity;
+  const rows = [["Tolerances", String(tolerances.length), process ? `process ${process}` : ""]];
+  if (samples.count) rows.push(["Samples", String(samples.count), `seed ${samples.seed}`]);
+  const least = responses.reduce((best, r) => (cpk(r) < cpk(best) ? r : best), {});
+  if (least.name) rows.push(["Least Cpk", number(cpk(least), 3), least.name]);
+  const controlled = samples.controlled_yield;
+  if (controlled) rows.push(["Yield, prediction as control", percent(controlled.within, 4), `${percent(controlled.least, 4)} to ${percent(controlled.most, 4)}`]);
+  return rows;
+}
+
 // {tone: "good" | "open" | "bad", head, rest}
 export function reached(data) {
-  return { optimise: optimised, simulate: simulated, clearance: cleared, explore: explored }[data.kind](data);
+  return { optimise: optimised, simulate: simulated, clearance: cleared, explore: explored, tolerance: made }[data.kind](data);
 }
 
 // [term, value, small print]
 export function facts(data) {
   if (data.kind === "explore") return exploredFacts(data);
+  if (data.kind === "tolerance") return madeFacts(data);
   const rows = [];
   if (data.kind === "optimise" && data.objective.end !== null) {
     rows.push(["Objective", number(data.objective.end), data.objective.start !== null ? `from ${number(data.objective.start)} at the start` : "the start could not be evaluated"]);
@@ -198,11 +231,17 @@ export const fileWords = {
 
 // What is proven, and what is not.
 export function provenWords(data) {
+  if (data.kind === "tolerance") return "Predictions and samples are computed; nothing here is proven, but the clearance of each sample by itself.";
   if (data.kind === "explore") return "Proven: that a design meets its requirements of clearance is judged by certified bounds; others are judged by computed values. Values in the curves are what was measured; the parts are shown at the start of their motion.";
   if (data.status === "shown") return "Nothing is proven here. Lengths in mm.";
   const where = data.ranges ? "over all positions of the joints within their limits" : data.motion ? "over the whole continuous motion" : "for the parts as they lie";
   return `Proven: a bound that holds ${where}, of the meshes as stored, rounding included; not a figure from samples. Numbers called computed, pictures and curves of forces are not proofs: they have the error of the time step and of facets. Lengths in mm.`;
 }
+
+// The simulations of the check of resolution, by their names in the answer.
+const finerRuns = { finer_facets: "with twice the facets", finer_steps: "with half the time step" };
+export const finerName = ({ run }) => finerRuns[run] ?? run;
+export const resolutionIntro = ({ runs }) => `The final design, simulated once more ${list(runs.map(finerName))}${runs.length > 1 ? ", each by itself" : ""}: an estimate of the error of these numbers, not a bound.`;
 
 // Is a logarithmic scale wanted?
 export const spansMuch = (numbers) => Math.min(...numbers) > 0 && Math.max(...numbers) > 100 * Math.min(...numbers);
