@@ -75,7 +75,7 @@ TEST_CASE("a clearance is that of solids: a body inside another violates it, wit
     CHECK(beside.clearance->status == core::clearance::PairStatus::clear);
 
     const Measurement inside = measured(cubes(0.01), clearance);
-    CHECK(inside.fault.find("`small` and `large` one lies inside") != std::string::npos);
+    CHECK(inside.fault.find("`small` and `large` lies inside the other") != std::string::npos);
     CHECK(inside.value == Approx(-0.03));
     CHECK(inside.lower == inside.value);
     CHECK(inside.upper == inside.value);
