@@ -32,9 +32,9 @@ struct CheckArguments {
 enum class Verdict { met, in_doubt, violated, undecided };
 
 Verdict verdict_of(const JudgedDesign& judged, const Summary& summary) {
-    if (!judged.final.usable) return judged.final.violation > 0 ? Verdict::violated : Verdict::undecided;
-    for (const answers::SummaryRow& row : summary.rows)
+    for (const answers::SummaryRow& row : summary.rows)  // relations alone, where the design cannot be evaluated
         if (row.verdict == answers::SummaryRow::Verdict::violated) return Verdict::violated;
+    if (!judged.final.usable || interrupted()) return Verdict::undecided;
     return summary.is_good ? Verdict::met : Verdict::in_doubt;
 }
 
@@ -96,7 +96,7 @@ int run_check(const CheckArguments& options, const CommonOptions& common, Consol
                        word(verdict), summary.why, path});
     console.result(json_of(*problem, judged, summary, verdict, warnings),
                    answer_text(summary, console, std::numeric_limits<std::size_t>::max()));
-    return interrupted() ? exit_undecided : exit_of(verdict);
+    return exit_of(verdict);
 }
 
 }  // namespace

@@ -28,11 +28,17 @@ bool all_proven(const Json& constraints) {
            });
 }
 
+// Pairs that push each other are exempt from a minimum, and nothing is proven of them.
+bool all_clear(const Json& pairs) {
+    return std::all_of(pairs.begin(), pairs.end(), [](const Json& each) { return word_in(each, "status") == "clear"; });
+}
+
 std::string verdict_of(const std::string& tool, int exit_code, const Json& answer) {
     if (exit_code == exit_violated) return "violated";
     if (exit_code == exit_undecided) return "undecided";
     if (exit_code != exit_done) return "refused";
-    if (tool == "clearance" || tool == "ranges") return "proven";
+    if (tool == "clearance") return all_clear(answer.value("pairs", Json::array())) ? "proven" : "not checked";
+    if (tool == "ranges") return "proven";
     if (tool != "check" && tool != "optimise") return "not checked";
     const bool doubtful =
         answer.contains("by_models") && answer["by_models"].is_object() && !answer["by_models"].value("in_doubt", Json::array()).empty();
@@ -55,6 +61,8 @@ std::string clearance_sentence(const Json& answer) {
     for (const Json& pair : pairs)
         if (worst == nullptr || spare(pair) < spare(*worst)) worst = &pair;
     std::string text = core::base::counted(pairs.size(), "pair") + ", " + word_in(answer, "source");
+    const auto not_clear = std::count_if(pairs.begin(), pairs.end(), [](const Json& pair) { return word_in(pair, "status") == "contact"; });
+    if (not_clear > 0) text += " (" + std::to_string(not_clear) + " in contact, of which nothing is proven)";
     if (worst == nullptr) return text + ": nothing was judged";
     text += ": worst " + word_in(*worst, "a") + ":" + word_in(*worst, "b") + ", " + word_in(*worst, "finding") +
             core::base::formatted(", at least %.6g mm", 1e3 * number_in(*worst, "lower"));

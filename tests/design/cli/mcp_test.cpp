@@ -121,6 +121,11 @@ TEST_CASE("mcp: answers are the command line's, begun by a verdict") {
     CHECK(same("simulate", {{"scene", "small.scene.json"}, {"steps", 2}}, "simulate " + scene + " --steps 2")["verdict"] == "not checked");
     CHECK(same("clearance", {{"file", {"small.scene.json"}}, {"minimum", "1000mm"}},
                "clearance " + scene + " --minimum 1000mm")["verdict"] == "violated");
+    // The cube and the table push each other over the motion: nothing is proven of them, so it is not told.
+    const Json pushed = same("clearance", {{"file", {"small.scene.json"}}, {"motion", true}}, "clearance " + scene + " --motion");
+    CHECK(pushed["answer"]["pairs"].dump().find("\"status\":\"contact\"") != std::string::npos);
+    CHECK(pushed["verdict"] == "not checked");
+    CHECK(pushed["sentence"].get<std::string>().find("1 in contact, of which nothing is proven") != std::string::npos);
     const Json check = same("check", {{"design", "small.design.json"}}, "check " + folder.design());
     const int code = run("check " + folder.design()).code;
     CHECK((check["verdict"] == "violated") == (code == 1));
