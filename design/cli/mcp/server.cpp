@@ -156,7 +156,9 @@ private:
         const Json name = params.value("name", Json());
         const Tool* tool = name.is_string() ? find_tool(name.get<std::string>()) : nullptr;
         if (tool == nullptr) return fail(id, invalid_params, "there is no tool " + name.dump());
-        const Json arguments = params.value("arguments", Json::object());
+        Json arguments = params.value("arguments", Json());
+        if (arguments.is_null()) arguments = Json::object();
+        if (!arguments.is_object()) return fail(id, invalid_params, "`arguments` is an object");
         const Json meta = params.value("_meta", Json::object());
         Json token = meta.is_object() ? meta.value("progressToken", Json()) : Json();
         if (!token.is_string() && !token.is_number_integer()) token = nullptr;

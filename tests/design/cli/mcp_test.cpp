@@ -184,6 +184,10 @@ TEST_CASE("mcp: what takes long is a job; arguments and messages that are not ta
     CHECK(code(R"({"jsonrpc": "2.0", "id": 7, "method": "no/such"})") == -32601);
     CHECK(code(R"({"jsonrpc": "2.0", "id": 8, "method": "tools/call", "params": {"name": "rm"}})") == -32602);
     CHECK(code(R"({"jsonrpc": "2.0", "id": [], "method": "ping"})") == -32600);
+    CHECK(code(R"({"jsonrpc": "2.0", "id": 9, "method": "tools/call", "params": {"name": "describe", "arguments": []}})") == -32602);
+    CHECK(code(R"({"jsonrpc": "2.0", "id": 9, "method": "tools/call", "params": {"name": "describe", "arguments": "x"}})") == -32602);
+    for (const char* tool : {"describe", "write", "job", "validate", "optimise"})
+        CHECK(client.call(tool, nullptr)["structuredContent"]["verdict"] == "refused");
     CHECK(client.ask("ping", Json::object())["result"] == Json::object());
 }
 
