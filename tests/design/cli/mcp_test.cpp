@@ -29,6 +29,13 @@ public:
             ask("initialize", {{"protocolVersion", "2025-06-18"}, {"capabilities", Json::object()}, {"clientInfo", {{"name", "test"}}}});
         tell(R"({"jsonrpc": "2.0", "method": "notifications/initialized"})");
     }
+    ~Client() {  // as a client ends it: the server removes its folder
+        server_.tell_no_more();
+        while (server_.next_line({})) {
+        }
+    }
+    Client(const Client&) = delete;
+    Client& operator=(const Client&) = delete;
     const Json& hello() const { return hello_; }
 
     void tell(const std::string& line) { REQUIRE(server_.tell(line + "\n")); }
