@@ -117,7 +117,12 @@ TEST_CASE("clearance: a folder of meshes, all pairs of it") {
         CHECK(none.says("this folder has no mesh"));
     }
     boxes.write("cad/part.step", "ISO-10303-21;");
-    CHECK(run("clearance " + boxes.file("cad/part.step") + " --unit mm --json").json()["errors"][0]["code"] == "unsupported");
+#ifdef FETTLE_STEP_SAMPLES  // built with Open CASCADE
+    const std::string unread = "parse";
+#else
+    const std::string unread = "unsupported";
+#endif
+    CHECK(run("clearance " + boxes.file("cad/part.step") + " --unit mm --json").json()["errors"][0]["code"] == unread);
 }
 
 TEST_CASE("clearance --split: what is printed in place as one file is judged solid by solid") {
