@@ -319,17 +319,27 @@ Result<std::vector<Mesh>> read_mesh_parts(const std::string& path, const MeshRea
 
 Result<Mesh> item_called(const std::vector<Mesh>& parts, const std::string& name, const std::string& path) {
     std::string names;
-    const Mesh* found = nullptr;
-    std::size_t count = 0, told = 0;
+    std::vector<const Mesh*> found;
     constexpr std::size_t most_told = 30;
-    for (const Mesh& part : parts) {
-        if (part.name == name) found = &part, ++count;
-        if (++told <= most_told) names += (told == 1 ? "`" : ", `") + base::shown_on_one_line(part.name) + "`";
+    const std::vector<std::string> called = item_names(parts);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (called[i] == name) return parts[i];
+        if (parts[i].name == name) found.push_back(&parts[i]);
+        if (i < most_told) names += (i == 0 ? "`" : ", `") + base::shown_on_one_line(called[i]) + "`";
     }
-    if (count == 1) return *found;
+    if (found.size() == 1) return *found.front();
     return Error{ErrorCode::inconsistent, path,
-                 std::string(count == 0 ? "has no item `" : "has several items `") + name + "`; it has " + names +
-                     (told > most_told ? ", ..." : "")};
+                 std::string(found.empty() ? "has no item `" : "has several items `") + name + "`; it has " + names +
+                     (parts.size() > most_told ? ", ..." : "")};
+}
+
+std::vector<std::string> item_names(const std::vector<Mesh>& parts) {
+    std::map<std::string, int> counts, so_far;
+    for (const Mesh& part : parts) ++counts[part.name];
+    std::vector<std::string> names;
+    for (const Mesh& part : parts)
+        names.push_back(counts[part.name] == 1 ? part.name : part.name + "#" + std::to_string(++so_far[part.name]));
+    return names;
 }
 
 }  // namespace fettle::core::mesh_files

@@ -73,6 +73,9 @@ Result<geometry::Mesh> read_mesh(const std::string& path, const MeshReadOptions&
 /// named after the file without its extension. Errors: as read_mesh.
 Result<std::vector<geometry::Mesh>> read_mesh_parts(const std::string& path, const MeshReadOptions& options = {});
 
+/// What item_called finds each of the parts by: its name, with "#1", "#2", ... where several have it.
+std::vector<std::string> item_names(const std::vector<geometry::Mesh>& parts);
+
 /// One of the parts, by its name. Errors, with `where` the path: inconsistent (none is called so, or several), with the names that there
 /// are.
 Result<geometry::Mesh> item_called(const std::vector<geometry::Mesh>& parts, const std::string& name, const std::string& path);

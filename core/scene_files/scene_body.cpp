@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/base/limits.hpp"
+#include "core/base/text.hpp"
 #include "core/base/units.hpp"
 #include "core/files/index_rows.hpp"
 #include "core/files/nearest_word.hpp"
@@ -27,6 +28,7 @@ const std::vector<std::string_view> body_keys{"name",
                                               "mesh",
                                               "mesh_unit",
                                               "mesh_item",
+                                              "mesh_solid",
                                               "mesh_facets",
                                               "surface_tolerance",
                                               "shape",
@@ -144,7 +146,7 @@ SceneBodies::MeshSource SceneBodies::read_geometry(const files::JsonNode& node, 
     }
     if (node["mesh_unit"].exists() && !mesh.exists())
         node["mesh_unit"].fail(ErrorCode::inconsistent, "only a `mesh` file has a unit of its own");
-    for (const char* key : {"mesh_item", "mesh_facets", "surface_tolerance"})
+    for (const char* key : {"mesh_item", "mesh_solid", "mesh_facets", "surface_tolerance"})
         if (node[key].exists() && !mesh.exists()) node[key].fail(ErrorCode::inconsistent, std::string("`") + key + "` is of a `mesh` file");
     if (mesh.exists()) source = read_mesh_file(node, body);
     if (shape.exists()) make_shape(shape, body);
@@ -197,10 +199,12 @@ SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node,
     if (!mesh_files::is_step(*file))
         for (const char* key : {"mesh_facets", "surface_tolerance"})
             if (node[key].exists()) node[key].fail(ErrorCode::inconsistent, std::string("`") + key + "` is of STEP files");
+    const files::JsonNode solid = node["mesh_solid"];
+    const int number = solid.exists() ? solid.integer(1).value_or(1) : 0;
     std::string key = *file;
-    if (!item.empty() || options.chord > 0 || options.surface_tolerance > 0)
+    if (!item.empty() || number > 0 || options.chord > 0 || options.surface_tolerance > 0)
         key += "\n" + item + "\n" + std::to_string(options.chord) + "\n" + std::to_string(options.surface_tolerance);
-    const MeshSource source{key, options.unit, {1, 1, 1}};
+    MeshSource source{key, options.unit, {1, 1, 1}};
     auto known = files_.find({key, options.unit});
     if (known == files_.end()) {
         auto found = item.empty() ? mesh_files::read_mesh(*file, options) : item_of_file(*file, item, options);
@@ -210,8 +214,30 @@ SceneBodies::MeshSource SceneBodies::read_mesh_file(const files::JsonNode& node,
         }
         known = files_.emplace(std::pair(key, options.unit), std::move(found).value()).first;
     }
-    body.mesh = known->second;
+    if (number == 0) {
+        body.mesh = known->second;
+        return source;
+    }
+    std::get<0>(source) += "\n" + std::to_string(number);
+    const std::vector<geometry::Mesh>& solids = solids_of_file({key, options.unit}, known->second);
+    if (number > count_of(solids)) {
+        const std::string count = base::counted(solids.size(), "solid");
+        solid.fail(ErrorCode::out_of_range,
+                   "the mesh has " + count + "; they are counted from 1, in the order of their first triangles (--split)");
+        return source;
+    }
+    body.mesh = solids[static_cast<std::size_t>(number - 1)];
     return source;
+}
+
+/// Mended as a whole first, as where meshes are split without a scene: numbers are the same.
+const std::vector<geometry::Mesh>& SceneBodies::solids_of_file(const std::pair<std::string, double>& key, geometry::Mesh mesh) {
+    auto known = solids_.find(key);
+    if (known == solids_.end()) {
+        if (!options_.strict_meshes) solids::repair_mesh(mesh);
+        known = solids_.emplace(key, solids::split_solids(mesh)).first;
+    }
+    return known->second;
 }
 
 /// Bodies of one file are read together: a STEP file takes a while.

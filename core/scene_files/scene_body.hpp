@@ -46,6 +46,7 @@ private:
     void settle_mesh(const files::JsonNode& node, const MeshSource& source, scene::Body& body);
     MeshSource read_mesh_file(const files::JsonNode& node, scene::Body& body);
     base::Result<geometry::Mesh> item_of_file(const std::string& file, const std::string& item, const mesh_files::MeshReadOptions& options);
+    const std::vector<geometry::Mesh>& solids_of_file(const std::pair<std::string, double>& key, geometry::Mesh mesh);
     void make_shape(const files::JsonNode& node, scene::Body& body);
     void read_own_part(const files::JsonNode& node, scene::ShapeSpec& spec);
     void read_dimensions(const files::JsonNode& node, scene::ShapeSpec& spec);
@@ -64,7 +65,8 @@ private:
     std::map<std::pair<std::string, double>, geometry::Mesh> files_;  ///< already read, by file and unit
     /// The same for files of which bodies take single items; with the chord and the tolerance that STEP is read with.
     std::map<std::tuple<std::string, double, double, double>, std::vector<geometry::Mesh>> items_;
-    std::set<MeshSource> sound_;  ///< nothing of them had to be mended
+    std::map<std::pair<std::string, double>, std::vector<geometry::Mesh>> solids_;  ///< of files_ of which bodies take single solids
+    std::set<MeshSource> sound_;                                                    ///< nothing of them had to be mended
     std::set<std::string> names_;
     std::vector<std::string> group_names_;  ///< of group -2, -3, ... until number_groups
 };

@@ -171,13 +171,19 @@ Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::
         Result<std::vector<Mesh>> parts = core::mesh_files::read_mesh_parts(path, read);
         errors.insert(errors.end(), parts.errors().begin(), parts.errors().end());
         if (!parts) continue;
-        for (Mesh& mesh : *parts) {
+        const std::vector<std::string> items = core::mesh_files::item_names(*parts);
+        const bool has_items = parts->size() > 1 || core::mesh_files::is_step(path);
+        for (std::size_t k = 0; k < parts->size(); ++k) {
+            Mesh& mesh = (*parts)[k];
             constexpr double told_with_the_model = 10;  // [m]: of larger bodies check_scene says it
             const double side = longest_side(mesh);
             const std::string name = body_name(mesh.name, names);
             const std::string doubt = doubted_side(side, core::mesh_files::states_its_unit(path) ? "" : unit);
-            for (NamedMesh& solid : solids_of({name, std::move(mesh)}, input, split, names, subject.warnings))
-                scene.bodies.push_back(body_of(std::move(solid), path, input));
+            std::vector<NamedMesh> solids = solids_of({name, std::move(mesh)}, input, split, names, subject.warnings);
+            for (std::size_t i = 0; i < solids.size(); ++i) {
+                subject.sources.push_back({path, has_items ? items[k] : "", solids.size() > 1 ? static_cast<int>(i) + 1 : 0});
+                scene.bodies.push_back(body_of(std::move(solids[i]), path, input));
+            }
             if (!doubt.empty() && side <= told_with_the_model) subject.warnings.push_back("body `" + name + "`: " + doubt);
         }
     }

@@ -29,8 +29,15 @@ std::string doubted_side(double side, const std::string& unit);
 /// What lists of pairs can name, and no other body has: the name of a file or an item as a body's.
 std::string body_name(const std::string& of_file, core::files::UniqueNames& names);
 
+/// Where a body comes from.
+struct MeshSource {
+    std::string file, item;  ///< item: of a file that has several, as core::mesh_files::item_called takes it; else empty
+    int solid = 0;           ///< of a mesh that was split: counted from 1; 0: all of it
+};
+
 struct MeshParts {
-    core::model::Model model;  ///< all static; length_unit is --unit, else of 3MF the millimetre
+    core::model::Model model;         ///< all static; length_unit is --unit, else of 3MF the millimetre
+    std::vector<MeshSource> sources;  ///< [body]
     std::vector<std::string> files;
     std::vector<std::string> warnings;
 };

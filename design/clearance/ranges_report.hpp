@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/clearance/free_ranges.hpp"
@@ -51,5 +52,7 @@ nlohmann::ordered_json ranges_json(const RangesReport& report);
 std::string ranges_text(const RangesReport& report);
 /// "free from -3.2 to 112.41 deg, proven".
 std::string range_sentence(const RangesReport& report, const core::clearance::FreeRange& range);
+/// The same as `limits` of a scene: "-3.2 deg", "112.41 deg". Nothing: the joint turns freely, is free nowhere, or is a ball's swing.
+std::optional<std::pair<std::string, std::string>> proposed_limits(const RangesReport& report, const core::clearance::FreeRange& range);
 
 }  // namespace fettle::design::clearance

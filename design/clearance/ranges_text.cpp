@@ -103,7 +103,8 @@ std::string as_limits(const RangesReport& report, const FreeRange& range, const 
         const bool is_one = range.above.free > 0 && range.above.free < std::numbers::pi;
         return is_one ? "   as limit: \"swing\": " + quoted(range.above.free, Towards::down) + "\n" : "";
     }
-    return "   as limits: \"limits\": [" + quoted(range.below.free, Towards::up) + ", " + quoted(range.above.free, Towards::down) + "]\n";
+    const auto limits = proposed_limits(report, range);
+    return "   as limits: \"limits\": [\"" + limits->first + "\", \"" + limits->second + "\"]\n";
 }
 
 std::string limits_lines(const RangesReport& report, const FreeRange& range) {
@@ -210,6 +211,13 @@ std::string range_sentence(const RangesReport& report, const FreeRange& range) {
     const Numbers numbers(report, range);
     return "free from " + numbers.rounded(range.below.free, Towards::up) + " to " + numbers.rounded(range.above.free, Towards::down) + " " +
            numbers.name() + proven;
+}
+
+std::optional<std::pair<std::string, std::string>> proposed_limits(const RangesReport& report, const FreeRange& range) {
+    if (range.turns_freely || starts_in_a_clash(range) || is_swing(report, range)) return std::nullopt;
+    const Numbers numbers(report, range);
+    const auto told = [&](double value, Towards towards) { return numbers.rounded(value, towards) + " " + numbers.name(); };
+    return std::pair(told(range.below.free, Towards::up), told(range.above.free, Towards::down));
 }
 
 Json ranges_json(const RangesReport& report) {

@@ -17,15 +17,6 @@ using core::features::Feature;
 using core::features::Features;
 using core::parts::SurfaceKind;
 
-// A body's mesh where it starts, in the order of its own triangles.
-core::geometry::Mesh placed_mesh(const core::model::Body& body) {
-    core::geometry::Mesh out;
-    out.name = body.name;
-    out.triangles = body.mesh.triangles;
-    out.vertices = (body.pose_start.rotation * body.mesh.vertices).colwise() + body.pose_start.position;
-    return out;
-}
-
 double size_of(const core::model::Body& body) {
     const Matrix3X& x = body.mesh.vertices;
     return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
@@ -46,6 +37,14 @@ ProcessVerdict verdict_of(const tolerances::Process& process, const core::model:
 }
 
 }  // namespace
+
+core::geometry::Mesh placed_mesh(const core::model::Body& body) {
+    core::geometry::Mesh out;
+    out.name = body.name;
+    out.triangles = body.mesh.triangles;
+    out.vertices = (body.pose_start.rotation * body.mesh.vertices).colwise() + body.pose_start.position;
+    return out;
+}
 
 std::string FeaturesReport::name_of(const core::features::FeatureOf& feature) const {
     return model.bodies[feature.body].name + "." + parts[feature.body].features[feature.feature].name;
