@@ -17,6 +17,7 @@ using scene::JointKind;
 using Corners = std::array<Vector3, 3>;
 
 constexpr double same_radius = 1e-3;  // share of it: files have so many digits
+constexpr double thickest = 0.15;     // a shell, as a share of its radius: facets of a hexagon reach 0.134
 constexpr double widest_facet = 1;    // as its chord over the radius: facets of a hexagon
 constexpr double flat_sine = 1e-6;    // sine of an angle
 constexpr double touch_share = 1e-5;  // of the bodies' size: faces that lie on each other (clearance/touching.hpp)
@@ -58,7 +59,7 @@ struct Axis {
     bool is_round(const Corners& c) const { return is_flat_across(c) || is_revolved(c); }
 };
 
-// Is it longer along the axis than thick across it?
+// Is it a shell round a bore, longer along the axis than thick across it?
 bool is_pin(const CommonPart& piece, const Axis& axis) {
     double low = infinity, high = -infinity, outer = 0, inner = infinity;
     bool is_hollow = false;
@@ -74,7 +75,7 @@ bool is_pin(const CommonPart& piece, const Axis& axis) {
             if (faces_axis) inner = std::min(inner, axis.radius(x));
         }
     }
-    return outer - (is_hollow ? inner : 0) < high - low;
+    return is_hollow && outer - inner < std::min(high - low, thickest * outer);
 }
 
 bool explains_about_axis(const Axis& axis, const CommonPart& piece, const geometry::Mesh& a, const geometry::Mesh& b) {
@@ -90,13 +91,11 @@ bool is_on_sphere(const Corners& c, const Vector3& centre) {
     return r > 0;
 }
 
-// A ball that is sunk in the other's material from outside is no ball in its socket: what both have must lie about the centre, or be a
-// shell between two spheres.
+// A ball that is sunk in the other's material is no ball in its socket: what both have must be a shell between two spheres.
 bool explains_about_point(const Vector3& centre, const CommonPart& piece, const geometry::Mesh& a, const geometry::Mesh& b) {
-    double on_sphere = 0, all = 0;
+    double on_sphere = 0, all = 0, inner = infinity, outer = 0;
     Vector3 rest = Vector3::Zero();  // the area of a mouth or neck, which is along its axis
     std::vector<Corners> others;
-    bool is_shell = false, is_about_centre = true;
     for (const CutTriangle& t : piece.triangles) {
         const Corners corners = parent_of(t, a, b);
         const Vector3 area = piece.area_of(t);
@@ -105,14 +104,17 @@ bool explains_about_point(const Vector3& centre, const CommonPart& piece, const 
         all += area.norm();
         if (is_on_sphere(corners, centre)) {
             on_sphere += area.norm();
-            is_shell = is_shell || faces_centre;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double r = (piece.corner(t, k) - centre).norm();
+                if (faces_centre) inner = std::min(inner, r);
+                outer = std::max(outer, r);
+            }
             continue;
         }
-        is_about_centre = is_about_centre && !faces_centre;
         rest += area;
         others.push_back(corners);
     }
-    if (!(on_sphere > 0.5 * all) || !(is_shell || is_about_centre)) return false;
+    if (!(on_sphere > 0.5 * all) || !(inner < infinity) || !(outer - inner < thickest * outer)) return false;
     const Axis axis{centre, rest.norm() > 0 ? Vector3(rest.normalized()) : Vector3(Vector3::UnitZ())};
     return std::all_of(others.begin(), others.end(), [&](const Corners& c) { return axis.is_round(c); });
 }

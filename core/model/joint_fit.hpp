@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-/// Does a joint explain that the two bodies which it joins have material in common? A pin drawn as wide as its bore, or through a part
-/// that was drawn without one, does not hinder the joint, and is no fault of a drawing that has a joint in their place. A frame that goes
-/// through the wheel which it carries is.
+/// Does a joint explain that the two bodies which it joins have material in common? A pin drawn as wide as its bore, or pressed into it,
+/// does not hinder the joint, and is no fault of a drawing that has a joint in their place. A frame that goes through the wheel which it
+/// carries is, and so is a pin in a part that has no bore, or one much too narrow.
 ///
-/// A joint explains what is round about its axis, facet by facet: all that bounds it is flat across the axis, or a facet of a surface of
-/// revolution about it, in the body that it is from; and it is longer along the axis than thick across it, as a pin in its bore, and not as
-/// a shoulder that is sunk into a face. A ball joint explains what is round about its point: facets of spheres about it, but for the facets
-/// of a mouth or a neck that are round about one axis through the point and have less than half of the area. Fixed and planar joints
-/// explain nothing.
+/// A joint explains a shell that is round about its axis, facet by facet: all that bounds it is flat across the axis, or a facet of a
+/// surface of revolution about it, in the body that it is from; a bore bounds it inside, it is no thicker than facets and press fits
+/// make it (0.15 of its radius), and longer along the axis than thick across it, as a pin in its bore, and not as a shoulder that is sunk
+/// into a face. A ball joint explains a shell that is round about its point, no thicker: facets of spheres about it, but for the facets of
+/// a mouth or a neck that are round about one axis through the point and have less than half of the area. Fixed and planar joints explain
+/// nothing.
 #pragma once
 
 #include <optional>

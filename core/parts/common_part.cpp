@@ -14,6 +14,39 @@ double extent(const geometry::Mesh& mesh) { return (mesh.vertices.rowwise().maxC
 // Directions that no face of a usual part lies in.
 constexpr std::array<std::array<double, 3>, 3> some_directions{{{0.43, 0.71, 0.56}, {-0.77, 0.37, 0.52}, {0.29, -0.61, 0.74}}};
 
+struct Box {
+    Vector3 low, high;
+    explicit Box(const CommonPart& part) : low(part.points.front()), high(low) {
+        for (const Vector3& x : part.points) {
+            low = low.cwiseMin(x);
+            high = high.cwiseMax(x);
+        }
+    }
+    bool holds(const Box& other) const { return (low.array() <= other.low.array()).all() && (other.high.array() <= high.array()).all(); }
+};
+
+// A surface that is turned inwards belongs to the least of the others whose box holds its own.
+std::vector<CommonPart> with_cavities(std::vector<CommonPart>& surfaces) {
+    std::vector<CommonPart> pieces, cavities;
+    for (CommonPart& surface : surfaces) (surface.volume() < 0 ? cavities : pieces).push_back(std::move(surface));
+    for (CommonPart& cavity : cavities) {
+        CommonPart* around = nullptr;
+        for (CommonPart& piece : pieces)
+            if (Box(piece).holds(Box(cavity)) && (!around || piece.volume() < around->volume())) around = &piece;
+        if (!around) {  // thinner than rounding: nothing is lost
+            pieces.push_back(std::move(cavity));
+            continue;
+        }
+        const int shift = count_of(around->points);
+        around->points.insert(around->points.end(), cavity.points.begin(), cavity.points.end());
+        for (CutTriangle t : cavity.triangles) {
+            for (int& v : t.corners) v += shift;
+            around->triangles.push_back(t);
+        }
+    }
+    return pieces;
+}
+
 // Nothing is moved onto the planes of flat faces.
 FacedMesh without_faces(const geometry::Mesh& mesh) { return {mesh, std::vector<int>(mesh.triangles.size(), -1)}; }
 
@@ -80,7 +113,7 @@ std::vector<CommonPart> pieces_of(const CommonPart& whole) {
         }
         pieces[piece].triangles.push_back(t);
     }
-    return pieces;
+    return with_cavities(pieces);
 }
 
 }  // namespace fettle::core::parts

@@ -26,7 +26,7 @@ struct CommonPart {
 /// Errors: a mesh that is no perfect solid (solids/mesh_validity.hpp), a build without CGAL, and what cannot be cut, moved or not.
 Result<CommonPart> common_part(const geometry::Mesh& a, const geometry::Mesh& b);
 
-/// Those parts of it that hang together, in the order of their first triangles; of each the points that it uses.
+/// Those parts of it that hang together, each with its cavities, in the order of their first triangles; of each the points that it uses.
 std::vector<CommonPart> pieces_of(const CommonPart& whole);
 
 }  // namespace fettle::core::parts

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <numbers>
@@ -43,6 +44,15 @@ public:
     // A bound that is printed is still a bound. `more` decimals than the table has.
     std::string down(double x, int more = 0) const { return RoundedLengths(unit_, decimals_).fixed(x, Towards::down, more); }
     std::string up(double x, int more = 0) const { return RoundedLengths(unit_, decimals_).fixed(x, Towards::up, more); }
+    // The bounds of a pair beside what is required of it: with as many decimals as show which is the larger.
+    std::string lower(const PairClearance& pair) const {
+        return beside(
+            pair, [&](int more) { return down(pair.lower, more); }, pair.lower >= pair.minimum ? 1 : 0);
+    }
+    std::string upper(const PairClearance& pair) const {
+        return beside(
+            pair, [&](int more) { return up(pair.upper, more); }, pair.upper < pair.minimum ? -1 : 0);
+    }
     std::string plain(double x) const { return formatted("%.6g", x / metres_); }
     std::string rough(double x) const { return formatted("%.2g", x / metres_); }
     std::string point(const Vector3& x) const {
@@ -53,6 +63,18 @@ public:
     double metres() const { return metres_; }
 
 private:
+    // `side`: 1, the text may not be less than that of the minimum; -1, it must be; 0, neither.
+    template <class Bound>
+    std::string beside(const PairClearance& pair, const Bound& bound, int side) const {
+        const double required = std::strtod(plain(pair.minimum).c_str(), nullptr);
+        for (int more = 0; side != 0 && more <= 6; ++more) {
+            const std::string text = bound(more);
+            const double told = std::strtod(text.c_str(), nullptr);
+            if (side > 0 ? told >= required : told < required) return text;
+        }
+        return bound(0);
+    }
+
     std::string unit_;
     double metres_;
     int decimals_ = 0;
@@ -135,7 +157,7 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
         if (!has_distance(pair)) return std::string("-");
         if (!pair.least.is_bounded) return std::string("not proven");
         if (subject.ranges && !is_lower && !std::isfinite(pair.least.upper)) return std::string("-");
-        return is_lower ? lengths.down(pair.least.lower) : lengths.up(pair.least.upper);
+        return is_lower ? lengths.lower(pair.least) : lengths.upper(pair.least);
     };
     size_t width = 4;
     for (const ReportedPair& pair : report.pairs)
@@ -176,8 +198,7 @@ std::string found_of(const ReportedPair& pair, const Subject& subject, const Len
     if (pair.finding == Finding::touching) return "the parts touch " + touched(pair, lengths);
     if (least.is_far) return "at least twice as far apart as is required";
     if (!least.is_bounded) return "no bound is proven" + (least.reason.empty() ? "" : ": " + least.reason);
-    return "at least " + lengths.down(least.lower) + " " + lengths.unit() + " apart, at most " + lengths.up(least.upper) + " " +
-           lengths.unit();
+    return "at least " + lengths.lower(least) + " " + lengths.unit() + " apart, at most " + lengths.upper(least) + " " + lengths.unit();
 }
 
 // How to accept a pair that touches.
@@ -436,6 +457,14 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, i
     if (touch != report.pairs.end()) text += "touching: faces lie on each other; if they are meant to, " + how_to_accept(*touch) + "\n";
     for (const ReportedPair& pair : report.pairs)
         if (const std::string facets = by_facets(pair, subject, lengths); !facets.empty()) text += pair_name(pair) + ": " + facets + "\n";
+    std::vector<std::string> unexplained;
+    for (const ReportedPair& pair : report.pairs)
+        if (pair.finding == Finding::clash && !pair.joined_by.empty()) unexplained.push_back("\"" + pair_name(pair) + "\"");
+    if (!unexplained.empty())
+        text +=
+            "joined, and what they share is no pin in its bore, which the joint would explain; if they are drawn so on purpose, add to "
+            "the scene: \"ignore\": [" +
+            joined(unexplained) + "]\n";
     for (const auto& [reason, count] : reasons) text += formatted("undecided (%d): ", count) + reason + "\n";
     if (std::any_of(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.finding == Finding::contact; }))
         text += "contact: these push each other, so they are not judged; name a pair with --pairs to judge it\n";

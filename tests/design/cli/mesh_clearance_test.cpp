@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core/mesh_files/mesh_writer.hpp"
 #include "tests/support/box_mesh.hpp"
@@ -106,6 +107,17 @@ TEST_CASE("clearance: a folder of meshes, all pairs of it") {
     CHECK(answer.pair("arm", "lid")["status"] == "clear");
     CHECK(answer.pair("arm", "base")["lower"].get<double>() == Approx(0.012).margin(1e-5));
     CHECK(run("clearance " + boxes.file("cad") + " --unit mm --minimum 1mm --pairs arm:lid").code == 0);
+
+    // A bound that meets the minimum is shown with digits enough to see it.
+    const Answer near = run("clearance " + boxes.file("cad") + " --unit mm --minimum 11.9996mm --tolerance 0.1mm --pairs arm:base");
+    CAPTURE(near.out);
+    CHECK(near.code == 0);
+    std::istringstream words(near.out.substr(near.out.find("\narm:base")));
+    std::string name;
+    double required = 0, lower = 0;
+    words >> name >> required >> lower;
+    CHECK(required == Approx(11.9996));
+    CHECK(lower >= required);
 
     boxes.write("cad/spare/lid.stl", core::mesh_files::stl_bytes({{"lid", &boxes.b}}));
     boxes.write("none/notes.txt", "no mesh");
