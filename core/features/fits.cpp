@@ -26,7 +26,7 @@ bool measure_cylinders(const Feature& pin, const Feature& hole, Fit& fit) {
     constexpr double most_lean = 0.2;  // [rad] no play allows more in a hole as long as wide
     if (fit.lean > most_lean) return false;
     const auto along_pin = [&](double height) { return pin.surface.axis.dot(hole.origin + height * hole.surface.axis); };
-    const auto [low, high] = std::minmax(along_pin(hole.along.from), along_pin(hole.along.to));
+    const auto [low, high] = std::minmax({along_pin(hole.along.from), along_pin(hole.along.to)});
     const double from = std::max(low, pin.along.from), to = std::min(high, pin.along.to);
     fit.overlap = to - from;
     if (!(fit.overlap > 0)) return false;
