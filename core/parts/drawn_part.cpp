@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "core/base/limits.hpp"
+#include "core/base/text.hpp"
 #include "core/parts/fault_words.hpp"
 #include "core/solids/mesh_validity.hpp"
 
@@ -89,6 +91,20 @@ void name_faces(const Solid& solid, geometry::Mesh& mesh) {
     for (const Facet& facet : solid.facets) mesh.triangle_face.push_back(name_of_surface[facet.surface]);
 }
 
+// That lengths are too far apart for a solid of rounded numbers, where they are: what went wrong then has no cause in the part's form.
+Errors lengths_too_far_apart(const geometry::Mesh& mesh, const std::string& name) {
+    constexpr double most = 1e8, large = 1e3;  // [m]
+    double shortest = infinity;
+    for (const geometry::Edge& edge : mesh.edges)
+        shortest = std::min(shortest, (mesh.vertices.col(edge[0]) - mesh.vertices.col(edge[1])).norm());
+    const double size = (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).maxCoeff();
+    if (!(size > large && size > most * shortest)) return {};
+    const auto millimetres = [](double x) { return base::formatted("%.3g mm", 1e3 * x); };
+    return {{ErrorCode::mesh_invalid, name,
+             "`" + name + "` would be " + millimetres(size) + " in size, with edges of " + millimetres(shortest) +
+                 ": lengths so far apart make no solid; is one of its dimensions meant in another unit?"}};
+}
+
 }  // namespace
 
 Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::string& name, const DrawnOptions& options) {
@@ -108,7 +124,10 @@ Result<DrawnPart> drawn(const Drawing& drawing, const Solid& solid, const std::s
                                              faults[faults.size() - 2].message.substr(0, faults[faults.size() - 2].message.find(" near")))
                     faults.pop_back();
             }
-        if (!faults.empty()) return faults;
+        if (!faults.empty()) {
+            const Errors cause = lengths_too_far_apart(part.mesh, name);
+            return cause.empty() ? faults : cause;
+        }
     }
     if (options.jacobian) part.jacobian = jacobian_of(drawing, solid);
     if (options.record) part.recorded = recorded_vertices(drawing, solid);

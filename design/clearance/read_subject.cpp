@@ -155,6 +155,16 @@ Result<Subject> from_ranges(const SubjectOptions& options, reading::LoadedModel&
     return errors;
 }
 
+// What is said of one scenario is not said of the others.
+void tell_other_scenarios(const description::Design& design, int scenario, Subject& subject) {
+    std::vector<std::string> others;
+    for (int k = 0; k < count_of(design.scenarios); ++k)
+        if (k != scenario) others.push_back("`" + design.scenarios[k].name + "`");
+    if (!others.empty())
+        subject.notes.push_back("this is about the scenario `" + design.scenarios[scenario].name +
+                                "` alone; not looked at: " + joined(others) + " (--scenario)");
+}
+
 std::vector<std::string> notes_of_tolerances(const core::certificate::Toleranced& toleranced) {
     std::vector<std::string> notes{"within tolerances: bounds hold for every combination of " +
                                    core::base::counted(toleranced.deviations.size(), "deviation") +
@@ -265,6 +275,7 @@ Result<Subject> from_tolerances(const SubjectOptions& options, const reading::In
     }
     const std::vector<std::string> notes = notes_of_tolerances(*toleranced);
     subject.notes.insert(subject.notes.begin(), notes.begin(), notes.end());
+    tell_other_scenarios(design, *scenario, subject);
     subject.toleranced = *std::move(toleranced);
     subject.scene_path = file->scene_path;
     subject.warnings = file->warnings;
@@ -349,9 +360,11 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
     subject.scene_path = loaded->scene_path;
     if (loaded->problem != nullptr) {
         const description::Design& design = loaded->problem->design();
+        const int scenario = reading::scenario_of(design, input.scenario, options.path).value();
+        tell_other_scenarios(design, scenario, subject);
         subject.wanted = design_pairs(design);
         const bool moves = options.motion || options.kinematic || !options.poses.empty();
-        subject.required = design_minima(design, reading::scenario_of(design, input.scenario, options.path).value(),
+        subject.required = design_minima(design, scenario,
                                          options.ranges ? MinimumOver::ranges
                                          : moves        ? MinimumOver::motion
                                                         : MinimumOver::assembly);

@@ -2,6 +2,7 @@
 #include "design/cli/certificate_domain.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -58,7 +59,8 @@ std::string deviation_text(const Deviation& d) {
 std::string span_text(const JointSpan& span, const core::base::RoundedLengths& lengths) {
     if (span.is_whole_turn) return span.joint + " the whole turn";
     const double unit = span.is_angle ? M_PI / 180 : lengths.metres();
-    return span.joint + formatted(" %.6g to %.6g ", span.low / unit, span.high / unit) + (span.is_angle ? "deg" : lengths.unit());
+    const auto told = [&](double x) { return std::abs(x / unit) < 1e-12 ? 0 : x / unit; };  // rounding of 0
+    return span.joint + formatted(" %.6g to %.6g ", told(span.low), told(span.high)) + (span.is_angle ? "deg" : lengths.unit());
 }
 
 template <class List, class Text>

@@ -42,6 +42,7 @@ Command add_coupon(CommandLine& program);
 Command add_draw(CommandLine& program, const CommonOptions& common);
 Command add_export(CommandLine& program, const CommonOptions& common);
 Command add_features(CommandLine& program, const CommonOptions& common);
+Command add_fit(CommandLine& program, const CommonOptions& common);
 Command add_import(CommandLine& program, const CommonOptions& common);
 Command add_joints(CommandLine& program);
 Command add_manual(CommandLine& program);

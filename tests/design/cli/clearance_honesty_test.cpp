@@ -248,7 +248,8 @@ TEST_CASE("A certificate of a design states what the design requires of each pai
     };
     const DesignFolder folder = folder_of("0.3");
     const std::string file = folder.file("fit.certificate.json");
-    run("clearance " + folder.design() + " --pairs a:b,b:c,a:c --certificate " + file);
+    const Answer made = run("clearance " + folder.design() + " --pairs a:b,b:c,a:c --certificate " + file);
+    CHECK(made.says("about the scenario `first` alone; not looked at: `second` (--scenario)"));
     const Answer met = run("validate " + file + " --json");
     CAPTURE(met.out);
     CHECK(met.code == 0);

@@ -62,6 +62,17 @@ TEST_CASE("parts of the library with an extreme dimension are solids, or refused
     }
 }
 
+TEST_CASE("lengths too far apart for a solid are named, and not told as a hole in it") {
+    const PartFile driver = find_part("geneva_driver").value();
+    Values values = part_campaign::defaults(driver);
+    for (std::size_t k = 0; k < values.size(); ++k)
+        if (driver.dimensions()[k].name == "border") values[k] = 1e6;
+    const auto part = driver.drawn(values, {});
+    REQUIRE_FALSE(part);
+    CHECK(part.errors().size() == 1);
+    CHECK(part.errors().front().message.find("lengths so far apart make no solid") != std::string::npos);
+}
+
 TEST_CASE("each dimension of each part of the library with each extreme, and several at once", "[slow]") {
     std::mt19937 random(4);
     for (const LibraryPart& kind : part_library()) {

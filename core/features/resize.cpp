@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "core/features/resize.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/base/contract.hpp"
+#include "core/base/limits.hpp"
+#include "core/base/text.hpp"
+#include "core/solids/self_intersection.hpp"
+
+namespace fettle::core::features {
+
+namespace {
+
+using base::Error;
+using base::ErrorCode;
+
+std::string place_text(const Vector3& x) { return base::formatted("(%.6g, %.6g, %.6g) mm", 1e3 * x.x(), 1e3 * x.y(), 1e3 * x.z()); }
+
+Vector3 scaled_from(const Surface& surface, double factor, const Vector3& x) {
+    const Vector3 from = x - surface.point;
+    const Vector3 away = surface.kind == SurfaceKind::sphere ? from : Vector3(from - surface.axis.dot(from) * surface.axis);
+    return x + (factor - 1) * away;
+}
+
+Vector3 area_of(const Matrix3X& x, const geometry::Triangle& t) {
+    const Vector3 from = x.col(t[0]);
+    return 0.5 * (x.col(t[1]) - from).cross(x.col(t[2]) - from);
+}
+
+class Resizing {
+public:
+    Resizing(const geometry::Mesh& mesh, const Features& features) : mesh_(mesh), features_(features), x_(mesh.vertices) {
+        feature_of_.assign(mesh.triangles.size(), -1);
+        for (int f = 0; f < count_of(features.features); ++f)
+            for (const int t : features.features[f].triangles) feature_of_[t] = f;
+        moved_by_.assign(static_cast<std::size_t>(mesh.vertices.cols()), -1);
+    }
+
+    void move(const Resize& change) {
+        const Feature& feature = features_.features[change.feature];
+        const double radius = feature.is_hole ? feature.facets_least : feature.facets_largest, factor = (radius + change.by) / radius;
+        FETTLE_ASSERT(radius > 0 && factor > 0, "a round feature with a radius keeps one");
+        for (const int t : feature.triangles)
+            for (const int v : mesh_.triangles[t]) {
+                if (moved_by_[v] == change.feature) continue;
+                if (moved_by_[v] >= 0) {
+                    error_ = Error{ErrorCode::inconsistent, feature.name,
+                                   "it meets " + features_.features[moved_by_[v]].name + " near " + place_text(mesh_.vertices.col(v)) +
+                                       ", which is to change too: corners of both cannot follow both"};
+                    return;
+                }
+                moved_by_[v] = change.feature;
+                x_.col(v) = scaled_from(feature.surface, factor, mesh_.vertices.col(v));
+            }
+    }
+
+    base::Result<geometry::Mesh> result() {
+        for (std::size_t t = 0; t < mesh_.triangles.size() && !error_; ++t) check(static_cast<int>(t));
+        if (error_) return *error_;
+        geometry::Mesh out = mesh_;
+        out.vertices = std::move(x_);
+        for (const auto& [a, b] : solids::self_intersections(out, 1)) {
+            const int by = mover_of(out.triangles[a]) >= 0 ? mover_of(out.triangles[a]) : mover_of(out.triangles[b]);
+            return Error{ErrorCode::mesh_invalid, by < 0 ? out.name : features_.features[by].name,
+                         "the wall would be cut through near " + place_text(out.vertices.col(out.triangles[a][0])) +
+                             name_after(", by ", feature_of_[b])};
+        }
+        return out;
+    }
+
+private:
+    // The feature that moves a corner of the triangle; -1: none does.
+    int mover_of(const geometry::Triangle& t) const {
+        for (const int v : t)
+            if (moved_by_[v] >= 0) return moved_by_[v];
+        return -1;
+    }
+
+    std::string name_after(const char* before, int feature) const {
+        return feature < 0 ? std::string() : before + features_.features[feature].name;
+    }
+
+    void check(int t) {
+        const geometry::Triangle& corners = mesh_.triangles[t];
+        const int mover = mover_of(corners);
+        if (mover < 0) return;
+        const Feature& moving = features_.features[mover];
+        const Vector3 before = area_of(mesh_.vertices, corners), after = area_of(x_, corners);
+        if (!(before.dot(after) > 0)) {
+            error_ = Error{ErrorCode::mesh_invalid, moving.name,
+                           "a triangle" + name_after(" of ", feature_of_[t]) + " near " + place_text(x_.col(corners[0])) +
+                               " would turn over: there is too little room round it"};
+            return;
+        }
+        if (feature_of_[t] == mover) return;
+        for (const int v : corners)
+            if (moved_by_[v] >= 0) check_corner(t, v, features_.features[moved_by_[v]]);
+    }
+
+    // Does the face that the triangle is of stay what it is?
+    void check_corner(int t, int v, const Feature& moving) {
+        const double by = (x_.col(v) - mesh_.vertices.col(v)).norm();
+        if (feature_of_[t] < 0) {
+            if (by > features_.tolerance)
+                error_ =
+                    Error{ErrorCode::inconsistent, moving.name,
+                          "it goes over into a face that is no surface near " + place_text(mesh_.vertices.col(v)) + ", which would bend"};
+            return;
+        }
+        const Feature& face = features_.features[feature_of_[t]];
+        if (std::find(moving.coaxial.begin(), moving.coaxial.end(), face.name) != moving.coaxial.end()) return;
+        const double off = std::abs(signed_distance(face.surface, x_.col(v)) - signed_distance(face.surface, mesh_.vertices.col(v)));
+        if (off > features_.tolerance + face.residual)
+            error_ = Error{ErrorCode::inconsistent, moving.name,
+                           "it meets " + face.name + " near " + place_text(mesh_.vertices.col(v)) + ", which would bend"};
+    }
+
+    const geometry::Mesh& mesh_;
+    const Features& features_;
+    Matrix3X x_;
+    std::vector<int> feature_of_;  // by triangle
+    std::vector<int> moved_by_;    // by vertex: a feature
+    std::optional<Error> error_;
+};
+
+// From `from` along `way`: the length to the triangle's plane within it; infinity: it is missed.
+double hit(const Matrix3X& x, const geometry::Triangle& t, const Vector3& from, const Vector3& way) {
+    const Vector3 a = x.col(t[0]), u = x.col(t[1]) - a, v = x.col(t[2]) - a, p = way.cross(v);
+    const double determinant = u.dot(p);
+    if (std::abs(determinant) < 1e-300) return infinity;
+    const Vector3 s = from - a;
+    const double b = s.dot(p) / determinant;
+    const Vector3 q = s.cross(u);
+    const double c = way.dot(q) / determinant;
+    if (b < 0 || c < 0 || b + c > 1) return infinity;
+    const double length = v.dot(q) / determinant;
+    return length > 0 ? length : infinity;
+}
+
+}  // namespace
+
+base::Result<geometry::Mesh> resized(const geometry::Mesh& mesh, const Features& features, const std::vector<Resize>& changes) {
+    Resizing work(mesh, features);
+    for (const Resize& change : changes) work.move(change);
+    return work.result();
+}
+
+std::optional<Wall> wall_behind(const geometry::Mesh& mesh, const Feature& feature) {
+    std::vector<char> own(mesh.triangles.size(), 0);
+    for (const int t : feature.triangles) own[t] = 1;
+    std::optional<Wall> least;
+    for (const int t : feature.triangles) {
+        const auto& corners = mesh.triangles[t];
+        const Vector3 inwards = -area_of(mesh.vertices, corners).normalized();
+        const Vector3 middle = (mesh.vertices.col(corners[0]) + mesh.vertices.col(corners[1]) + mesh.vertices.col(corners[2])) / 3;
+        for (std::size_t k = 0; k < 4; ++k) {
+            // A little within the facet, so that no ray runs along a neighbour.
+            const Vector3 from = k == 3 ? middle : Vector3(middle + 0.98 * (mesh.vertices.col(corners[k]) - middle));
+            for (std::size_t other = 0; other < mesh.triangles.size(); ++other) {
+                if (own[other] != 0) continue;
+                const double length = hit(mesh.vertices, mesh.triangles[other], from, inwards);
+                if (length < infinity && (!least || length < least->thickness)) least = Wall{length, from};
+            }
+        }
+    }
+    return least;
+}
+
+}  // namespace fettle::core::features
