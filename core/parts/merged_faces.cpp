@@ -130,7 +130,7 @@ private:
         }
     }
 
-    // Do all in between lie on the line from one to the other, in order?
+    // Do all in between lie on the line from one to the other, in order, but for rounding?
     bool is_straight(const std::vector<int>& chain, std::size_t from, std::size_t to) const {
         const Vector3 start = points_[chain[from]], way = points_[chain[to]] - start;
         const double length = way.norm();
@@ -139,8 +139,8 @@ private:
         for (std::size_t k = from + 1; k < to; ++k) {
             const Vector3 p = points_[chain[k]] - start;
             const double along = p.dot(way) / length;
-            if (!(along >= before && along <= length && p.cross(way).norm() <= rounding_ * length)) return false;
-            before = along;
+            if (!(along >= before - rounding_ && along <= length + rounding_ && p.cross(way).norm() <= rounding_ * length)) return false;
+            before = std::max(before, along);
         }
         return true;
     }

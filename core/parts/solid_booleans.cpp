@@ -9,6 +9,7 @@
 #include "core/parts/aligned_solids.hpp"
 #include "core/parts/cut_situation.hpp"
 #include "core/parts/merged_faces.hpp"
+#include "core/parts/short_edges.hpp"
 #include "core/parts/solid_cut.hpp"
 
 namespace fettle::core::parts {
@@ -153,17 +154,28 @@ double drawn_out(const SolidCut& cut, const std::vector<Point3>& vertices) {
     return factor;
 }
 
-// Sine of the least angle at which an edge goes through a face: an error of the corners is so much larger where they meet.
+// Sine of the angle at which a corner's edge goes through its face: an error of the corners is so much larger where they meet. 1
+// where the corner is one of the two's own.
+double steepness_of(const VertexOrigin& origin, const Mesh& a, const Mesh& b) {
+    if (origin.kind == Kind::vertex_of_a || origin.kind == Kind::vertex_of_b || origin.side >= 0) return 1;
+    const bool of_a = origin.kind == Kind::edge_of_a;
+    const Mesh &mesh = of_a ? a : b, &other = of_a ? b : a;
+    const Vector3 way = mesh.vertices.col(origin.to) - mesh.vertices.col(origin.from);
+    return std::abs(normal_of(corners_of(other, origin.triangle)).normalized().dot(way.normalized()));
+}
+
 double least_steepness(const SolidCut& cut, const Mesh& a, const Mesh& b) {
     double least = 1;
-    for (const VertexOrigin& origin : cut.vertices) {
-        if (origin.kind == Kind::vertex_of_a || origin.kind == Kind::vertex_of_b || origin.side >= 0) continue;
-        const bool of_a = origin.kind == Kind::edge_of_a;
-        const Mesh &mesh = of_a ? a : b, &other = of_a ? b : a;
-        const Vector3 way = mesh.vertices.col(origin.to) - mesh.vertices.col(origin.from);
-        least = std::min(least, std::abs(normal_of(corners_of(other, origin.triangle)).normalized().dot(way.normalized())));
-    }
+    for (const VertexOrigin& origin : cut.vertices) least = std::min(least, steepness_of(origin, a, b));
     return least;
+}
+
+// How well each corner's place is known: those that one of the two has are known best.
+std::vector<double> worth_of(const SolidCut& cut, const Mesh& a, const Mesh& b) {
+    std::vector<double> out;
+    for (const VertexOrigin& origin : cut.vertices)
+        out.push_back(origin.kind == Kind::vertex_of_a || origin.kind == Kind::vertex_of_b ? 2 : steepness_of(origin, a, b));
+    return out;
 }
 
 Deviation combined_deviation(const Deviation& a, const Deviation& b, Combination combination, double factor) {
@@ -262,8 +274,11 @@ Result<Solid> combined(Drawing& drawing, Solid a, Solid b, Combination combinati
             }
             auto cut = cut_solids(faced_a, faced_b, rounding, combination);
             if (cut) {
+                const std::vector<double> worth = worth_of(*cut, mesh_a, mesh_b);
+                cut = without_short_edges(*std::move(cut), worth, rounding);
                 const std::vector<Vector3> points = points_of(*cut, mesh_a, mesh_b);
-                pack(with_merged_faces(std::move(*cut), faced_a.face, faced_b.face, points, rounding), out);
+                const bool are_known = std::all_of(points.begin(), points.end(), [](const Vector3& p) { return p.allFinite(); });
+                pack(are_known ? with_merged_faces(std::move(*cut), faced_a.face, faced_b.face, points, rounding) : *cut, out);
             } else {
                 errors = cut.errors();
             }

@@ -89,6 +89,7 @@ void add_shown_options(CommandLine& app, ShownOptions& options) {
         .required();
     app.option("--bodies", options.bodies, "Only these, by their names with commas (default: all)");
     app.option("--unit", options.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
+    app.flag("--split", options.split, "Each solid of a mesh is a body of its own, with its cavities: box#1, box#2");
     add_step_options(app, options.step);
     app.option("--trajectory", options.trajectory, "For a certificate: the path that it is about (default: beside it)");
     app.option("--up", options.up, "The world's up: x, -x, y, -y, z, -z (default: against gravity; z where that is not known)")
@@ -104,6 +105,7 @@ Result<ShownMotion> load_shown(const ShownOptions& options, const CommonOptions&
     clearance::SubjectOptions subject_options;
     subject_options.path = *file;
     subject_options.unit = options.unit;
+    subject_options.split = options.split;
     subject_options.step = options.step;
     clearance::SubjectWatch watch;
     watch.on_warnings = [&](const std::vector<std::string>& warnings) { tell_warnings(console, warnings, *file); };

@@ -26,12 +26,13 @@ struct ShownOptions {
     std::string path;  ///< scene or design (as assembled), trajectory, certificate (its path), mesh, or a folder: trajectory.json of a run,
                        ///< of a killed one trajectory.running.json, else the meshes in it
     std::string unit;  ///< of meshes that state none
+    bool split = false;  ///< of meshes: each solid is a body of its own
     reading::StepWishes step;
     std::string trajectory;  ///< of a certificate: its path; empty: beside it
     std::string bodies;      ///< names with commas: only these are shown; empty: all
     std::string up;          ///< "x", "-y", ...; empty: against gravity, Z where it is not known
 };
-/// Adds FILE, --bodies, --unit, --facets, --surface-tolerance, --trajectory and --up.
+/// Adds FILE, --bodies, --unit, --split, --facets, --surface-tolerance, --trajectory and --up.
 void add_shown_options(CommandLine& app, ShownOptions& options);
 
 /// Those of `bodies`' names that `wanted` ("crank,rod") lists, by their indices; all if it is empty. Errors: names that are not there, with

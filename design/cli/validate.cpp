@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// fettle validate FILE: is this scene, design, part, trajectory or mesh usable? Every fault, by name and place.
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "core/base/text.hpp"
@@ -75,6 +76,28 @@ Verdict validate_step_file(const std::string& path, const reading::StepWishes& w
     return verdict;
 }
 
+// The solids of a mesh, called as --split calls them.
+void tell_solids(const core::geometry::Mesh& mesh, const std::string& path, const std::string& unit, Verdict& verdict) {
+    const std::vector<core::geometry::Mesh> solids = core::solids::split_solids(mesh);
+    constexpr std::size_t most_told = 40;
+    verdict.text += "  " + std::to_string(solids.size()) +
+                    " solids that do not hang together: one body in a scene, or one each: \"mesh_solid\": 1, ..., " +
+                    "\"split_components\": true, or --split of clearance, features, fit, import, draw, export\n";
+    Json list = Json::array();
+    for (std::size_t k = 0; k < solids.size(); ++k) {
+        const Matrix3X& x = solids[k].vertices;
+        const Vector3 size = 1e3 * (x.rowwise().maxCoeff() - x.rowwise().minCoeff());
+        const double volume = 1e9 * core::geometry::capped_solid_moments(x, solids[k].triangles)(3, 3);
+        const std::string name = std::filesystem::path(path).stem().string() + "#" + std::to_string(k + 1);
+        list.push_back({{"name", name}, {"size", {size.x(), size.y(), size.z()}}, {"volume", volume}});
+        if (k < most_told)
+            verdict.text += formatted("    %s  %.6g x %.6g x %.6g%s, volume %.6g%s\n", core::base::shown_on_one_line(name).c_str(),
+                                      size.x(), size.y(), size.z(), unit.c_str(), volume, unit.empty() ? "" : (unit + "^3").c_str());
+    }
+    if (solids.size() > most_told) verdict.text += "    ...\n";
+    verdict.facts["parts"] = std::move(list);
+}
+
 // @param unit  The unit of a file that states none; empty: its places are numbers.
 Verdict validate_mesh_file(const std::string& path, const std::string& unit, bool strict) {
     Verdict verdict;
@@ -121,9 +144,7 @@ Verdict validate_mesh_file(const std::string& path, const std::string& unit, boo
     verdict.text =
         formatted("  size %.6g x %.6g x %.6g%s, volume %.6g%s\n", size.x(), size.y(), size.z(), has_unit ? " mm" : "", volume,
                   has_unit ? " mm^3" : "; the file states no unit: in a scene it is that of `mesh_unit` or `units`, here of --unit");
-    if (solids > 1)
-        verdict.text += "  " + std::to_string(solids) + " solids that do not hang together: one body in a scene, or with " +
-                        "\"split_components\": true one each; fettle clearance --split judges them against each other\n";
+    if (solids > 1) tell_solids(*mesh, path, has_unit ? " mm" : "", verdict);
     return verdict;
 }
 

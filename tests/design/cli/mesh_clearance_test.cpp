@@ -85,7 +85,12 @@ TEST_CASE("several solids in one file are counted, and the way to bodies of thei
     CHECK(refused.says("is one part of 2 solids"));
     CHECK(refused.says("split_components"));
     CHECK(run("validate " + file + " --json").json()["solids"] == 2);
-    CHECK(run("validate " + file).says("2 solids that do not hang together"));
+    const Answer listed = run("validate " + file + " --unit mm");
+    CHECK(listed.says("2 solids that do not hang together"));
+    CHECK(listed.says("    row#1  "));
+    CHECK(listed.says("    row#2  "));
+    CHECK(run("validate " + file + " --json").json()["parts"].size() == 2);
+    CHECK(run("draw " + file + " --unit mm --split --bodies 'row#2' --out " + boxes.file("row.png")).code == 0);
     const std::string scene = boxes.write("row.scene.json", R"({"fettle_scene": 1, "units": "mm", "bodies": [
         {"name": "row", "type": "static", "mesh": "row.obj"},
         {"name": "each", "type": "static", "mesh": "row.obj", "position": [0, 50, 0], "split_components": true}]})");
