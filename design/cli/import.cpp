@@ -28,22 +28,37 @@ using Json = nlohmann::ordered_json;
 struct ImportArguments {
     std::vector<std::string> paths;
     std::string to, unit, ground, density;
-    bool floating = false, ignore_mimic_limits = false, split = false, joints = false;
+    bool floating = false, ignore_mimic_limits = false, split = false, joints = false, ignore_overlaps = false;
     reading::StepWishes step;
 };
 
-// What it takes to simulate the scene as it is assembled, where bodies pass through each other there; empty: they do not.
-std::string ignore_line(const std::string& path, const CommonOptions& common) {
-    const auto loaded = load_model(path, common, false);
-    if (!loaded) return "the scene cannot be simulated as it is: " + loaded.errors().front().message;
+// Bodies that pass through each other as assembled, which the written scene cannot be simulated with: they are told, or, on request, listed
+// in its `ignore`.
+Errors settle_overlaps(const ImportArguments& arguments, const CommonOptions& common, Console& console, Json& warnings) {
+    const auto tell = [&](const std::string& line) {
+        tell_warnings(console, {line});
+        warnings.push_back(line);
+        return Errors{};
+    };
+    const auto loaded = load_model(arguments.to, common, false);
+    if (!loaded) return tell("the scene cannot be simulated as it is: " + loaded.errors().front().message);
     const core::model::Model& model = loaded->model;
     Json pairs = Json::array();
     for (const auto& [a, b] : core::model::report_start(model).overlapping)
         pairs.push_back(model.bodies[a].name + ":" + model.bodies[b].name);
     if (pairs.empty()) return {};
-    return "as assembled " + core::base::counted(pairs.size(), "pair") +
-           " of bodies pass through each other; where they are not meant to meet, add to the scene: \"ignore\": " +
-           core::files::dumped(pairs);
+    const std::string count = core::base::counted(pairs.size(), "pair") + " of bodies";
+    if (!arguments.ignore_overlaps)
+        return tell("as assembled " + count +
+                    " pass through each other; where they are not meant to meet, add to the scene (or by --ignore-overlaps): \"ignore\": " +
+                    core::files::dumped(pairs));
+    const Result<std::string> text = core::files::read_file(arguments.to);
+    if (!text) return text.errors();
+    Json scene = Json::parse(*text);
+    scene["ignore"] = pairs;
+    if (Errors errors = core::files::write_file_atomically(arguments.to, core::files::dumped(scene, 2) + "\n"); !errors.empty())
+        return errors;
+    return tell(count + " that pass through each other as assembled are ignored: nothing is judged between " + core::files::dumped(pairs));
 }
 
 // Meshes, a STEP file's solids: bodies that name them; joints that their fits propose.
@@ -86,10 +101,10 @@ int import_assembly(const ImportArguments& arguments, const CommonOptions& commo
         answer.update(features::assembly_json(*scene, parts->model));
         told += features::assembly_text(*scene, parts->model);
         if (scene->interrupted) told += "interrupted: limits that were not known by then are missing\n";
-        if (std::string line = ignore_line(arguments.to, common); !line.empty()) {
-            tell_warnings(console, {line});
-            answer["warnings"].push_back(std::move(line));
-        }
+    }
+    if ((arguments.joints || arguments.ignore_overlaps) && !scene->text.empty()) {
+        if (const Errors faults = settle_overlaps(arguments, common, console, answer["warnings"]); !faults.empty())
+            return console.input_errors(faults);
     }
     console.result(answer, told);
     return scene->interrupted ? exit_undecided : exit_done;
@@ -147,11 +162,8 @@ int run_import(const ImportArguments& arguments, const CommonOptions& common, Co
     if (errors.empty()) errors = replaced_inputs(written, common.given);
     if (errors.empty()) errors = together.take_names();
     if (!errors.empty()) return console.input_errors(errors);
-    std::vector<std::string> warnings = scene->warnings;
-    if (std::string line = ignore_line(arguments.to, common); !line.empty()) {
-        tell_warnings(console, {line});
-        warnings.push_back(std::move(line));
-    }
+    Json warnings = scene->warnings;
+    if (const Errors faults = settle_overlaps(arguments, common, console, warnings); !faults.empty()) return console.input_errors(faults);
     console.result({{"status", "ok"}, {"files", std::move(files)}, {"warnings", warnings}}, told);
     return exit_done;
 }
@@ -172,6 +184,8 @@ Command add_import(CommandLine& program, const CommonOptions& common) {
              "Propose joints from what fits in what (see fettle features), with the limits that the parts' shapes set");
     app.option("--ground", options->ground, "With --joints: the body that does not move (default: the largest)");
     app.option("--density", options->density, "With --joints: of bodies that move, with its unit (default: 1.24 g/cm^3)");
+    app.flag("--ignore-overlaps", options->ignore_overlaps,
+             "List pairs of bodies that pass through each other as assembled in the scene's `ignore` (default: tell them)");
     app.flag("--floating", options->floating, "The root link is free (default: it does not move)");
     app.flag("--ignore-mimic-limits", options->ignore_mimic_limits,
              "Joints that mimic another have no limits of their own, as in ROS (default: theirs narrow what they follow)");

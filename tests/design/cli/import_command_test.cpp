@@ -137,6 +137,23 @@ TEST_CASE("import: meshes as bodies; items of one name, solids of one mesh") {
     CHECK(none.says("no joints: nothing fits in anything"));
 }
 
+TEST_CASE("import --ignore-overlaps: what passes through each other is listed in the scene, which then can be simulated") {
+    const Flap files;
+    const Mesh block = box_mesh({20 * mm, -2 * mm, 8 * mm}, {24 * mm, 2 * mm, 12 * mm});
+    files.write("block.3mf", *core::mesh_files::threemf_bytes({{"block", &block}}));
+    const std::string scene = files.file("x.scene.json");
+    const std::string import = "import " + files.parts + " " + files.file("block.3mf") + " --joints --to " + scene;
+    const auto told = run(import, true);
+    CHECK(told.code == 0);
+    CHECK(told.says("as assembled 1 pair of bodies pass through each other"));
+    CHECK(run("validate " + scene).code == 3);
+    const auto ignored = run(import + " --ignore-overlaps", true);
+    CHECK(ignored.code == 0);
+    CHECK(ignored.says("1 pair of bodies that pass through each other as assembled are ignored"));
+    CHECK(Json::parse(contents(scene))["ignore"] == Json({"flap:block"}));
+    CHECK(run("validate " + scene).code == 0);
+}
+
 TEST_CASE("import: what is refused") {
     const Flap files;
     const std::string to = " --to " + files.file("y.scene.json");
