@@ -58,6 +58,8 @@ public:
                 moved_by_[v] = change.feature;
                 x_.col(v) = scaled_from(feature.surface, factor, mesh_.vertices.col(v));
             }
+        for (int f = 0; f < count_of(features_.features); ++f)
+            if (goes_along(change.feature, f)) take_along(f, change.feature, (factor - 1) * feature.facets_largest);
     }
 
     base::Result<geometry::Mesh> result() {
@@ -75,6 +77,42 @@ public:
     }
 
 private:
+    bool are_coaxial(const Feature& a, const Feature& b) const {
+        return std::find(a.coaxial.begin(), a.coaxial.end(), b.name) != a.coaxial.end();
+    }
+
+    // A chamfer of a bore or a pin, which ends at flat faces.
+    bool goes_along(int moving, int f) const {
+        const Feature &feature = features_.features[moving], &chamfer = features_.features[f];
+        if (chamfer.surface.kind != SurfaceKind::cone || chamfer.is_hole != feature.is_hole || !are_coaxial(feature, chamfer)) return false;
+        std::vector<char> of_chamfer(moved_by_.size(), 0);
+        bool meets = false;
+        for (const int t : chamfer.triangles)
+            for (const int v : mesh_.triangles[t]) {
+                of_chamfer[v] = 1;
+                meets = meets || moved_by_[v] == moving;
+            }
+        if (!meets) return false;
+        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+            const int other = feature_of_[t];
+            if (other == moving || other == f || (other >= 0 && features_.features[other].surface.kind == SurfaceKind::plane)) continue;
+            for (const int v : mesh_.triangles[t])
+                if (of_chamfer[v] != 0) return false;
+        }
+        return true;
+    }
+
+    void take_along(int f, int moving, double by) {
+        const Surface& surface = features_.features[moving].surface;
+        for (const int t : features_.features[f].triangles)
+            for (const int v : mesh_.triangles[t]) {
+                if (moved_by_[v] >= 0) continue;
+                moved_by_[v] = moving;
+                const Vector3 from = mesh_.vertices.col(v) - surface.point, away = from - surface.axis.dot(from) * surface.axis;
+                if (away.norm() > 0) x_.col(v) += by * away.normalized();
+            }
+    }
+
     // The feature that moves a corner of the triangle; -1: none does.
     int mover_of(const geometry::Triangle& t) const {
         for (const int v : t)
@@ -99,6 +137,14 @@ private:
             return;
         }
         if (feature_of_[t] == mover) return;
+        if (feature_of_[t] >= 0 && are_coaxial(moving, features_.features[feature_of_[t]])) {
+            const double leant = before.dot(moving.surface.axis) / before.norm(), leans = after.dot(moving.surface.axis) / after.norm();
+            if (leant * leans < 0 && std::abs(leant) > 1e-6)
+                error_ =
+                    Error{ErrorCode::inconsistent, moving.name,
+                          name_after("", feature_of_[t]) + " beside it would lean the other way near " + place_text(x_.col(corners[0]))};
+            return;
+        }
         for (const int v : corners)
             if (moved_by_[v] >= 0) check_corner(t, v, features_.features[moved_by_[v]]);
     }
@@ -114,7 +160,6 @@ private:
             return;
         }
         const Feature& face = features_.features[feature_of_[t]];
-        if (std::find(moving.coaxial.begin(), moving.coaxial.end(), face.name) != moving.coaxial.end()) return;
         const double off = std::abs(signed_distance(face.surface, x_.col(v)) - signed_distance(face.surface, mesh_.vertices.col(v)));
         if (off > features_.tolerance + face.residual)
             error_ = Error{ErrorCode::inconsistent, moving.name,

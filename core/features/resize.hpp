@@ -21,8 +21,9 @@ struct Resize {
     double by = 0;  ///< [m] what the facets' own radius grows by: of holes facets_least, of bosses facets_largest
 };
 
-/// A corner that also belongs to a flat face must stay in it, one of another round face on that, to within the features' tolerance; cones,
-/// cylinders and tori on the same axis (a countersink, a step) go along. Triangles may not turn over, and the surface may not pass through
+/// A corner that also belongs to a flat face must stay in it, one of another round face on that, to within the features' tolerance. A cone
+/// beside it on the same axis that ends at flat faces, a chamfer or a countersink, moves along; other faces on the axis may change their
+/// slope, but not lean the other way. Triangles may not turn over, and the surface may not pass through
 /// itself. Errors (mesh_invalid, inconsistent), with `where` the feature's name and, in the message, the place.
 /// Contract: features of this mesh, cylinders and spheres, whose radius stays positive; each once.
 base::Result<geometry::Mesh> resized(const geometry::Mesh& mesh, const Features& features, const std::vector<Resize>& changes);

@@ -115,6 +115,34 @@ TEST_CASE("a pin is made thinner, a step on its axis goes along") {
     CHECK(fault_of(part, "P2", 2.5 * mm) != "");  // thicker than its head: the shoulder would turn over
 }
 
+TEST_CASE("chamfers at both ends of a bore move along; a taper between two bores may not turn round") {
+    const auto turned_part = [](const std::vector<std::pair<double, double>>& corners) {
+        return Part([&](Drawing& d) {
+            std::vector<Point2> outline;
+            for (const auto& [r, z] : corners) outline.push_back({r * mm, z * mm});
+            return revolved(d, *filled(polygon(outline, "outline")));
+        });
+    };
+    const Part chamfered = turned_part({{2.1, 0.5}, {2.6, 0}, {8, 0}, {8, 6}, {2.6, 6}, {2.1, 5.5}});
+    const auto made = resized(chamfered.mesh, chamfered.features, {{chamfered.named("B1"), 0.7 * mm}});
+    REQUIRE(made);
+    CHECK(solids::validate_mesh(*made, {}).empty());
+    const Features found = find_features(*made);
+    for (const char* name : {"C1", "C2"}) {
+        REQUIRE(found.find(name) >= 0);
+        CHECK(std::abs(found.features[found.find(name)].surface.slope) == Approx(1).epsilon(1e-3));
+        CHECK(found.features[found.find(name)].length() == Approx(0.5 * mm).epsilon(1e-6));
+    }
+    // No corner is nearer to the axis than the bore.
+    double least = 1;
+    for (int v = 0; v < made->vertices.cols(); ++v) least = std::min(least, made->vertices.col(v).head<2>().norm());
+    CHECK(least >= chamfered.feature("B1").facets_least + 0.7 * mm);
+    const Part tapered = turned_part({{2, 0}, {8, 0}, {8, 9}, {2.5, 9}, {2.5, 6}, {2, 3}});
+    const std::string narrow = tapered.feature("B1").surface.radius < 2.2 * mm ? "B1" : "B2";
+    CHECK(fault_of(tapered, narrow, 0.3 * mm).empty());
+    CHECK(fault_of(tapered, narrow, 0.8 * mm).find("would lean the other way") != std::string::npos);
+}
+
 TEST_CASE("the wall behind a bore is the least that is left") {
     const Part part = block();
     // From the bore of 2 mm at x = 12 mm to the end at 20 mm there are 6 mm, to the other bore 6 mm, to the sides 8 mm.
