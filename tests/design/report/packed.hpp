@@ -26,7 +26,8 @@ std::vector<Number> unpacked(const Json& value, const char* key) {
         bytes += static_cast<char>(bits >> held & 255);
     }
     std::vector<Number> numbers(bytes.size() / sizeof(Number));
-    std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));  // of a machine with the lowest byte first
+    if (!numbers.empty())
+        std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));  // of a machine with the lowest byte first
     return numbers;
 }
 
