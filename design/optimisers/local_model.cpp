@@ -97,8 +97,9 @@ Evaluation with_telling_derivatives(const Evaluator& evaluator, const VectorX& p
         const VectorX step = evaluator.scaled_point(other) - point;
         const double length = step.norm();  // near ones count as much as far ones
         steps.row(k) = step.transpose() / length;
-        constraints.row(k) = (evaluator.scaled_evaluation(other).constraints - e.constraints).transpose() / length;
-        residuals.row(k) = (evaluator.scaled_evaluation(other).residuals - e.residuals).transpose() / length;
+        const Evaluation& there = evaluator.scaled_evaluation(other);
+        if (constraints.cols() > 0) constraints.row(k) = (there.constraints - e.constraints).transpose() / length;
+        if (residuals.cols() > 0) residuals.row(k) = (there.residuals - e.residuals).transpose() / length;
     }
     Evaluation telling = e;
     const Eigen::Index simulated = evaluator.simulated_constraints();

@@ -126,7 +126,7 @@ private:
 }  // namespace
 
 std::vector<std::string> doubtful_extremes(const description::Design& design, const DesignEvaluation& evaluation) {
-    if (!evaluation.usable) return {};
+    if (!evaluation.usable || evaluation.runs.empty()) return {};
     return Search(design, evaluation).run();
 }
 

@@ -18,7 +18,7 @@ namespace fettle::design::problem {
 /// several scenarios, ask for is told once. Left out: the "least" of a number that is never negative and the upper bound below 0 of a
 /// "largest", which say that something must not turn round; an expression that takes both extremes; what is hidden between steps if it is
 /// less than 0.2% of the extreme.
-/// @param evaluation  The evaluation of the design; of one that is not usable nothing is said.
+/// @param evaluation  The evaluation of the design; of one that is not usable, or that nothing was simulated for, nothing is said.
 std::vector<std::string> doubtful_extremes(const description::Design& design, const DesignEvaluation& evaluation);
 
 }  // namespace fettle::design::problem
