@@ -11,6 +11,7 @@
 #include "core/base/contract.hpp"
 #include "core/base/limits.hpp"
 #include "core/base/text.hpp"
+#include "core/geometry/body_hierarchy.hpp"
 #include "core/solids/self_intersection.hpp"
 
 namespace fettle::core::features {
@@ -188,6 +189,56 @@ double hit(const Matrix3X& x, const geometry::Triangle& t, const Vector3& from, 
     return length > 0 ? length : infinity;
 }
 
+// Rays against all triangles of a mesh but some.
+class Rays {
+public:
+    Rays(const geometry::Mesh& mesh, const std::vector<int>& left_out)
+        : mesh_(mesh), hierarchy_(mesh), is_left_out_(mesh.triangles.size(), 0) {
+        for (const int t : left_out) is_left_out_[t] = 1;
+    }
+
+    // How far the nearest one is, if that is less than `within`; infinity: none is.
+    double first_hit(const Vector3& from, const Vector3& way, double within) const {
+        double least = infinity;
+        std::vector<int> open{0};
+        while (!open.empty()) {
+            const geometry::HierarchyNode& node = hierarchy_.nodes()[open.back()];
+            open.pop_back();
+            if (!may_hit(node, from, way, std::min(least, within))) continue;
+            if (!node.is_leaf()) {
+                open.push_back(node.left);
+                open.push_back(node.right);
+                continue;
+            }
+            for (int e = node.first; e < node.first + node.count; ++e) {
+                const int t = hierarchy_.elements()[e].triangle;
+                if (t >= 0 && is_left_out_[t] == 0) least = std::min(least, hit(mesh_.vertices, mesh_.triangles[t], from, way));
+            }
+        }
+        return least < within ? least : infinity;
+    }
+
+private:
+    static bool may_hit(const geometry::HierarchyNode& node, const Vector3& from, const Vector3& way, double within) {
+        double enter = 0, leave = within;
+        for (int k = 0; k < 3; ++k) {
+            const double low = node.center[k] - node.half_extent[k] - from[k], high = node.center[k] + node.half_extent[k] - from[k];
+            if (way[k] == 0) {
+                if (low > 0 || high < 0) return false;
+                continue;
+            }
+            const auto [first, last] = std::minmax({low / way[k], high / way[k]});
+            enter = std::max(enter, first);
+            leave = std::min(leave, last);
+        }
+        return enter <= leave * (1 + 1e-12);
+    }
+
+    const geometry::Mesh& mesh_;
+    const geometry::BodyHierarchy hierarchy_;
+    std::vector<char> is_left_out_;
+};
+
 }  // namespace
 
 base::Result<geometry::Mesh> resized(const geometry::Mesh& mesh, const Features& features, const std::vector<Resize>& changes) {
@@ -197,8 +248,7 @@ base::Result<geometry::Mesh> resized(const geometry::Mesh& mesh, const Features&
 }
 
 std::optional<Wall> wall_behind(const geometry::Mesh& mesh, const Feature& feature) {
-    std::vector<char> own(mesh.triangles.size(), 0);
-    for (const int t : feature.triangles) own[t] = 1;
+    const Rays rays(mesh, feature.triangles);
     std::optional<Wall> least;
     for (const int t : feature.triangles) {
         const auto& corners = mesh.triangles[t];
@@ -207,11 +257,8 @@ std::optional<Wall> wall_behind(const geometry::Mesh& mesh, const Feature& featu
         for (std::size_t k = 0; k < 4; ++k) {
             // A little within the facet, so that no ray runs along a neighbour.
             const Vector3 from = k == 3 ? middle : Vector3(middle + 0.98 * (mesh.vertices.col(corners[k]) - middle));
-            for (std::size_t other = 0; other < mesh.triangles.size(); ++other) {
-                if (own[other] != 0) continue;
-                const double length = hit(mesh.vertices, mesh.triangles[other], from, inwards);
-                if (length < infinity && (!least || length < least->thickness)) least = Wall{length, from};
-            }
+            const double length = rays.first_hit(from, inwards, least ? least->thickness : infinity);
+            if (length < infinity && (!least || length < least->thickness)) least = Wall{length, from};
         }
     }
     return least;

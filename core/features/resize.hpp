@@ -29,7 +29,7 @@ struct Resize {
 base::Result<geometry::Mesh> resized(const geometry::Mesh& mesh, const Features& features, const std::vector<Resize>& changes);
 
 /// The least thickness of material behind a feature's facets, along their normals from corners and middles: measured at these, not proven.
-/// Nothing: no ray meets another face.
+/// Nothing: no ray meets another face. Contract: connectivity is built.
 struct Wall {
     double thickness = 0;             ///< [m]
     Vector3 place = Vector3::Zero();  ///< on the feature

@@ -73,4 +73,10 @@ void complete_geometry(std::vector<Body>& bodies) {
     complete_geometry(bodies, geometry::first_of_shape(meshes));
 }
 
+geometry::Mesh mesh_at_start(const Body& body) {
+    geometry::Mesh mesh = body.mesh;
+    mesh.vertices = (body.pose_start.rotation * body.mesh.vertices).colwise() + body.pose_start.position;
+    return mesh;
+}
+
 }  // namespace fettle::core::model

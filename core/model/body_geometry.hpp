@@ -17,4 +17,7 @@ void complete_geometry(std::vector<Body>& bodies);
 /// @param first_of_shape  [body] the first with the same mesh (geometry::first_of_shape)
 void complete_geometry(std::vector<Body>& bodies, const std::vector<std::size_t>& first_of_shape);
 
+/// The body's mesh where it starts, in the order of its own triangles.
+geometry::Mesh mesh_at_start(const Body& body);
+
 }  // namespace fettle::core::model

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/base/limits.hpp"
+#include "core/model/body_geometry.hpp"
 
 namespace fettle::core::model {
 namespace {
@@ -119,12 +120,6 @@ bool explains_about_point(const Vector3& centre, const CommonPart& piece, const 
     return std::all_of(others.begin(), others.end(), [&](const Corners& c) { return axis.is_round(c); });
 }
 
-geometry::Mesh placed_mesh(const Body& body) {
-    geometry::Mesh mesh = body.mesh;
-    mesh.vertices = (body.pose_start.rotation * body.mesh.vertices).colwise() + body.pose_start.position;
-    return mesh;
-}
-
 double size_of(const geometry::Mesh& mesh) { return (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).norm(); }
 
 template <class Visit>
@@ -150,7 +145,7 @@ std::vector<std::string> joints_between(const Model& model, int a, int b) {
 }
 
 base::Result<JoinedOverlap> joined_overlap(const Model& model, int a, int b) {
-    const geometry::Mesh mesh_a = placed_mesh(model.bodies[a]), mesh_b = placed_mesh(model.bodies[b]);
+    const geometry::Mesh mesh_a = mesh_at_start(model.bodies[a]), mesh_b = mesh_at_start(model.bodies[b]);
     const base::Result<CommonPart> common = parts::common_part(mesh_a, mesh_b);
     if (!common) return common.errors();
     std::vector<kinematics::Pose> poses;

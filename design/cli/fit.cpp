@@ -10,6 +10,7 @@
 #include "core/files/atomic_file.hpp"
 #include "core/files/unique_names.hpp"
 #include "core/mesh_files/mesh_writer.hpp"
+#include "core/model/body_geometry.hpp"
 #include "design/clearance/mesh_parts.hpp"
 #include "design/cli/inputs.hpp"
 #include "design/cli/read_files.hpp"
@@ -115,7 +116,7 @@ int run_fit(const FitArguments& arguments, const CommonOptions& common, Console&
     const bool as_stl = are_all_stl(*parts);
     double largest = 0;
     for (const core::model::Body& body : parts->model.bodies)
-        largest = std::max(largest, features::placed_mesh(body).vertices.cwiseAbs().maxCoeff());
+        largest = std::max(largest, core::model::mesh_at_start(body).vertices.cwiseAbs().maxCoeff());
     constexpr double least = 1e-6, of_floats = 2.4e-7;  // [m]; two corners, each off by half of the last digit, in three coordinates
     wish->reserve = least + (as_stl ? of_floats * largest : 0);
     const Result<features::FitPlan> plan = features::plan_fits(*before, *wish);

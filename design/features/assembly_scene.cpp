@@ -11,6 +11,7 @@
 #include "core/files/json_dump.hpp"
 #include "core/files/nearest_word.hpp"
 #include "core/files/unique_names.hpp"
+#include "core/model/body_geometry.hpp"
 #include "core/scene_files/scene_reader.hpp"
 #include "core/setup/build_model.hpp"
 #include "design/answers/answer_json.hpp"
@@ -180,7 +181,7 @@ Result<AssemblyScene> assembly_scene(const clearance::MeshParts& parts, const As
     }
     const core::model::Model& model = parts.model;
     std::vector<core::geometry::Mesh> placed;
-    for (const core::model::Body& body : model.bodies) placed.push_back(placed_mesh(body));
+    for (const core::model::Body& body : model.bodies) placed.push_back(core::model::mesh_at_start(body));
     const Result<int> ground = ground_of(model, placed, question.ground);
     if (!ground) return ground.errors();
     FeaturesQuestion ask;

@@ -5,6 +5,7 @@
 
 #include "core/base/parallel.hpp"
 #include "core/features/fit_gap.hpp"
+#include "core/model/body_geometry.hpp"
 #include "design/reading/process_file.hpp"
 #include "design/tolerances/known_processes.hpp"
 #include "design/tolerances/process_clearance.hpp"
@@ -38,14 +39,6 @@ ProcessVerdict verdict_of(const tolerances::Process& process, const core::model:
 
 }  // namespace
 
-core::geometry::Mesh placed_mesh(const core::model::Body& body) {
-    core::geometry::Mesh out;
-    out.name = body.name;
-    out.triangles = body.mesh.triangles;
-    out.vertices = (body.pose_start.rotation * body.mesh.vertices).colwise() + body.pose_start.position;
-    return out;
-}
-
 std::string FeaturesReport::name_of(const core::features::FeatureOf& feature) const {
     return model.bodies[feature.body].name + "." + parts[feature.body].features[feature.feature].name;
 }
@@ -67,7 +60,7 @@ Result<FeaturesReport> ask_features(const core::model::Model& model, const Featu
         if (question.on_body) question.on_body(first, count);
         core::base::parallel_for(std::min(at_once, count - first), 1, [&](int k) {
             const core::model::Body& body = model.bodies[first + k];
-            report.parts[first + k] = core::features::find_features(placed_mesh(body), question.options);
+            report.parts[first + k] = core::features::find_features(core::model::mesh_at_start(body), question.options);
         });
         report.interrupted = question.should_stop();
     }

@@ -49,9 +49,6 @@ struct FeaturesReport {
     std::string name_of(const core::features::FeatureOf& feature) const;  ///< "pin.P1"
 };
 
-/// A body's mesh where it starts, in the order of its own triangles.
-core::geometry::Mesh placed_mesh(const core::model::Body& body);
-
 /// Contract: the model stays where it is as long as the report. Errors: the process'.
 Result<FeaturesReport> ask_features(const core::model::Model& model, const FeaturesQuestion& question);
 

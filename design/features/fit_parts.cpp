@@ -9,6 +9,7 @@
 #include "core/base/rounded_lengths.hpp"
 #include "core/base/text.hpp"
 #include "core/features/fit_gap.hpp"
+#include "core/model/body_geometry.hpp"
 
 namespace fettle::design::features {
 
@@ -77,12 +78,11 @@ Result<FitPlan> plan_fits(const FeaturesReport& report, const FitWish& wish) {
     Errors errors;
     for (int b = 0; b < count_of(report.parts); ++b) {
         const core::features::Features& features = report.parts[b];
-        core::geometry::Mesh mesh = placed_mesh(report.model.bodies[b]);
+        core::geometry::Mesh mesh = core::model::mesh_at_start(report.model.bodies[b]);
         std::vector<Resize> changes;
         for (const auto& [of, by] : growths)
             if (of.first == b) changes.push_back({of.second, features.features[of.second].is_hole ? by : -by});
         if (!changes.empty()) {
-            core::geometry::build_connectivity(mesh);
             Result<core::geometry::Mesh> made = core::features::resized(mesh, features, changes);
             for (Error error : made.errors()) {
                 error.where = report.model.bodies[b].name + "." + error.where;

@@ -5,6 +5,7 @@
 
 #include "core/features/find_features.hpp"
 #include "core/features/fit_gap.hpp"
+#include "core/model/body_geometry.hpp"
 #include "core/setup/build_model.hpp"
 #include "tests/core/features/known_parts.hpp"
 
@@ -112,11 +113,7 @@ TEST_CASE("random fits of drawn parts: the play is found, and the proven gap is 
         const auto model = setup::build_model(scene, options);
         REQUIRE(model);
         std::vector<Features> parts;
-        for (const model::Body& body : model->bodies) {
-            geometry::Mesh mesh = body.mesh;
-            mesh.vertices = (body.pose_start.rotation * body.mesh.vertices).colwise() + body.pose_start.position;
-            parts.push_back(find_features(mesh));
-        }
+        for (const model::Body& body : model->bodies) parts.push_back(find_features(model::mesh_at_start(body)));
         const std::vector<Fit> fits = find_fits(parts);
         INFO("seed " << seed << ", r " << r << ", play " << play << (is_ball ? ", a ball" : ""));
         REQUIRE(fits.size() == 1);
