@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace fettle::core::features {
@@ -49,6 +50,8 @@ std::optional<Fit> fit_of(const Feature& pin, const Feature& hole, double tolera
     const double known = tolerance + 2 * (pin.residual + hole.residual);
     if (fit.off_centre > std::max(fit.play, 0.0) + known) return std::nullopt;
     fit.is_centred = fit.off_centre <= known;
+    constexpr double half_turn = std::numbers::pi, a_little = 0.1;
+    fit.is_held = pin.surface.kind == SurfaceKind::sphere || (hole.covered > half_turn + a_little && pin.covered > half_turn - a_little);
     return fit;
 }
 

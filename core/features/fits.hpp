@@ -21,6 +21,7 @@ struct Fit {
     double lean = 0;          ///< between the axes [rad]
     double overlap = 0;       ///< length that both have; of a ball the pin's diameter [m]
     bool is_centred = false;  ///< off_centre is within what the features are known to
+    bool is_held = false;     ///< the hole goes more than half round the pin: the round end of a slot, a groove do not; true of balls
 };
 
 struct FitLimits {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -101,21 +100,16 @@ private:
 
     const Feature& feature(const FeatureOf& of) const { return parts_[of.body].features[of.feature]; }
     bool is_ball(const Fit& fit) const { return feature(fit.pin).surface.kind == SurfaceKind::sphere; }
-    // The round end of a slot holds no pin, and a rounded edge is none.
-    bool holds(const Fit& fit) const {
-        constexpr double half_turn = std::numbers::pi, a_little = 0.1;
-        return is_ball(fit) || (feature(fit.hole).covered > half_turn + a_little && feature(fit.pin).covered > half_turn - a_little);
-    }
 
     void find_lines() {
         Groups one_line(fits_.size());
         for (int i = 0; i < count_of(fits_); ++i)
             for (int j = 0; j < i; ++j)
-                if (holds(fits_[i]) && holds(fits_[j]) && share_a_body(fits_[i], fits_[j]) && are_on_one_line(fits_[i], fits_[j]))
+                if (fits_[i].is_held && fits_[j].is_held && share_a_body(fits_[i], fits_[j]) && are_on_one_line(fits_[i], fits_[j]))
                     one_line.join(i, j);
         std::map<int, int> line_of;
         for (int k = 0; k < count_of(fits_); ++k) {
-            if (is_ball(fits_[k]) || !holds(fits_[k])) continue;
+            if (is_ball(fits_[k]) || !fits_[k].is_held) continue;
             const auto [at, is_new] = line_of.emplace(one_line.of(k), count_of(lines_));
             if (is_new) lines_.emplace_back();
             lines_[at->second].fits.push_back(k);

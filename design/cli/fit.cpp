@@ -104,7 +104,7 @@ int run_fit(const FitArguments& arguments, const CommonOptions& common, Console&
     ask.process = arguments.process;
     ask.should_stop = interrupted;
     ask.on_body = [&](int done, int of) { console.progress("looking for features", done, of); };
-    const Result<FeaturesReport> before = features::ask_features(parts->model, ask);
+    Result<FeaturesReport> before = features::ask_features(parts->model, ask);
     console.end_progress();
     if (!before) return console.input_errors(before.errors());
     const auto nothing = [&](const std::string& why) {
@@ -112,6 +112,7 @@ int run_fit(const FitArguments& arguments, const CommonOptions& common, Console&
         return exit_undecided;
     };
     if (before->interrupted) return nothing("interrupted before the fits were known");
+    std::erase_if(before->fits, [](const features::FoundFit& found) { return !found.fit.is_held; });
     if (before->fits.empty()) return nothing("no pin sits in a bore of another part, and no ball in a socket");
     const bool as_stl = are_all_stl(*parts);
     double largest = 0;

@@ -75,6 +75,7 @@ Json fit_json(const FeaturesReport& report, const FoundFit& found) {
             {"lean", fit.lean},
             {"overlap", fit.overlap},
             {"centred", fit.is_centred},
+            {"held", fit.is_held},
             {"gap",
              {{"lower", found.gap.lower},
               {"upper", is_bounded ? Json(found.gap.upper) : Json()},

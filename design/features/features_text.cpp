@@ -135,6 +135,7 @@ std::string play_text(const FoundFit& found) {
     out += fit.is_centred ? "per side, concentric, proven"
                           : "at the nearest as assembled, proven; " + number(fit.off_centre) + " mm off centre";
     out += "; play " + number(fit.play) + " mm per side by the fitted surfaces, " + number(fit.facets_play) + " by the facets";
+    if (!fit.is_held) out += ", less than half round";
     if (fit.lean > 1e-4) out += ", leaning by " + number(fit.lean, degree, 3) + " deg";
     return out;
 }

@@ -49,6 +49,17 @@ geometry::Mesh drawn_mesh(const std::function<Result<Solid>(Drawing&)>& part, Le
 
 }  // namespace
 
+TEST_CASE("a hole that goes no more than half round does not hold its pin") {
+    const Feature pin = cylinder(false, 2 * mm, {0, 0, 1}, {0, 0, 0}, 20 * mm);
+    for (const double degrees : {90.0, 180.0, 200.0, 360.0}) {
+        Feature hole = cylinder(true, 2.1 * mm, {0, 0, 1}, {0, 0, 0}, 8 * mm);
+        hole.covered = degrees * std::numbers::pi / 180;
+        const std::vector<Fit> fits = find_fits({one(hole), one(pin)});
+        REQUIRE(fits.size() == 1);
+        CHECK(fits[0].is_held == (degrees > 190));
+    }
+}
+
 TEST_CASE("a pin in a bore: play, overlap, off centre") {
     const Feature pin = cylinder(false, 2 * mm, {1, 0, 0}, {30 * mm, 44 * mm, 20 * mm}, 50 * mm);
     const Feature bore = cylinder(true, 2.1 * mm, {-1, 0, 0}, {10 * mm, 44.03 * mm, 20 * mm}, 8 * mm);
@@ -56,6 +67,7 @@ TEST_CASE("a pin in a bore: play, overlap, off centre") {
     REQUIRE(fits.size() == 1);
     CHECK(fits[0].pin.body == 1);
     CHECK(fits[0].hole.body == 0);
+    CHECK(fits[0].is_held);
     CHECK(fits[0].play == Approx(0.1 * mm));
     CHECK(fits[0].overlap == Approx(8 * mm));
     CHECK(fits[0].off_centre == Approx(0.03 * mm));
