@@ -38,15 +38,6 @@ Feature cylinder(bool hole, double radius, const Vector3& axis, const Vector3& m
     return out;
 }
 
-geometry::Mesh drawn_mesh(const std::function<Result<Solid>(Drawing&)>& part, Lean lean = Lean::through) {
-    Facets facets;
-    facets.lean = lean;
-    Drawing drawing(facets);
-    const Result<Solid> solid = part(drawing);
-    REQUIRE(solid);
-    return drawn(drawing, *solid, "part", {false})->mesh;
-}
-
 }  // namespace
 
 TEST_CASE("a hole that goes no more than half round does not hold its pin") {

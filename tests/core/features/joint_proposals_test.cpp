@@ -19,12 +19,7 @@ struct Assembly {
     std::vector<Fit> fits;
 
     void add(const std::function<Result<Solid>(Drawing&)>& part) {
-        Facets facets;
-        facets.lean = Lean::through;
-        Drawing drawing(facets);
-        const Result<Solid> solid = part(drawing);
-        REQUIRE(solid);
-        placed.push_back(drawn(drawing, *solid, "part", {false})->mesh);
+        placed.push_back(drawn_mesh(part));
         parts.push_back(find_features(placed.back()));
     }
     std::vector<ProposedJoint> joints() {

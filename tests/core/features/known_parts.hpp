@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <random>
+#include <string>
 
 #include "core/parts/drawn_part.hpp"
 #include "core/parts/extrude.hpp"
@@ -30,6 +32,15 @@ private:
 };
 
 constexpr double mm = 1e-3;
+
+/// What is drawn of a part, with corners on its curves unless said otherwise.
+inline geometry::Mesh drawn_mesh(const std::function<Result<Solid>(Drawing&)>& part, Lean lean = Lean::through,
+                                 const std::string& name = "part") {
+    Facets facets;
+    facets.lean = lean;
+    Drawing drawing(facets);
+    return drawn(drawing, part(drawing).value(), name, {.jacobian = false}).value().mesh;
+}
 
 /// A plate of two layers, with bores, counterbores and blind bores, and pins on it.
 inline Result<Solid> plate(Drawing& drawing, Chance& chance) {

@@ -18,15 +18,7 @@ namespace {
 struct Part {
     geometry::Mesh mesh;
     Features features;
-    explicit Part(const std::function<Result<Solid>(Drawing&)>& part) {
-        Facets facets;
-        facets.lean = Lean::through;
-        Drawing drawing(facets);
-        const Result<Solid> solid = part(drawing);
-        REQUIRE(solid);
-        mesh = drawn(drawing, *solid, "part", {false})->mesh;
-        features = find_features(mesh);
-    }
+    explicit Part(const std::function<Result<Solid>(Drawing&)>& part) : mesh(drawn_mesh(part)), features(find_features(mesh)) {}
     int named(const std::string& name) const {
         const int found = features.find(name);
         REQUIRE(found >= 0);

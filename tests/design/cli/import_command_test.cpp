@@ -23,12 +23,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-Mesh mesh_of(const std::function<Result<Solid>(Drawing&)>& part, const std::string& name) {
-    Drawing drawing;
-    const Result<Solid> solid = part(drawing);
-    REQUIRE(solid);
-    return drawn(drawing, *solid, name, {false})->mesh;
-}
+Mesh mesh_of(const std::function<Result<Solid>(Drawing&)>& part, const std::string& name) { return drawn_mesh(part, Lean::cover, name); }
 
 Mesh box_mesh(const Vector3& low, const Vector3& high) {
     return mesh_of(
