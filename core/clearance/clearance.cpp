@@ -210,13 +210,13 @@ std::vector<PairClearance> certify(const model::Model& model, const stepper::Tra
 
 }  // namespace
 
-std::vector<PairClearance> certify_clearance(const model::Model& model, const stepper::Trajectory& trajectory,
-                                             const std::vector<PairRequest>& pairs, const ClearanceOptions& options) {
+std::vector<PairClearance> certify(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PairRequest>& pairs,
+                                   const ClearanceOptions& options) {
     return certify(model, trajectory, pairs, options, nullptr);
 }
 
-ProvenClearances certify_clearance_with_proof(const model::Model& model, const stepper::Trajectory& trajectory,
-                                              const std::vector<PairRequest>& pairs, const ClearanceOptions& options) {
+ProvenClearances certify_with_proof(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PairRequest>& pairs,
+                                    const ClearanceOptions& options) {
     ProvenClearances proven;
     proven.pairs = certify(model, trajectory, pairs, options, &proven.certificate);
     return proven;

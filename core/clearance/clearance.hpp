@@ -6,7 +6,7 @@
 ///     const std::vector<core::clearance::PairRequest> pairs{{.a = 0, .b = 1, .minimum = 0.3e-3}};  // bodies by number, lengths in m
 ///     auto options = core::clearance::usual_options(pairs);
 ///     options.motion = true;  // false: as assembled
-///     for (const auto& pair : core::clearance::certify_clearance(model, simulation.trajectory, pairs, options))
+///     for (const auto& pair : core::clearance::certify(model, simulation.trajectory, pairs, options))
 ///         std::printf("%s: from %g to %g m, nearest at %g s\n", core::clearance::to_string(pair.status), pair.lower, pair.upper,
 ///                     pair.witness.time);
 #pragma once
@@ -20,12 +20,12 @@
 namespace fettle::core::clearance {
 
 /// Bounds for each pair asked for, in their order. The path of `trajectory` must be of the model's bodies.
-std::vector<PairClearance> certify_clearance(const model::Model& model, const stepper::Trajectory& trajectory,
-                                             const std::vector<PairRequest>& pairs, const ClearanceOptions& options);
+std::vector<PairClearance> certify(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PairRequest>& pairs,
+                                   const ClearanceOptions& options);
 
 /// The same with its certificate, which leaves out what could not be measured.
-ProvenClearances certify_clearance_with_proof(const model::Model& model, const stepper::Trajectory& trajectory,
-                                              const std::vector<PairRequest>& pairs, const ClearanceOptions& options);
+ProvenClearances certify_with_proof(const model::Model& model, const stepper::Trajectory& trajectory, const std::vector<PairRequest>& pairs,
+                                    const ClearanceOptions& options);
 
 struct NearClearances {
     /// Pairs that may collide, each over a part of the path throughout which they may be nearer than the reach: in the order of the
@@ -35,7 +35,7 @@ struct NearClearances {
 };
 
 /// The least distance of all pairs that may collide at once: pairs that are not in `windows` are proven to be at least `reach` apart, by
-/// boxes round whole bodies that hold them for a while; those that are get searched as certify_clearance() does, up to `reach` (`enough`).
+/// boxes round whole bodies that hold them for a while; those that are get searched as certify() does, up to `reach` (`enough`).
 NearClearances certify_near(const model::Model& model, const stepper::Trajectory& trajectory, double reach, ClearanceOptions options);
 
 /// Steps [first, last) of a trajectory.

@@ -24,7 +24,7 @@ Witness nearest_facets(const model::Model& model, const std::vector<Pose>& poses
     options.tolerance = exact;
     options.measure_overlap = false;
     options.sample_nodes = false;
-    return certify_clearance(model, here, {{a, b}}, options).front().witness;
+    return certify(model, here, {{a, b}}, options).front().witness;
 }
 
 // A triangle's corners; an edge or a vertex is a triangle without area.

@@ -3,7 +3,7 @@
 /// closer than a minimum, or nothing is left to look at. Limits of the coordinate itself have no effect: this is how they are found.
 ///
 /// For a coordinate q that starts at q0, and one way along it, the search keeps `free`, up to which every pair is proven at least the
-/// minimum apart (certify_ranges over the interval), and `stop`, where a pair was found closer; it asks about the half between them until
+/// minimum apart (certify over the interval), and `stop`, where a pair was found closer; it asks about the half between them until
 /// they are as near as is wanted. Everything from q0 to `free` is proven, nothing is said of what lies beyond `stop`, where it may be free
 /// again. docs/method/clearance.md#free-ranges.
 ///

@@ -210,18 +210,16 @@ void judge_jointed(const std::vector<PairRequest>& pairs, const JointedPath& pat
 
 }  // namespace
 
-std::vector<PairClearance> certify_jointed(const model::Model& model, const stepper::Trajectory& trajectory,
-                                           const std::vector<PairRequest>& pairs, const ClearanceOptions& options,
-                                           const JointedPath& path) {
-    std::vector<PairClearance> results = certify_clearance(model, trajectory, widened(pairs, path), options);
+std::vector<PairClearance> certify(const model::Model& model, const stepper::Trajectory& trajectory, const JointedPath& path,
+                                   const std::vector<PairRequest>& pairs, const ClearanceOptions& options) {
+    std::vector<PairClearance> results = certify(model, trajectory, widened(pairs, path), options);
     judge_jointed(pairs, path, results);
     return results;
 }
 
-ProvenClearances certify_jointed_with_proof(const model::Model& model, const stepper::Trajectory& trajectory,
-                                            const std::vector<PairRequest>& pairs, const ClearanceOptions& options,
-                                            const JointedPath& path) {
-    ProvenClearances proven = certify_clearance_with_proof(model, trajectory, widened(pairs, path), options);
+ProvenClearances certify_with_proof(const model::Model& model, const stepper::Trajectory& trajectory, const JointedPath& path,
+                                    const std::vector<PairRequest>& pairs, const ClearanceOptions& options) {
+    ProvenClearances proven = certify_with_proof(model, trajectory, widened(pairs, path), options);
     judge_jointed(pairs, path, proven.pairs);
     proven.certificate.joints = path.joints;
     proven.certificate.is_of_path = !path.joints;

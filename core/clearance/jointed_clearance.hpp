@@ -9,7 +9,7 @@
 ///     auto options = core::clearance::usual_options(pairs);
 ///     options.motion = true;
 ///     const auto path = core::clearance::jointed_path(model, *motion);
-///     for (const auto& pair : core::clearance::certify_jointed(model, motion->trajectory, pairs, options, path))
+///     for (const auto& pair : core::clearance::certify(model, motion->trajectory, path, pairs, options))
 ///         std::printf("%s: from %g to %g m\n", core::clearance::to_string(pair.status), pair.lower, pair.upper);
 #pragma once
 
@@ -38,15 +38,14 @@ struct JointedPath {
 };
 JointedPath jointed_path(const model::Model& model, const stepper::JointedMotion& motion);
 
-/// As certify_clearance, of the bodies where the joints have them: of each pair lower less its charge, upper more; clear or violated only
-/// where that is proven of these, too. Where it is not proven where the joints have a body, a pair of it has no bounds and is undecided;
-/// other pairs do not depend on joints.
-std::vector<PairClearance> certify_jointed(const model::Model& model, const stepper::Trajectory& trajectory,
-                                           const std::vector<PairRequest>& pairs, const ClearanceOptions& options, const JointedPath& path);
+/// As certify over the path, of the bodies where the joints have them: of each pair lower less its charge, upper more; clear or violated
+/// only where that is proven of these, too. Where it is not proven where the joints have a body, a pair of it has no bounds and is
+/// undecided; other pairs do not depend on joints.
+std::vector<PairClearance> certify(const model::Model& model, const stepper::Trajectory& trajectory, const JointedPath& path,
+                                   const std::vector<PairRequest>& pairs, const ClearanceOptions& options);
 
 /// The same with its certificate: it has the path's own bounds, and the joints beside them; nothing of pairs without bounds.
-ProvenClearances certify_jointed_with_proof(const model::Model& model, const stepper::Trajectory& trajectory,
-                                            const std::vector<PairRequest>& pairs, const ClearanceOptions& options,
-                                            const JointedPath& path);
+ProvenClearances certify_with_proof(const model::Model& model, const stepper::Trajectory& trajectory, const JointedPath& path,
+                                    const std::vector<PairRequest>& pairs, const ClearanceOptions& options);
 
 }  // namespace fettle::core::clearance

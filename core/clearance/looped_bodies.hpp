@@ -5,7 +5,7 @@
 ///     const auto looped = core::clearance::looped_ranges(model);
 ///     if (!looped) return 3;
 ///     const auto bodies = core::clearance::looped_bodies(model, *looped);
-///     for (const auto& pair : core::clearance::certify_toleranced(model, bodies, pairs, core::clearance::usual_options(pairs)))
+///     for (const auto& pair : core::clearance::certify(model, bodies, pairs, core::clearance::usual_options(pairs)))
 ///         std::printf("%s: from %g to %g m\n", core::clearance::to_string(pair.status), pair.lower, pair.upper);
 #pragma once
 

@@ -148,8 +148,8 @@ private:
 
 }  // namespace
 
-std::vector<PairClearance> certify_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
-                                          const ClearanceOptions& options) {
+std::vector<PairClearance> certify(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
+                                   const ClearanceOptions& options) {
     return RangeCertification(model, ranges, pairs, options, nullptr).run();
 }
 
@@ -166,8 +166,8 @@ std::vector<PairClearance> RangeClearances::over(std::vector<PairRequest> pairs)
     return certification_->run();
 }
 
-ProvenClearances certify_ranges_with_proof(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
-                                           const ClearanceOptions& options) {
+ProvenClearances certify_with_proof(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
+                                    const ClearanceOptions& options) {
     ProvenClearances proven;
     proven.pairs = RangeCertification(model, ranges, pairs, options, &proven.certificate).run();
     return proven;

@@ -8,7 +8,7 @@
 ///     for (const auto& error : ranges.errors()) std::printf("%s: %s\n", error.where.c_str(), error.message.c_str());
 ///     if (!ranges) return 3;
 ///     const std::vector<core::clearance::PairRequest> pairs{{.a = 0, .b = 1, .minimum = 0.3e-3}};
-///     for (const auto& pair : core::clearance::certify_ranges(model, *ranges, pairs, core::clearance::usual_options(pairs)))
+///     for (const auto& pair : core::clearance::certify(model, *ranges, pairs, core::clearance::usual_options(pairs)))
 ///         std::printf("%s: from %g to %g m\n", core::clearance::to_string(pair.status), pair.lower, pair.upper);
 #pragma once
 
@@ -25,8 +25,8 @@ class BoxCertification;
 /// Bounds for each pair asked for, in their order; judged as over a path, by the same function. The witness attains `upper`, in the world,
 /// with what moves both bodies at its start; its step is -1. PairRequest::far has no effect, and nothing is reported about overlap, touch,
 /// times, nodes and margins: these are of a path.
-std::vector<PairClearance> certify_ranges(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
-                                          const ClearanceOptions& options);
+std::vector<PairClearance> certify(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
+                                   const ClearanceOptions& options);
 
 /// The same over one part of the ranges after another: what is made of the bodies' meshes is made once.
 class RangeClearances {
@@ -49,8 +49,8 @@ private:
 };
 
 /// The same with its certificate, which leaves out what could not be measured.
-ProvenClearances certify_ranges_with_proof(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
-                                           const ClearanceOptions& options);
+ProvenClearances certify_with_proof(const model::Model& model, const JointRanges& ranges, const std::vector<PairRequest>& pairs,
+                                    const ClearanceOptions& options);
 
 /// Where two bodies are nearest in each part of their ranges, which are divided into about so many equal boxes (at least two along each
 /// coordinate), of the parts in which they come within `reach` [m] of each other. The counterpart of nearest_by_window (clearance.hpp):

@@ -177,13 +177,13 @@ private:
 
 }  // namespace
 
-std::vector<PairClearance> certify_toleranced(const model::Model& model, const Toleranced& toleranced,
-                                              const std::vector<PairRequest>& pairs, const ClearanceOptions& options) {
+std::vector<PairClearance> certify(const model::Model& model, const Toleranced& toleranced, const std::vector<PairRequest>& pairs,
+                                   const ClearanceOptions& options) {
     return TolerancedCertification(model, toleranced, pairs, options, nullptr).run();
 }
 
-ProvenClearances certify_toleranced_with_proof(const model::Model& model, const Toleranced& toleranced,
-                                               const std::vector<PairRequest>& pairs, const ClearanceOptions& options) {
+ProvenClearances certify_with_proof(const model::Model& model, const Toleranced& toleranced, const std::vector<PairRequest>& pairs,
+                                    const ClearanceOptions& options) {
     ProvenClearances proven;
     proven.pairs = TolerancedCertification(model, toleranced, pairs, options, &proven.certificate).run();
     return proven;

@@ -17,12 +17,12 @@ namespace fettle::core::clearance {
 /// with everything that has no influence on the pair where it is at the base; its step is -1. As over ranges of joints
 /// (range_clearance.hpp) nothing is reported about overlap, touch, times, nodes and margins.
 /// Contract: the model's meshes and start poses are those of the base; `toleranced` is checked.
-std::vector<PairClearance> certify_toleranced(const model::Model& model, const certificate::Toleranced& toleranced,
-                                              const std::vector<PairRequest>& pairs, const ClearanceOptions& options);
+std::vector<PairClearance> certify(const model::Model& model, const certificate::Toleranced& toleranced,
+                                   const std::vector<PairRequest>& pairs, const ClearanceOptions& options);
 
 /// The same with its certificate, which leaves out what could not be measured.
-ProvenClearances certify_toleranced_with_proof(const model::Model& model, const certificate::Toleranced& toleranced,
-                                               const std::vector<PairRequest>& pairs, const ClearanceOptions& options);
+ProvenClearances certify_with_proof(const model::Model& model, const certificate::Toleranced& toleranced,
+                                    const std::vector<PairRequest>& pairs, const ClearanceOptions& options);
 
 /// Pose of a body, of any, at a pair's witness: what does not matter for the pair is where it is at the base.
 kinematics::Pose pose_at_witness(const certificate::Toleranced& toleranced, const PairClearance& pair, int body);

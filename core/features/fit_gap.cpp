@@ -41,8 +41,7 @@ std::vector<clearance::PairClearance> fit_gaps(const model::Model& model, const 
         options.should_stop = should_stop;
         const auto measured = [&](const std::vector<int>& hole) {
             const clearance::FacesAlone faces(two, {0, parts[fit.pin.body].features[fit.pin.feature].triangles}, {1, hole});
-            return faces.in_whole(
-                clearance::certify_clearance(faces.model(), clearance::as_assembled(faces.model()), pairs, options).front());
+            return faces.in_whole(clearance::certify(faces.model(), clearance::as_assembled(faces.model()), pairs, options).front());
         };
         clearance::PairClearance gap = measured(parts[fit.hole.body].features[fit.hole.feature].triangles);
         if (gap.is_clash() &&
@@ -77,7 +76,7 @@ std::vector<double> gaps_over_a_turn(const model::Model& model, const std::vecto
         const std::vector<clearance::PairRequest> pairs{{.a = 0, .b = 1}};
         clearance::ClearanceOptions options = clearance::usual_options(pairs, tolerance_of(fit));
         options.should_stop = should_stop;
-        const clearance::PairClearance found = clearance::certify_ranges(faces.model(), ranges, pairs, options).front();
+        const clearance::PairClearance found = clearance::certify(faces.model(), ranges, pairs, options).front();
         if (!found.is_clash() && found.is_bounded) out.back() = found.lower;
     }
     return out;

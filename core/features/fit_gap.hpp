@@ -17,7 +17,7 @@ namespace fettle::core::features {
 std::vector<clearance::PairClearance> fit_gaps(const model::Model& model, const std::vector<Features>& parts, const std::vector<Fit>& fits,
                                                const std::function<bool()>& should_stop = {});
 
-/// Lower bounds of the same distances over a whole turn of the pin's part about the pin's axis, proven: clearance::certify_ranges. Fits of
+/// Lower bounds of the same distances over a whole turn of the pin's part about the pin's axis, proven: clearance::certify. Fits of
 /// balls have 0.
 std::vector<double> gaps_over_a_turn(const model::Model& model, const std::vector<Features>& parts, const std::vector<Fit>& fits,
                                      const std::function<bool()>& should_stop = {});

@@ -100,7 +100,7 @@ SourceCheck check_toleranced_source(const Certificate& certificate, const std::s
     }
     if (core::records::geometry_hash(subject->model) != certificate.geometry_hash)
         return {name, "stale: the meshes of " + name + " have changed since"};
-    if (subject->toleranced && same_toleranced(*subject->toleranced, *certificate.toleranced)) return {name};
+    if (subject->domain.made() && same_toleranced(*subject->domain.made(), *certificate.toleranced)) return {name};
     return {name, "stale: " + std::string(options.tolerances ? "the tolerances of " : "the joints of ") + name +
                       (options.tolerances ? ", its formulas, joints or start poses have changed since"
                                           : ", their limits or the start poses have changed since")};

@@ -60,7 +60,7 @@ std::vector<JoinedPair> look_at_joined(const Subject& subject, const BodyPairs& 
     for (const auto& [a, b] : pairs) requests.push_back({a, b, 0});
     const core::stepper::Trajectory start = core::clearance::as_assembled(subject.model);
     std::vector<JoinedPair> out;
-    for (PairClearance& found : core::clearance::certify_clearance(subject.model, start, requests, options)) {
+    for (PairClearance& found : core::clearance::certify(subject.model, start, requests, options)) {
         JoinedPair pair{found.a, found.b, core::model::joints_between(subject.model, found.a, found.b), std::move(found)};
         pair.clearance.as_assembled = true;
         if (pair.clearance.is_clash())

@@ -237,7 +237,7 @@ PathProof PathProver::look_closer(const core::stepper::Simulation& simulation) {
     for (int round = 1; !judged.is_final && round < most_rounds; ++round) {
         tolerance *= 1e-2;
         const auto options = proof_options(tolerance, should_stop_);
-        judged = judge(model_, core::clearance::certify_clearance(model_, simulation.trajectory, judged.open, options), judged.settled);
+        judged = judge(model_, core::clearance::certify(model_, simulation.trajectory, judged.open, options), judged.settled);
         if (!judged.whole && should_stop_()) return stopped();
         unverified.insert(unverified.end(), judged.unverified.begin(), judged.unverified.end());
         if (judged.open.empty()) return proven(judged.settled, std::move(unverified), count_of(simulation.trajectory.steps));

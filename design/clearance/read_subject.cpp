@@ -27,15 +27,17 @@ namespace {
 
 using core::base::formatted;
 using core::base::joined;
+using core::clearance::Domain;
 using core::scene::BodyType;
 
 // Bodies that move without dynamics are kinematic, those that do not move are static: whoever reads the stored trajectory then knows.
 void mark_as_scripted(Subject& subject) {
+    const core::stepper::Trajectory& path = subject.domain.path();
     for (size_t i = 0; i < subject.model.bodies.size(); ++i) {
         bool moves = false;
-        for (const auto& step : subject.trajectory.steps) {
+        for (const auto& step : path.steps) {
             for (const auto& node : step.nodes)
-                moves = moves || node[i].rotation_vector != Vector3::Zero() || node[i].position != subject.trajectory.poses[0][i].position;
+                moves = moves || node[i].rotation_vector != Vector3::Zero() || node[i].position != path.poses[0][i].position;
         }
         subject.model.bodies[i].type = moves ? BodyType::kinematic_body : BodyType::static_body;
     }
@@ -52,7 +54,7 @@ Result<Subject> from_trajectory(const SubjectOptions& options) {
     if (!stored) return stored.errors();
     Subject subject;
     subject.model = std::move(stored->model);
-    subject.trajectory = std::move(stored->trajectory);
+    subject.domain = Domain(std::move(stored->trajectory));
     subject.source = SubjectSource::trajectory;
     subject.scene_path = stored->scene_path;
     subject.notes.insert(subject.notes.end(), stored->warnings.begin(), stored->warnings.end());
@@ -68,9 +70,9 @@ Errors take_poses(const SubjectOptions& options, Subject& subject) {
     }
     auto read = core::records::read_poses(options.poses, subject.model, unit);
     if (!read) return read.errors();
-    subject.trajectory = std::move(read->trajectory);
+    subject.domain = Domain(std::move(read->trajectory));
     subject.source = SubjectSource::poses;
-    for (size_t i = 0; i < subject.model.bodies.size(); ++i) subject.model.bodies[i].pose_start = subject.trajectory.poses[0][i];
+    for (size_t i = 0; i < subject.model.bodies.size(); ++i) subject.model.bodies[i].pose_start = subject.domain.path().poses[0][i];
     if (!read->still.empty())
         subject.notes.push_back("not in " + options.poses + ", so held where the scene has them: " + joined(read->still));
     if (read->largest_rotation_error > 1e-12) {
@@ -95,12 +97,12 @@ std::string joints_note(const Subject& subject, const core::stepper::JointedMoti
         "--kinematic: joints and motors are met at every node, each step in %d; between nodes joints of the path "
         "as stored part by at most %.2g %s",
         followed.parts, followed.joint_gap / unit, name.c_str());
-    if (!subject.joints->joints)
-        return note + "; where the bodies are if joints are met at all times is not proven: " + subject.joints->refusal;
-    const auto& deviations = subject.joints->joints->deviations;
+    const core::clearance::JointedPath& path = *subject.domain.joints();
+    if (!path.joints) return note + "; where the bodies are if joints are met at all times is not proven: " + path.refusal;
+    const auto& deviations = path.joints->deviations;
     const auto most = std::max_element(deviations.begin(), deviations.end());
     if (most == deviations.end()) return note;
-    const int body = subject.joints->joints->bodies[most - deviations.begin()];
+    const int body = path.joints->bodies[most - deviations.begin()];
     return note + formatted(
                       "; bounds hold for joints met at all times, which keep the bodies within %.2g %s of that path (farthest: %s): each "
                       "bound is wider by the distances of its two bodies from it",
@@ -115,8 +117,8 @@ Errors take_joints(const SubjectOptions& options, int steps, Subject& subject) {
         for (Error& error : errors) error.where = options.path + ": " + error.where;
         return errors;
     }
-    subject.joints = core::clearance::jointed_path(subject.model, *followed);
-    subject.trajectory = std::move(followed->trajectory);
+    core::clearance::JointedPath joints = core::clearance::jointed_path(subject.model, *followed);
+    subject.domain = Domain(std::move(followed->trajectory), std::move(joints));
     subject.source = SubjectSource::scripted;
     if (!followed->held.empty())
         subject.notes.push_back("--kinematic: no motor and no script drives these, which are held at their start poses: " +
@@ -128,7 +130,7 @@ Errors take_joints(const SubjectOptions& options, int steps, Subject& subject) {
 
 // A motion that passes a dead centre is one of two.
 void warn_of_branches(const SubjectWatch& watch, Subject& subject) {
-    const std::vector<std::string> found = core::stepper::branch_warnings(subject.model, subject.trajectory);
+    const std::vector<std::string> found = core::stepper::branch_warnings(subject.model, subject.domain.path());
     if (watch.on_warnings && !found.empty()) watch.on_warnings(found);
     subject.warnings.insert(subject.warnings.end(), found.begin(), found.end());
 }
@@ -139,7 +141,7 @@ void simulate(int steps, const SubjectWatch& watch, Subject& subject) {
     simulate_options.on_step = watch.on_step;
     simulate_options.should_stop = watch.should_stop;
     core::stepper::Simulation simulation = core::stepper::simulate(subject.model, simulate_options);
-    subject.trajectory = std::move(simulation.trajectory);
+    subject.domain = Domain(std::move(simulation.trajectory));
     subject.source = SubjectSource::simulated;
     const std::string status = core::stepper::to_string(simulation.report.status), &why = simulation.report.message;
     if (simulation.report.status != core::stepper::SimulationStatus::ok)
@@ -215,6 +217,34 @@ Result<std::optional<core::clearance::LoopedRanges>> positions_of(const SubjectO
     return Positions{*std::move(found)};
 }
 
+// @param positions  nothing: as assembled, where the coordinates are there and have no range
+Subject subject_as_made(const SubjectOptions& options, core::model::Model model,
+                        const std::optional<core::clearance::LoopedRanges>& positions, core::certificate::Toleranced made) {
+    core::clearance::JointRanges ranges;
+    if (options.ranges || options.kinematic)
+        ranges = positions->ranges;
+    else
+        ranges.linkage.coordinates = made.coordinates;
+    const double duration = made.duration;
+    const bool has_loops = !made.loops.empty();
+    core::stepper::Trajectory start = core::clearance::as_assembled(model);
+    Domain tree(std::move(start), std::move(ranges), std::move(made));
+    if (options.ranges) return subject_over(std::move(model), std::move(tree));
+    Subject subject;
+    subject.model = std::move(model);
+    subject.domain = std::move(tree);
+    if (!options.kinematic) return subject;
+    if (has_loops) subject.notes.emplace_back(follow_note);
+    subject.source = SubjectSource::prescribed;
+    const core::clearance::JointRanges& driven = *subject.domain.ranges();
+    for (size_t i = 0; i < subject.model.bodies.size(); ++i)
+        subject.model.bodies[i].type = is_carried(driven.linkage, static_cast<int>(i)) ? BodyType::kinematic_body : BodyType::static_body;
+    subject.notes.push_back(core::base::formatted("for %.6g s from the start", duration));
+    if (!driven.held.empty())
+        subject.notes.push_back("--kinematic: these would move freely and are held at their start pose: " + joined(driven.held));
+    return subject;
+}
+
 // The design as made, over its tolerances.
 Result<Subject> from_tolerances(const SubjectOptions& options, const reading::InputOptions& input, reading::FileKind kind,
                                 const SubjectWatch& watch) {
@@ -255,28 +285,10 @@ Result<Subject> from_tolerances(const SubjectOptions& options, const reading::In
         problem::toleranced_bodies(description::design_of_scenario(design, *scenario), file->tolerances, *model, *positions);
     if (!toleranced) return with_file(toleranced.errors());
     toleranced->duration = duration;
-    const bool moves = options.ranges || options.kinematic;
-    Subject subject = options.ranges ? subject_over(*std::move(model), (*positions)->ranges) : subject_of(*std::move(model));
-    if (moves && !toleranced->loops.empty()) subject.notes.emplace_back(follow_note);
-    if (options.kinematic) {
-        subject.source = SubjectSource::prescribed;
-        subject.ranges = (*positions)->ranges;
-        for (size_t i = 0; i < subject.model.bodies.size(); ++i)
-            subject.model.bodies[i].type =
-                is_carried(subject.ranges->linkage, static_cast<int>(i)) ? BodyType::kinematic_body : BodyType::static_body;
-        subject.notes.push_back(core::base::formatted("for %.6g s from the start", duration));
-        if (!subject.ranges->held.empty())
-            subject.notes.push_back("--kinematic: these would move freely and are held at their start pose: " +
-                                    joined(subject.ranges->held));
-    }
-    if (!subject.ranges) {
-        subject.ranges.emplace();
-        subject.ranges->linkage.coordinates = toleranced->coordinates;
-    }
-    const std::vector<std::string> notes = notes_of_tolerances(*toleranced);
+    std::vector<std::string> notes = notes_of_tolerances(*toleranced);
+    Subject subject = subject_as_made(options, *std::move(model), *positions, *std::move(toleranced));
     subject.notes.insert(subject.notes.begin(), notes.begin(), notes.end());
     tell_other_scenarios(design, *scenario, subject);
-    subject.toleranced = *std::move(toleranced);
     subject.scene_path = file->scene_path;
     subject.warnings = file->warnings;
     subject.wanted = design_pairs(design);
@@ -369,7 +381,7 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
                                          : moves        ? MinimumOver::motion
                                                         : MinimumOver::assembly);
     }
-    if (subject.ranges) return subject;
+    if (subject.domain.is_tree()) return subject;
     const auto& bodies = subject.model.bodies;
     const bool all_scripted = std::all_of(bodies.begin(), bodies.end(), core::stepper::is_scripted);
     const Result<int> steps = steps_of(options, subject.model, loaded->steps);
@@ -383,7 +395,7 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
         if (!errors.empty()) return errors;
         warn_of_branches(watch, subject);
     } else if (options.kinematic || (options.motion && all_scripted)) {
-        subject.trajectory = core::stepper::follow_scripts(subject.model, *steps);
+        subject.domain = Domain(core::stepper::follow_scripts(subject.model, *steps));
         subject.source = SubjectSource::scripted;
         const auto held = core::stepper::held_bodies(subject.model);
         if (!held.empty())
@@ -397,7 +409,7 @@ Result<Subject> read_subject(const SubjectOptions& options, const reading::Input
         simulate(*steps, watch, subject);
         warn_of_branches(watch, subject);
     } else {
-        subject.trajectory = core::clearance::as_assembled(subject.model);
+        subject.domain = core::clearance::as_started(subject.model);
     }
     if (subject.source != SubjectSource::as_assembled && !subject.motion())
         subject.notes.push_back("there is no motion, only a start: judged as assembled");

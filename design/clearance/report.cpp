@@ -140,7 +140,7 @@ std::string why_none_is_judged(const Subject& subject, const PairSelection& sele
     if (subject.model.bodies.size() < 2) return "there are no two bodies";
     if (!selection.ignored.empty()) return "every pair is ignored";
     if (selection.left_out.empty()) return why_none_is_apart(selection);
-    return std::string("no pair ") + (subject.ranges ? "of bodies may collide" : "may collide in this motion") +
+    return std::string("no pair ") + (subject.domain.is_tree() ? "of bodies may collide" : "may collide in this motion") +
            "; name pairs with --pairs";
 }
 
@@ -149,9 +149,9 @@ std::string why_not_judged(const Subject& subject, const PairSelection& selectio
     if (stopped) message = "interrupted: pairs that were not examined are undecided";
     if (!subject.incomplete.empty())
         message += (message.empty() ? "" : "; ") + std::string("the motion is known up to there only: ") + subject.incomplete;
-    if (subject.ranges && !subject.ranges->lost.empty())
+    if (subject.domain.is_tree() && !subject.domain.ranges()->lost.empty())
         message +=
-            (message.empty() ? "" : "; ") + core::base::joined(subject.ranges->lost) +
+            (message.empty() ? "" : "; ") + core::base::joined(subject.domain.ranges()->lost) +
             ": that is hardly a range. Correct their `limits`, or leave them out (fettle import --ignore-mimic-limits does, as ROS does)";
     if (selection.pairs.empty())
         message += (message.empty() ? "" : "; ") + std::string("nothing was judged: ") + why_none_is_judged(subject, selection);
@@ -189,7 +189,7 @@ std::vector<PairClearance> clashes_of_left_out(const Subject& subject, Clearance
     for (const PairSpec& pair : selection.left_out) {
         for (const auto& [a, b] : pair.body_pairs) requests.push_back({a, b, 0, options.enough});
     }
-    const auto found = certify(subject, requests, options);
+    const auto found = certify(subject.model, subject.domain, requests, options);
     std::vector<PairClearance> clashes;
     std::vector<PairSpec> apart;
     auto first = found.begin();
@@ -256,13 +256,13 @@ ClearanceReport make_report(const Subject& subject, const PairSelection& selecti
     report.one_group = pair_names(subject.model, selection.one_group);
     report.left_out = pair_names(selection.left_out);
     size_t next = 0;
-    const auto set_time = [&](Witness& w) { w.time = core::stepper::time_at(subject.trajectory, w.step, w.segment, w.s); };
+    const auto set_time = [&](Witness& w) { w.time = core::stepper::time_at(subject.domain.path(), w.step, w.segment, w.s); };
     for (const PairSpec& spec : selection.pairs) {
         ReportedPair pair;
         pair.spec = spec;
         for (size_t i = 0; i < spec.body_pairs.size(); ++i) {
             pair.members.push_back(results[next++]);
-            if (pair.members.back().is_far || subject.ranges) continue;
+            if (pair.members.back().is_far || subject.domain.is_tree()) continue;
             set_time(pair.members.back().witness);  // where times are uneven only the trajectory knows them
             for (Witness& witness : pair.members.back().witnesses) set_time(witness);
         }
@@ -321,13 +321,13 @@ Result<ClearanceReport> judge_clearances(const Subject& subject, const Question&
     options.should_stop = question.should_stop;
     core::clearance::ProvenClearances proven;
     if (question.proof) {
-        proven = certify_with_proof(subject, requests, options);
+        proven = certify_with_proof(subject.model, subject.domain, requests, options);
         leave_out_touching(proven.pairs, proven.certificate);
         add_minima(subject.required, *selection, proven.certificate);
     } else {
-        proven.pairs = certify(subject, requests, options);
+        proven.pairs = certify(subject.model, subject.domain, requests, options);
     }
-    if (!subject.ranges) {
+    if (!subject.domain.is_tree()) {
         const auto clashes = clashes_of_left_out(subject, options, *selection);
         proven.pairs.insert(proven.pairs.end(), clashes.begin(), clashes.end());
     }

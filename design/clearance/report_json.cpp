@@ -55,7 +55,8 @@ void add_witness(Json& json, const ReportedPair& pair, const Subject& subject, c
     json["point_a"] = answers::vector_json(least.witness.point_a);
     json["point_b"] = answers::vector_json(least.witness.point_b);
     json["gap"] = least.is_bounded ? Json(least.upper - least.lower) : Json();
-    if (subject.joints) json["joint_charge"] = subject.joints->joints ? Json(joint_charge(subject, least.a, least.b)) : Json();
+    if (subject.domain.joints())
+        json["joint_charge"] = subject.domain.joints()->joints ? Json(joint_charge(subject, least.a, least.b)) : Json();
     json["sampled"] = least.sampled;
     json["complete"] = least.complete;
     if (!pair.overlap.empty()) json["overlap"] = pair.overlap;
@@ -100,8 +101,7 @@ Json deviations_json(const Subject& subject, const PairClearance& pair) {
 Json moved_poses(const Subject& subject, const PairClearance& pair) {
     Json json = Json::object();
     for (int body = 0; body < count_of(subject.model.bodies); ++body) {
-        const core::kinematics::Pose at = subject.toleranced ? core::clearance::pose_at_witness(*subject.toleranced, pair, body)
-                                                             : core::clearance::pose_at_witness(subject.model, *subject.ranges, pair, body);
+        const core::kinematics::Pose at = core::clearance::pose_at_witness(subject.model, subject.domain, pair, body);
         const core::kinematics::Pose& start = subject.model.bodies[body].pose_start;
         if (at.position == start.position && at.rotation == start.rotation) continue;
         json[subject.model.bodies[body].name] = pose_json(pose_where_nearest(subject, pair, body));
@@ -114,8 +114,8 @@ void add_worst_position(Json& json, const ReportedPair& pair, const Subject& sub
     const PairClearance& least = pair.least;
     json["complete"] = least.complete;
     json["tolerance"] = least.tolerance;
-    json["coordinates"] = coordinates_json(*subject.ranges, least);
-    if (subject.has_deviations() && !least.as_assembled) {
+    json["coordinates"] = coordinates_json(*subject.domain.ranges(), least);
+    if (subject.domain.has_deviations() && !least.as_assembled) {
         json["worst_deviations"] = deviations_json(subject, least);
         json["no_influence"] = deviations_without_influence(subject, least);
     }
@@ -154,7 +154,7 @@ Json pair_json(const ReportedPair& pair, const Subject& subject, const std::vect
     json["finding"] = to_string(pair.finding);
     json["solids"] = core::certificate::to_string(least.solids);
     if (least.status == PairStatus::undecided && !least.reason.empty()) json["reason"] = least.reason;
-    if (subject.ranges) {
+    if (subject.domain.is_tree()) {
         add_worst_position(json, pair, subject, names);
     } else if (least.is_far) {
         add_no_witness(json);
@@ -205,14 +205,14 @@ Json report_json(const ClearanceReport& report, const Subject& subject) {
     json["tolerance"] = report.tolerance;
     json["motion"] = subject.motion();
     json["source"] = source_text(subject);
-    if (subject.has_deviations()) {
+    if (subject.domain.has_deviations()) {
         json["tolerances"] = Json::array();
-        for (const core::certificate::Deviation& d : subject.toleranced->deviations)
+        for (const core::certificate::Deviation& d : subject.domain.made()->deviations)
             json["tolerances"].push_back({{"of", d.of}, {"lower", d.lower}, {"upper", d.upper}});
     }
-    if (!subject.ranges) json["steps"] = subject.trajectory.steps.size();
+    if (!subject.domain.is_tree()) json["steps"] = subject.domain.path().steps.size();
     json["pairs"] = std::move(list);
-    if (!subject.ranges) json["not_measured"] = unmeasured;
+    if (!subject.domain.is_tree()) json["not_measured"] = unmeasured;
     Json deviations = Json::object();
     for (const core::model::Body& body : subject.model.bodies)
         if (const auto& deviation = body.mesh.deviation)

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/base/text.hpp"
-#include "core/clearance/looped_bodies.hpp"
+#include "core/clearance/clearance.hpp"
 
 namespace fettle::design::clearance {
 
@@ -55,42 +55,37 @@ const char* to_string(SubjectSource source) {
 }
 
 std::string source_text(const Subject& subject) {
-    return std::string(to_string(subject.source)) + (subject.has_deviations() ? ", within tolerances" : "");
+    return std::string(to_string(subject.source)) + (subject.domain.has_deviations() ? ", within tolerances" : "");
 }
 
 Subject subject_of(core::model::Model model, std::optional<core::stepper::Trajectory> trajectory) {
     Subject subject;
     subject.source = trajectory ? SubjectSource::trajectory : SubjectSource::as_assembled;
-    subject.trajectory = trajectory ? *std::move(trajectory) : core::clearance::as_assembled(model);
+    subject.domain = trajectory ? core::clearance::Domain(*std::move(trajectory)) : core::clearance::as_started(model);
     subject.model = std::move(model);
     return subject;
 }
 
-Subject subject_over(core::model::Model model, core::clearance::JointRanges ranges) {
-    Subject subject = subject_of(std::move(model));
+Subject subject_over(core::model::Model model, core::clearance::Domain tree) {
+    Subject subject;
     subject.source = SubjectSource::ranges;
-    subject.notes = notes_of_ranges(subject.model, ranges);
-    subject.ranges = std::move(ranges);
+    subject.model = std::move(model);
+    subject.domain = std::move(tree);
+    subject.notes = notes_of_ranges(subject.model, *subject.domain.ranges());
+    if (subject.domain.made() && !subject.domain.made()->loops.empty()) subject.notes.emplace_back(follow_note);
     return subject;
 }
 
 Result<Subject> subject_over_joints(core::model::Model model) {
-    core::base::Result<core::clearance::JointRanges> ranges = core::clearance::joint_ranges(model);
-    if (ranges) return subject_over(std::move(model), *std::move(ranges));
-    if (!core::clearance::closes_loops(model)) return ranges.errors();
-    core::base::Result<core::clearance::LoopedRanges> looped = core::clearance::looped_ranges(model);
-    if (!looped) return looped.errors();
-    core::certificate::Toleranced toleranced = core::clearance::looped_bodies(model, *looped);
-    Subject subject = subject_over(std::move(model), std::move(looped->ranges));
-    subject.toleranced = std::move(toleranced);
-    subject.notes.emplace_back(follow_note);
-    return subject;
+    core::base::Result<core::clearance::Domain> tree = core::clearance::over_joints(model);
+    if (!tree) return tree.errors();
+    return subject_over(std::move(model), *std::move(tree));
 }
 
 std::vector<WorstDeviation> worst_deviations(const Subject& subject, const core::clearance::PairClearance& pair) {
     std::vector<WorstDeviation> out;
     for (size_t k = 0; k < pair.deviations.size(); ++k) {
-        const core::certificate::Deviation& d = subject.toleranced->deviations[pair.deviations[k]];
+        const core::certificate::Deviation& d = subject.domain.made()->deviations[pair.deviations[k]];
         out.push_back({d.of, pair.deviations_at[k], d.lower, d.upper, d.unit});
     }
     return out;
@@ -98,31 +93,14 @@ std::vector<WorstDeviation> worst_deviations(const Subject& subject, const core:
 
 std::vector<std::string> deviations_without_influence(const Subject& subject, const core::clearance::PairClearance& pair) {
     std::vector<std::string> out;
-    for (int k = 0; k < count_of(subject.toleranced->deviations); ++k)
-        if (!std::binary_search(pair.deviations.begin(), pair.deviations.end(), k)) out.push_back(subject.toleranced->deviations[k].of);
+    for (int k = 0; k < count_of(subject.domain.made()->deviations); ++k)
+        if (!std::binary_search(pair.deviations.begin(), pair.deviations.end(), k)) out.push_back(subject.domain.made()->deviations[k].of);
     return out;
 }
 
-std::vector<core::clearance::PairClearance> certify(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
-                                                    const core::clearance::ClearanceOptions& options) {
-    if (subject.toleranced) return core::clearance::certify_toleranced(subject.model, *subject.toleranced, pairs, options);
-    if (subject.ranges) return core::clearance::certify_ranges(subject.model, *subject.ranges, pairs, options);
-    if (subject.joints) return core::clearance::certify_jointed(subject.model, subject.trajectory, pairs, options, *subject.joints);
-    return core::clearance::certify_clearance(subject.model, subject.trajectory, pairs, options);
-}
-
-core::clearance::ProvenClearances certify_with_proof(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
-                                                     const core::clearance::ClearanceOptions& options) {
-    if (subject.toleranced) return core::clearance::certify_toleranced_with_proof(subject.model, *subject.toleranced, pairs, options);
-    if (subject.ranges) return core::clearance::certify_ranges_with_proof(subject.model, *subject.ranges, pairs, options);
-    if (subject.joints)
-        return core::clearance::certify_jointed_with_proof(subject.model, subject.trajectory, pairs, options, *subject.joints);
-    return core::clearance::certify_clearance_with_proof(subject.model, subject.trajectory, pairs, options);
-}
-
 double joint_charge(const Subject& subject, int a, int b) {
-    if (!subject.joints || !subject.joints->joints) return 0;
-    return core::certificate::joint_charge(*subject.joints->joints, a, b);
+    const core::clearance::JointedPath* path = subject.domain.joints();
+    return path != nullptr && path->joints ? core::certificate::joint_charge(*path->joints, a, b) : 0;
 }
 
 bool may_push(const Subject& subject, int a, int b) {
@@ -131,12 +109,7 @@ bool may_push(const Subject& subject, int a, int b) {
 }
 
 core::kinematics::Pose pose_where_nearest(const Subject& subject, const core::clearance::PairClearance& pair, int body) {
-    const core::clearance::Witness& witness = pair.witness;
-    const core::kinematics::Pose pose = pair.as_assembled    ? subject.model.bodies[body].pose_start
-                                        : subject.toleranced ? core::clearance::pose_at_witness(*subject.toleranced, pair, body)
-                                        : subject.ranges
-                                            ? core::clearance::pose_at_witness(subject.model, *subject.ranges, pair, body)
-                                            : core::stepper::pose_at(subject.trajectory, witness.step, witness.segment, witness.s, body);
+    const core::kinematics::Pose pose = core::clearance::pose_at_witness(subject.model, subject.domain, pair, body);
     return {pose.rotation, core::kinematics::world_position(pose, -subject.model.bodies[body].reference_point)};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a clearance is asked of: bodies, and where they go: along a path, whatever it comes from, or to all positions of their joints.
+/// What a clearance is asked of: bodies, and their domain (core/clearance/domain.hpp), wherever these come from.
 #pragma once
 
 #include <functional>
@@ -7,11 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/clearance/jointed_clearance.hpp"
-#include "core/clearance/range_clearance.hpp"
-#include "core/clearance/toleranced_clearance.hpp"
+#include "core/clearance/domain.hpp"
 #include "core/model/model.hpp"
-#include "core/stepper/trajectory.hpp"
 #include "design/clearance/pairs.hpp"
 
 namespace fettle::design::clearance {
@@ -20,15 +17,10 @@ enum class SubjectSource { as_assembled, simulated, scripted, poses, trajectory,
 const char* to_string(SubjectSource source);
 
 struct Subject {
-    core::model::Model model;  ///< its start poses are those of the trajectory; bodies moved by poses or scripts alone are kinematic
-    core::stepper::Trajectory trajectory;  ///< over ranges: as assembled
+    core::model::Model model;  ///< its start poses are those of the domain; bodies moved by poses or scripts alone are kinematic
+    core::clearance::Domain domain;
     SubjectSource source = SubjectSource::as_assembled;
     std::string scene_path;
-    std::optional<core::clearance::JointedPath> joints;  ///< that hold the bodies at all times, without dynamics; nothing: the path is all
-    std::optional<core::clearance::JointRanges> ranges;  ///< in place of a path
-    /// Within tolerances, in place of a path; `ranges` has the coordinates, none as assembled. Where joints close loops over their ranges
-    /// it is there too, without a deviation.
-    std::optional<core::certificate::Toleranced> toleranced;
     BodyPairs wanted;                   ///< of a design: those that it is about, which are judged whatever joins them
     std::vector<PairMinimum> required;  ///< of a design: what it requires of pairs, for its certificate
     std::string incomplete;             ///< why the motion is not whole; empty: it is, or there is none
@@ -36,10 +28,9 @@ struct Subject {
     std::vector<std::string> notes;     ///< what the reader of a report should know
     std::vector<std::string> files;     ///< the meshes, where nothing else was read
 
-    bool has_deviations() const { return toleranced && !toleranced->deviations.empty(); }
     bool moves_over_ranges() const { return source == SubjectSource::ranges || source == SubjectSource::prescribed; }
     /// Without steps there is none, wherever the poses come from.
-    bool motion() const { return source != SubjectSource::as_assembled && !trajectory.steps.empty(); }
+    bool motion() const { return source != SubjectSource::as_assembled && domain.has_steps(); }
 };
 
 /// What is told of closed loops over ranges.
@@ -50,9 +41,9 @@ std::string source_text(const Subject& subject);
 
 /// As assembled, or along a path of the model's bodies.
 Subject subject_of(core::model::Model model, std::optional<core::stepper::Trajectory> trajectory = std::nullopt);
-/// Over all positions of the joints.
-Subject subject_over(core::model::Model model, core::clearance::JointRanges ranges);
-/// Over all positions of the model's own joints, of which some may close loops. Errors: those of joint_ranges, or of looped_ranges.
+/// Over a tree of joints of the model.
+Subject subject_over(core::model::Model model, core::clearance::Domain tree);
+/// Over all positions of the model's own joints, of which some may close loops. Errors: those of over_joints.
 Result<Subject> subject_over_joints(core::model::Model model);
 
 /// A deviation where a pair is worst.
@@ -64,13 +55,6 @@ struct WorstDeviation {
 /// Those that matter for the pair, and the names of the others, which are proven to have no influence on it. Contract: within tolerances.
 std::vector<WorstDeviation> worst_deviations(const Subject& subject, const core::clearance::PairClearance& pair);
 std::vector<std::string> deviations_without_influence(const Subject& subject, const core::clearance::PairClearance& pair);
-
-/// Certified bounds: of the path, of the joints beside it, or over the ranges.
-std::vector<core::clearance::PairClearance> certify(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
-                                                    const core::clearance::ClearanceOptions& options);
-/// The same with its certificate.
-core::clearance::ProvenClearances certify_with_proof(const Subject& subject, const std::vector<core::clearance::PairRequest>& pairs,
-                                                     const core::clearance::ClearanceOptions& options);
 
 /// By how much joints widen the bounds of two bodies [m].
 double joint_charge(const Subject& subject, int a, int b);

@@ -45,7 +45,7 @@ public:
         : wanted_(wanted), subject_(subject), report_(report), common_(common), console_(console), answer_(answer), told_(told) {}
 
     Errors write() {
-        if (!(wanted_.certificate.empty() && wanted_.out.empty()) && !is_finite(subject_.trajectory))
+        if (!(wanted_.certificate.empty() && wanted_.out.empty()) && !is_finite(subject_.domain.path()))
             return {{ErrorCode::not_finite, wanted_.certificate.empty() ? wanted_.out : wanted_.certificate,
                      "the path has numbers that are not finite, so that nothing can be certified of it: nothing is written"}};
         Errors errors;
@@ -74,16 +74,16 @@ private:
         } else if (!judged_a_trajectory()) {
             certificate.source = clearance::name_from_certificate(file, wanted_.judged);
             certificate.scenario = wanted_.scenario;
-            if (subject_.toleranced) certificate.process = process_named_from(file);
+            if (subject_.domain.made()) certificate.process = process_named_from(file);
         }
         const std::string beside = clearance::certificate_trajectory(file), path = judged_a_trajectory() ? wanted_.judged : beside;
         if (!judged_a_trajectory()) {
-            Errors errors = core::records::add_trajectory(files_, beside, subject_.trajectory, subject_.model, subject_.scene_path);
+            Errors errors = core::records::add_trajectory(files_, beside, subject_.domain.path(), subject_.model, subject_.scene_path);
             if (!errors.empty()) return errors;
         }
         answer_["certificate"] = {{"file", file}, {"trajectory", path}};
-        told_ += "certificate: " + file + (subject_.ranges ? "" : ", of the path in " + path) + "; check it with fettle validate " + file +
-                 (judged_a_trajectory() ? " --trajectory " + path : "") + "\n";
+        told_ += "certificate: " + file + (subject_.domain.is_tree() ? "" : ", of the path in " + path) +
+                 "; check it with fettle validate " + file + (judged_a_trajectory() ? " --trajectory " + path : "") + "\n";
         return core::certificate::add_certificate(files_, file, certificate);
     }
 
@@ -108,13 +108,13 @@ private:
         if (std::filesystem::equivalent(wanted_.judged, file, ignored)) {
             answers::replace_answer(files_, wanted_.out);
         } else {
-            const std::string kept = answers::name_for_longer_run(file, subject_.trajectory.steps.size());
+            const std::string kept = answers::name_for_longer_run(file, subject_.domain.path().steps.size());
             if (!kept.empty()) {
                 console_.narrate("warning: a longer run was there, which is kept as " + kept);
                 files_.keep_as(file, kept);
             }
             answers::replace_motion(files_, wanted_.out);
-            Errors errors = core::records::add_trajectory(files_, file, subject_.trajectory, subject_.model, subject_.scene_path);
+            Errors errors = core::records::add_trajectory(files_, file, subject_.domain.path(), subject_.model, subject_.scene_path);
             if (!errors.empty()) return errors;
         }
         answer_["out"] = wanted_.out;
@@ -157,7 +157,7 @@ Errors leave_files(const ClearanceFiles& wanted, const Subject& subject, clearan
     told = std::move(told_of_files);
     if (!wanted.out.empty() && !wanted.no_report)
         leave_report(wanted.out, common, console, answer, told,
-                     {.motion = report::Motion{subject.model, subject.trajectory, subject.scene_path}});
+                     {.motion = report::Motion{subject.model, subject.domain.path(), subject.scene_path}});
     return {};
 }
 

@@ -91,14 +91,14 @@ std::string deviation_text(const clearance::WorstDeviation& d) {
 // "left_shoulder -90 deg, lift 3 mm": the joints' positions where a pair is worst.
 std::string position_text(const Subject& subject, const PairClearance& pair, const Lengths& lengths) {
     std::vector<std::string> parts;
-    clearance::for_joints(*subject.ranges, pair, [&](const auto& joint, double value, const auto&) {
+    clearance::for_joints(*subject.domain.ranges(), pair, [&](const auto& joint, double value, const auto&) {
         parts.push_back(joint.joint +
                         (joint.is_angle ? formatted(" %.6g deg", value * degrees) : " " + lengths.plain(value) + " " + lengths.unit()));
     });
     if (pair.as_assembled) return "as assembled";
-    if (subject.has_deviations())
+    if (subject.domain.has_deviations())
         for (const clearance::WorstDeviation& d : worst_deviations(subject, pair)) parts.push_back(deviation_text(d));
-    return parts.empty() ? subject.has_deviations() ? "no tolerance matters" : "nothing moves one against the other" : joined(parts);
+    return parts.empty() ? subject.domain.has_deviations() ? "no tolerance matters" : "nothing moves one against the other" : joined(parts);
 }
 
 // Within tolerances: what does not matter for which pair.
@@ -156,7 +156,7 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
     const auto bound = [&](const ReportedPair& pair, bool is_lower) {
         if (!has_distance(pair)) return std::string("-");
         if (!pair.least.is_bounded) return std::string("not proven");
-        if (subject.ranges && !is_lower && !std::isfinite(pair.least.upper)) return std::string("-");
+        if (subject.domain.is_tree() && !is_lower && !std::isfinite(pair.least.upper)) return std::string("-");
         return is_lower ? lengths.lower(pair.least) : lengths.upper(pair.least);
     };
     size_t width = 4;
@@ -165,10 +165,10 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
     const int w = static_cast<int>(width);
     std::string text =
         formatted("%-*s %12s %14s %14s  %-16s%s   (lengths in %s%s)\n", w, "pair", "required", "at least", "at most", "status",
-                  subject.ranges     ? "  worst at"
-                  : subject.motion() ? "  when"
-                                     : "",
-                  lengths.unit().c_str(), subject.ranges ? "" : ", times in s");
+                  subject.domain.is_tree() ? "  worst at"
+                  : subject.motion()       ? "  when"
+                                           : "",
+                  lengths.unit().c_str(), subject.domain.is_tree() ? "" : ", times in s");
     for (const ReportedPair& pair : report.pairs) {
         const PairClearance& least = pair.least;
         if (least.is_far) continue;
@@ -178,8 +178,8 @@ std::string table(const ClearanceReport& report, const Subject& subject, const L
                           pair.spec.required_by.empty() ? "-" : lengths.plain(least.minimum).c_str(), bound(pair, true).c_str(),
                           bound(pair, false).c_str(), console.coloured(status, good).c_str());
         if (subject.motion()) text += formatted("  %.6g", least.is_clash() ? least.clash_time : least.witness.time);
-        if (subject.ranges) text += "  " + position_text(subject, least, lengths);
-        if (pair.finding == Finding::clash && (!subject.ranges || least.overlap)) text += "  " + overlapped(pair, lengths);
+        if (subject.domain.is_tree()) text += "  " + position_text(subject, least, lengths);
+        if (pair.finding == Finding::clash && (!subject.domain.is_tree() || least.overlap)) text += "  " + overlapped(pair, lengths);
         if (!pair.joined_by.empty()) text += "  joined by " + pair.joined_by;
         if (least.touch) text += (pair.finding == Finding::touching ? "  " : "  touching ") + touched(pair, lengths);
         if (least.solids == core::clearance::Solids::not_closed) text += std::string("  ") + core::clearance::words(least.solids);
@@ -267,10 +267,10 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
     text += (!has_distance(pair) ? std::string("   the parts ") + (pair.finding == Finding::clash ? "share material" : "touch")
              : !std::isfinite(least.upper) && least.is_bounded ? std::string("   nothing is measured")
              : least.is_bounded ? "   at least " + lengths.down(least.lower, 3) + ", at most " + lengths.up(least.upper, 3) + " " +
-                                      lengths.unit() + (subject.ranges ? " over every combination" : "") + " (the bounds are " +
+                                      lengths.unit() + (subject.domain.is_tree() ? " over every combination" : "") + " (the bounds are " +
                                       lengths.rough(least.upper - least.lower) + " apart)"
                                 : std::string("   no bound is proven; below is the path between whose nodes the joints part")) +
-            (subject.ranges ? worst_at(subject, pair, lengths) : "") +
+            (subject.domain.is_tree() ? worst_at(subject, pair, lengths) : "") +
             (pair.spec.required_by.empty() ? "\n"
                                            : "; required " + lengths.plain(least.minimum) + " per side (" + pair.spec.required_by + ")\n");
     text += round_surfaces(pair, subject, lengths);
@@ -284,7 +284,7 @@ std::string explained(const ReportedPair& pair, const Subject& subject, const Le
     if ((least.solids == core::clearance::Solids::overlap && !least.intersecting) || !std::isfinite(least.upper)) return text;
     if (w.step >= 0) {
         text += formatted("   %s at %.9g s, in step %d", least.is_clash() ? "first" : "closest", w.time, w.step + 1);
-        const int segments = core::stepper::segment_count(subject.trajectory, w.step);
+        const int segments = core::stepper::segment_count(subject.domain.path(), w.step);
         if (segments > 1) text += formatted(", part %d of %d of its path", w.segment + 1, segments);
         text += formatted(", %.3g%% of the way\n", 100 * w.s);
     }
@@ -313,9 +313,9 @@ std::string summary(const ClearanceReport& report, const Subject& subject) {
     for (const ReportedPair& pair : report.pairs) ++counts[pair.finding];
     std::string text = formatted("%zu pair%s %s", report.pairs.size(), report.pairs.size() == 1 ? "" : "s", source_text(subject).c_str());
     if (subject.motion()) {
-        const auto steps = count_of(subject.trajectory.steps);
+        const auto steps = count_of(subject.domain.path().steps);
         text += formatted(" (%s, %.6g s)", core::base::counted(static_cast<size_t>(steps), "step").c_str(),
-                          core::stepper::time_at(subject.trajectory, steps) - core::stepper::time_at(subject.trajectory, 0));
+                          core::stepper::time_at(subject.domain.path(), steps) - core::stepper::time_at(subject.domain.path(), 0));
     }
     const char* before = ": ";
     for (const auto& [finding, count] : counts) {
@@ -346,9 +346,9 @@ std::string margins_csv(const ClearanceReport& report, const Subject& subject, c
             const std::string names = core::base::csv_cell(subject.model.bodies[member.a].name) + "," +
                                       core::base::csv_cell(subject.model.bodies[member.b].name) + ",";
             for (const core::clearance::MarginInterval& m : member.margin) {
-                const double end = core::stepper::time_at(subject.trajectory, m.step, m.segment, 1);
+                const double end = core::stepper::time_at(subject.domain.path(), m.step, m.segment, 1);
                 text += names + std::to_string(m.step) + "," + std::to_string(m.segment) + "," +
-                        shortest(core::stepper::time_at(subject.trajectory, m.step, m.segment, 0)) + "," + shortest(end) + "," +
+                        shortest(core::stepper::time_at(subject.domain.path(), m.step, m.segment, 0)) + "," + shortest(end) + "," +
                         lengths.shortest(m.lower, Towards::down) + "," + lengths.shortest(m.upper, Towards::up) + "\n";
             }
         }
@@ -364,12 +364,12 @@ std::string deviations_csv(const Subject& subject, const PairClearance& pair) {
         values[d.of] = formatted("%.9g", unit ? description::from_si(d.value, *unit) : d.value);
     }
     std::string text;
-    for (const core::certificate::Deviation& d : subject.toleranced->deviations) text += "," + values[d.of];
+    for (const core::certificate::Deviation& d : subject.domain.made()->deviations) text += "," + values[d.of];
     return text;
 }
 
 std::string positions_csv(const ClearanceReport& report, const Subject& subject, const RoundedLengths& lengths) {
-    const core::clearance::JointRanges& ranges = *subject.ranges;
+    const core::clearance::JointRanges& ranges = *subject.domain.ranges();
     const std::string& unit = lengths.unit();
     std::vector<std::string> joints;
     std::string text = "a,b,required[" + unit + "],lower[" + unit + "],upper[" + unit + "],finding";
@@ -379,8 +379,8 @@ std::string positions_csv(const ClearanceReport& report, const Subject& subject,
             text += "," + core::base::csv_cell(joint.joint + (joint.is_angle ? "[deg]" : "[" + unit + "]"));
         }
     }
-    if (subject.toleranced)
-        for (const core::certificate::Deviation& d : subject.toleranced->deviations)
+    if (subject.domain.made())
+        for (const core::certificate::Deviation& d : subject.domain.made()->deviations)
             text += "," + core::base::csv_cell("deviation of " + d.of + (d.unit.empty() ? "" : "[" + d.unit + "]"));
     text += "\n";
     for (const ReportedPair& pair : report.pairs) {
@@ -394,7 +394,7 @@ std::string positions_csv(const ClearanceReport& report, const Subject& subject,
             places[joint.joint] = formatted("%.9g", joint.is_angle ? value * degrees : value / lengths.metres());
         });
         for (const std::string& joint : joints) text += "," + places[joint];
-        if (subject.toleranced) text += deviations_csv(subject, least);
+        if (subject.domain.made()) text += deviations_csv(subject, least);
         text += "\n";
     }
     return text;
@@ -441,7 +441,7 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, i
         text +=
             "\nno line is about round surfaces: a trajectory holds the meshes alone; give the scene or design (with --motion), only they "
             "know the surfaces that facets stand for\n";
-    if (subject.has_deviations()) text += without_influence(report, subject);
+    if (subject.domain.has_deviations()) text += without_influence(report, subject);
     text += "\n" + summary(report, subject);
     const auto far = std::count_if(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.least.is_far; });
     if (far > 0)
@@ -469,8 +469,8 @@ std::string report_text(const ClearanceReport& report, const Subject& subject, i
     if (std::any_of(report.pairs.begin(), report.pairs.end(), [](const ReportedPair& p) { return p.finding == Finding::contact; }))
         text += "contact: these push each other, so they are not judged; name a pair with --pairs to judge it\n";
     if (!report.left_out.empty())
-        text += (subject.ranges ? "not judged, as these may not collide: "
-                                : "not judged, because the simulation lets them pass through each other (no clash was found): ") +
+        text += (subject.domain.is_tree() ? "not judged, as these may not collide: "
+                                          : "not judged, because the simulation lets them pass through each other (no clash was found): ") +
                 joined(report.left_out) + "; name them with --pairs\n";
     if (!report.ignored.empty()) text += "ignored: " + joined(report.ignored) + "\n";
     text += pair_list("ignored by the scene", report.ignored_by_scene) + pair_list("not judged, as of one group", report.one_group) +
@@ -493,7 +493,7 @@ std::vector<Check> report_checks(const ClearanceReport& report, const Subject& s
         if (pair.finding == Finding::contact) check.message += "; they push each other, so the distance is not judged";
         if (pair.finding == Finding::undecided && least.is_bounded && !least.reason.empty())
             check.message += "; undecided: " + least.reason;
-        if (subject.ranges) check.message += worst_at(subject, pair, lengths);
+        if (subject.domain.is_tree()) check.message += worst_at(subject, pair, lengths);
         if (subject.motion() && !least.is_far && least.is_bounded)
             check.message +=
                 least.is_clash() ? formatted(", from %.6g s on", least.clash_time) : formatted(", at %.6g s", least.witness.time);
@@ -508,7 +508,7 @@ std::vector<Check> report_checks(const ClearanceReport& report, const Subject& s
 
 std::string report_csv(const ClearanceReport& report, const Subject& subject) {
     const RoundedLengths lengths(answers::unit_name(subject.model.length_unit));
-    return subject.ranges ? positions_csv(report, subject, lengths) : margins_csv(report, subject, lengths);
+    return subject.domain.is_tree() ? positions_csv(report, subject, lengths) : margins_csv(report, subject, lengths);
 }
 
 }  // namespace fettle::design::cli

@@ -93,7 +93,7 @@ PairClearance deepest_of(const core::model::Model& model, const Trajectory& traj
     for (const PairClearance& pair : pairs)
         if (pair.is_clash() && clashes.size() < most_measured) clashes.push_back({pair.a, pair.b});
     options.measure_overlap = true;
-    const std::vector<PairClearance> measured = core::clearance::certify_clearance(model, trajectory, clashes, options);
+    const std::vector<PairClearance> measured = core::clearance::certify(model, trajectory, clashes, options);
     const auto depth = [](const PairClearance& pair) { return pair.overlap ? pair.overlap->depth_upper : 0.0; };
     return *std::max_element(measured.begin(), measured.end(), [&](const auto& x, const auto& y) { return depth(x) < depth(y); });
 }
@@ -105,7 +105,7 @@ std::optional<PairClearance> find_worst(const core::model::Model& model, const s
     options.measure_overlap = options.sample_nodes = false;
     options.tolerance = 1e-4 * model.diagonal;
     options.should_stop = interrupted;
-    const auto pairs = core::clearance::certify_clearance(model, trajectory, judged_pairs(model, shown), options);
+    const auto pairs = core::clearance::certify(model, trajectory, judged_pairs(model, shown), options);
     const PairClearance* worst = worst_of(pairs);
     if (worst == nullptr) return std::nullopt;
     return worst->is_clash() ? deepest_of(model, trajectory, pairs, options) : *worst;
@@ -132,7 +132,7 @@ Errors time_faults(const DrawArguments& options, const Trajectory& path) {
 
 Instant instant_of(const DrawArguments& options, const ShownMotion& shown) {
     const clearance::Subject& subject = shown.subject;
-    const Trajectory& path = subject.trajectory;
+    const Trajectory& path = subject.domain.path();
     const bool motion = !path.steps.empty();
     Instant out;
     if (options.worst && motion) {
@@ -177,13 +177,13 @@ int run_draw(const DrawArguments& options, const CommonOptions& common, Console&
     if (!shown) return console.input_errors(shown.errors());
     const auto view = exports::projection_view(options.view, shown->assembly.up, "--view");
     if (!view) return console.input_errors(view.errors());
-    if (const Errors errors = time_faults(options, shown->subject.trajectory); !errors.empty()) return console.input_errors(errors);
+    if (const Errors errors = time_faults(options, shown->subject.domain.path()); !errors.empty()) return console.input_errors(errors);
     const Instant instant = instant_of(options, *shown);
     exports::PictureOptions picture_options;
     picture_options.view = *view;
     picture_options.width = size->first;
     picture_options.height = size->second;
-    const bool motion = !shown->subject.trajectory.steps.empty();
+    const bool motion = !shown->subject.domain.path().steps.empty();
     picture_options.title = !options.title.empty() ? options.title : shown->stem + (motion ? formatted(", t = %.6g s", instant.time) : "");
     if (instant.worst && !options.plain) picture_options.marker = marker_of(*instant.worst, shown->subject.model);
     const exports::Picture picture = exports::draw_picture(shown->assembly, only(shown->bodies, instant.poses), picture_options);

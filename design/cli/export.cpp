@@ -117,7 +117,7 @@ Errors export_series(const ShownMotion& shown, const Plan& plan, const exports::
     const std::string name = plan.one_file ? plan.stem + ".csv" : "poses.csv";
     const fs::path temporary = plan.folder / name;
     core::model::Model model = shown.subject.model;
-    core::stepper::Trajectory path = shown.subject.trajectory;
+    core::stepper::Trajectory path = shown.subject.domain.path();
     model.bodies = only(shown.bodies, model.bodies);
     for (auto& poses : path.poses) poses = only(shown.bodies, poses);
     Errors errors = core::records::write_poses(temporary, path, model, answers::unit_name(shown.subject.model.length_unit));
@@ -143,7 +143,7 @@ Errors name_in_certificate(const ShownMotion& shown, const std::vector<std::pair
     auto certificate = core::certificate::read_certificate(shown.certificate);
     if (!certificate) return certificate.errors();
     if (certificate->geometry_hash != core::records::geometry_hash(shown.subject.model) ||
-        certificate->path_hash != core::records::path_hash(shown.subject.trajectory))
+        certificate->path_hash != core::records::path_hash(shown.subject.domain.path()))
         return {{ErrorCode::inconsistent, shown.certificate, "is not about the bodies and the path of " + shown.file}};
     for (const auto& [file, rounding] : files) {
         auto named = clearance::named_files({file}, shown.certificate);

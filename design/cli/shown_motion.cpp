@@ -118,7 +118,7 @@ Result<ShownMotion> load_shown(const ShownOptions& options, const CommonOptions&
     shown.bodies = *std::move(bodies);
     shown.subject = std::move(*subject);
     take_gravity(common, shown.subject);
-    shown.assembly = exports::assembly_of(shown.subject.model, shown.subject.trajectory);
+    shown.assembly = exports::assembly_of(shown.subject.model, shown.subject.domain.path());
     shown.assembly.parts = only(shown.bodies, shown.assembly.parts);
     for (exports::Keyframe& keyframe : shown.assembly.keyframes) keyframe.poses = only(shown.bodies, keyframe.poses);
     if (!options.up.empty()) {

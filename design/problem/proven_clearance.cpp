@@ -30,7 +30,7 @@ Result<ProvenClearance> proven_clearance(const description::MadeDesign& made, co
     if (!bodies) return bodies.errors();
     core::clearance::ClearanceOptions options;
     options.tolerance = tolerance;
-    const PairClearance pair = core::clearance::certify_toleranced(model, *bodies, {{range.a, range.b}}, options).front();
+    const PairClearance pair = core::clearance::certify(model, *bodies, {{range.a, range.b}}, options).front();
     const std::string names = "`" + model.bodies[range.a].name + "` and `" + model.bodies[range.b].name + "`";
     if (!std::isfinite(pair.upper)) return Error{ErrorCode::unsupported, names, "within the tolerances: " + pair.reason};
     ProvenClearance out{pair.lower, pair.upper, base_of(made.tolerances), {}};

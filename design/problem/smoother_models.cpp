@@ -38,7 +38,7 @@ double play_of_fits(const DesignProblem& problem, const VectorX& p) {
     core::clearance::ClearanceOptions options;
     options.measure_overlap = false;
     std::vector<double> plays;
-    for (const auto& pair : core::clearance::certify_clearance(*model, start, pairs_that_may_meet(*model), options)) {
+    for (const auto& pair : core::clearance::certify(*model, start, pairs_that_may_meet(*model), options)) {
         if (pair.lower > 0 && pair.upper < fit_reach * model->dhat) plays.push_back(pair.upper);
     }
     if (plays.empty()) return 0;

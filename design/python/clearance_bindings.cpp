@@ -154,8 +154,8 @@ void bind_ranges(py::module_& module) {
             check_ranges(of, model);
             const ClearanceOptions asked = core::clearance::usual_options(wanted, tolerance_from(tolerance));
             return certified(model, asked, certificate.get(), progress, [&](const ClearanceOptions& options) -> ProvenClearances {
-                if (certificate) return core::clearance::certify_ranges_with_proof(model, of, wanted, options);
-                return {core::clearance::certify_ranges(model, of, wanted, options), {}};
+                if (certificate) return core::clearance::certify_with_proof(model, of, wanted, options);
+                return {core::clearance::certify(model, of, wanted, options), {}};
             });
         },
         py::arg("model"), py::arg("pairs") = py::none(), py::arg("minimum") = 0.0, py::arg("tolerance") = py::none(),
@@ -234,7 +234,7 @@ clearance::Subject subject_from(const Model& model, const std::shared_ptr<Trajec
     if (py::isinstance<py::bool_>(ranges)) return value_or_raise(clearance::subject_over_joints(model));
     if (!py::isinstance<JointRanges>(ranges)) refuse(ErrorCode::wrong_type, "ranges", shown(ranges) + ": True or JointRanges is expected");
     check_ranges(ranges.cast<const JointRanges&>(), model);
-    return clearance::subject_over(model, ranges.cast<const JointRanges&>());
+    return clearance::subject_over(model, {core::clearance::as_assembled(model), ranges.cast<const JointRanges&>()});
 }
 
 clearance::PairOptions pair_options_from(const py::object& minimum, const std::string& process, const py::object& pairs,
@@ -254,7 +254,7 @@ clearance::PairOptions pair_options_from(const py::object& minimum, const std::s
 
 py::object report_of(const clearance::Subject& subject, clearance::Question question, const std::optional<Path>& baseline,
                      const py::object& progress) {
-    if (subject.ranges && !question.pairs.touches.empty())
+    if (subject.domain.is_tree() && !question.pairs.touches.empty())
         refuse(ErrorCode::inconsistent, "allow_touch", "needs a path: over ranges of joints touches are not reported");
     std::optional<clearance::Baseline> before;
     if (baseline) before = value_or_raise(clearance::Baseline::read(baseline->string()));
@@ -412,8 +412,8 @@ void bind_clearance(py::module_& module) {
             asked.motion = trajectory != nullptr;
             asked.margin_curve = margin_curve;
             return certified(model, asked, certificate.get(), progress, [&](const ClearanceOptions& options) -> ProvenClearances {
-                if (certificate) return core::clearance::certify_clearance_with_proof(model, *path, wanted, options);
-                return {core::clearance::certify_clearance(model, *path, wanted, options), {}};
+                if (certificate) return core::clearance::certify_with_proof(model, *path, wanted, options);
+                return {core::clearance::certify(model, *path, wanted, options), {}};
             });
         },
         py::arg("model"), py::arg("trajectory") = py::none(), py::arg("pairs") = py::none(), py::arg("minimum") = 0.0,

@@ -93,8 +93,8 @@ PairClearance Clearance::certify_ranges(const core::model::Model& model, const c
         none.reason = ranges.errors().front().where + ": " + ranges.errors().front().message;
         return none;
     }
-    return adjoint::clearance::settled_witness(
-        model, *ranges, core::clearance::certify_ranges(model, *ranges, {{range_.a, range_.b, minimum_}}, options).front());
+    return adjoint::clearance::settled_witness(model, *ranges,
+                                               core::clearance::certify(model, *ranges, {{range_.a, range_.b, minimum_}}, options).front());
 }
 
 PairClearance Clearance::certify(const Simulated& s) const {
@@ -113,11 +113,11 @@ PairClearance Clearance::certify(const Simulated& s) const {
     options.motion = range_.motion;
     if (range_.ranges) return certify_ranges(s.model, options);
     const std::vector<core::clearance::PairRequest> request{{range_.a, range_.b, minimum_}};
-    if (!range_.motion) return core::clearance::certify_clearance(s.model, s.trajectory, request, options).front();
+    if (!range_.motion) return core::clearance::certify(s.model, s.trajectory, request, options).front();
     const auto steps = count_of(s.trajectory.steps);
     const auto [first, last] = steps_of(range_, s.trajectory.timestep, steps);
-    if (first == 0 && last == steps) return core::clearance::certify_clearance(s.model, s.trajectory, request, options).front();
-    PairClearance pair = core::clearance::certify_clearance(s.model, part_of(s.trajectory, first, last), request, options).front();
+    if (first == 0 && last == steps) return core::clearance::certify(s.model, s.trajectory, request, options).front();
+    PairClearance pair = core::clearance::certify(s.model, part_of(s.trajectory, first, last), request, options).front();
     if (pair.witness.step >= 0) pair.witness.step += first;
     return pair;
 }

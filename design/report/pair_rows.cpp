@@ -119,7 +119,7 @@ std::vector<PairClearance> searched_each(const core::model::Model& model, const 
                                          const std::vector<PairRequest>& requests, const core::clearance::ClearanceOptions& options) {
     std::vector<PairClearance> all;
     for_stretches(trajectory, [&](const core::stepper::Trajectory& stretch, int first) {
-        std::vector<PairClearance> found = core::clearance::certify_clearance(model, stretch, requests, options);
+        std::vector<PairClearance> found = core::clearance::certify(model, stretch, requests, options);
         for (std::size_t k = 0; k < found.size(); ++k) {
             if (found[k].witness.step >= 0) found[k].witness.step += first;
             if (!all.empty()) found[k] = together(all[k], found[k]);
@@ -310,7 +310,7 @@ Json margin_curves(const Json& rows, const core::model::Model& model, const core
         options.margin_curve = true;
         std::vector<core::clearance::MarginInterval> margin;
         for_stretches(trajectory, [&](const core::stepper::Trajectory& stretch, int first) {
-            const std::vector<PairClearance> found = core::clearance::certify_clearance(model, stretch, {{a, b, 0}}, options);
+            const std::vector<PairClearance> found = core::clearance::certify(model, stretch, {{a, b, 0}}, options);
             for (core::clearance::MarginInterval each : found.front().margin) {
                 each.step += first;
                 margin.push_back(each);

@@ -42,7 +42,7 @@ int main() {
     core::clearance::ClearanceOptions options;
     options.motion = true;
     const auto [pairs, certificate] =
-        core::clearance::certify_clearance_with_proof(*model, simulation.trajectory, {{.a = 0, .b = 1, .minimum = 0.3e-3}}, options);
+        core::clearance::certify_with_proof(*model, simulation.trajectory, {{.a = 0, .b = 1, .minimum = 0.3e-3}}, options);
     const auto& pair = pairs.front();
     std::printf("%s: at least %.4f mm, at most %.4f mm, nearest at %.3f s\n", core::clearance::to_string(pair.status), 1000 * pair.lower,
                 1000 * pair.upper, pair.witness.time);

@@ -140,7 +140,7 @@ int main(int argc, char** argv) {
         options.motion = true;
         options.tolerance = tolerance;
         const auto begin = cpu_seconds();
-        const auto results = certify_clearance(model, simulation.trajectory, pairs, options);
+        const auto results = certify(model, simulation.trajectory, pairs, options);
         const double seconds = seconds_since(begin);
         double gap = 0, least_lower = 1e300, least_upper = 1e300;
         bool agrees = true;
@@ -163,7 +163,7 @@ int main(int argc, char** argv) {
     ClearanceOptions options;
     options.motion = true;
     auto begin = cpu_seconds();
-    const Certificate certificate = certify_clearance_with_proof(model, simulation.trajectory, pairs, options).certificate;
+    const Certificate certificate = certify_with_proof(model, simulation.trajectory, pairs, options).certificate;
     const double recorded = seconds_since(begin);
     begin = cpu_seconds();
     const CertificateReport report = check_certificate(certificate, model, simulation.trajectory);

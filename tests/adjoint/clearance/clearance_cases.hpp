@@ -8,7 +8,7 @@
 namespace fettle::tests::clearance_cases {
 
 using namespace fettle::tests::clearance;
-using core::clearance::certify_clearance;
+using core::clearance::certify;
 using core::clearance::PairClearance;
 using core::kinematics::Pose;
 
@@ -78,8 +78,8 @@ struct Case {
         options.tolerance = 1e-12;
         options.motion = motion;
         options.witness_tolerance = witness_tolerance;
-        return certify_clearance(model, trajectory,
-                                 {swapped ? core::clearance::PairRequest{1, 0, 0} : core::clearance::PairRequest{0, 1, 0}}, options)[0];
+        return core::clearance::certify(
+            model, trajectory, {swapped ? core::clearance::PairRequest{1, 0, 0} : core::clearance::PairRequest{0, 1, 0}}, options)[0];
     }
 };
 

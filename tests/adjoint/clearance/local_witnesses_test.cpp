@@ -53,7 +53,7 @@ Found found(double low, double high, double room) {
     const auto ranges = core::clearance::joint_ranges(model);
     REQUIRE(ranges);
     Found out;
-    out.pair = settled_witness(model, *ranges, core::clearance::certify_ranges(model, *ranges, {{0, 1}}, {}).front());
+    out.pair = settled_witness(model, *ranges, core::clearance::certify(model, *ranges, {{0, 1}}, {}).front());
     out.others = local_witnesses(model, *ranges, out.pair, {room, 8, 11});
     return out;
 }

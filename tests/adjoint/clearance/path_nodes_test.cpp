@@ -62,7 +62,7 @@ PairClearance certified(const Model& model, const core::stepper::Trajectory& tra
     core::clearance::ClearanceOptions options;
     options.motion = true;
     options.tolerance = 1e-10;
-    return core::clearance::certify_clearance(model, trajectory, {{a, b, 0}}, options).front();
+    return core::clearance::certify(model, trajectory, {{a, b, 0}}, options).front();
 }
 
 // Start poses of arm and post, rates of the arm's x and turn about z, one vertex in four of both.

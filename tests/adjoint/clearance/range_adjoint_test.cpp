@@ -53,7 +53,7 @@ Certified certified(const core::scene::Scene& scene, double tolerance = 1e-6) {
     REQUIRE(ranges);
     core::clearance::ClearanceOptions options;
     options.tolerance = tolerance;
-    const PairClearance found = core::clearance::certify_ranges(*model, *ranges, {{0, 1}}, options).front();
+    const PairClearance found = core::clearance::certify(*model, *ranges, {{0, 1}}, options).front();
     PairClearance pair = settled_witness(*model, *ranges, found);
     CHECK(pair.upper <= found.upper);
     CHECK(pair.lower <= pair.upper);

@@ -131,7 +131,7 @@ Outcome examine(int seed) {
     options.margin_curve = random() % 8 == 0;
     const double minimum = random() % 3 ? 0 : outcome.size * std::pow(10, between(random, -4, -1));
     if (random() % 2 && minimum > 0) options.enough = minimum;
-    const auto [pairs, certificate] = certify_clearance_with_proof(model, trajectory, {{0, 1, minimum}}, options);
+    const auto [pairs, certificate] = certify_with_proof(model, trajectory, {{0, 1, minimum}}, options);
     const PairClearance& found = pairs.front();
     outcome.lower = found.lower;
     outcome.upper = found.upper;

@@ -76,7 +76,7 @@ inline Case random_case(std::mt19937& random, double size, int steps, double tol
     core::clearance::ClearanceOptions options;
     options.motion = true;
     options.tolerance = tolerance;
-    auto proven = certify_clearance_with_proof(c.model, c.trajectory, {{0, 1, 0}}, options);
+    auto proven = certify_with_proof(c.model, c.trajectory, {{0, 1, 0}}, options);
     c.results = std::move(proven.pairs);
     c.certificate = std::move(proven.certificate);
     return c;

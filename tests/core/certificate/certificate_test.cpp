@@ -89,7 +89,7 @@ TEST_CASE("A certificate with a minimum has few leaves, and is accepted", "[clea
         options.motion = true;
         options.answer_is_enough = true;
         const double minimum = 1e-3 * c.results[0].lower;
-        c.certificate = core::clearance::certify_clearance_with_proof(c.model, c.trajectory, {{0, 1, minimum}}, options).certificate;
+        c.certificate = core::clearance::certify_with_proof(c.model, c.trajectory, {{0, 1, minimum}}, options).certificate;
         REQUIRE(c.certificate.pairs.size() == 1);
         const auto& boxes = c.certificate.pairs[0].boxes;
         std::size_t leaves = 0;
@@ -109,7 +109,7 @@ TEST_CASE("A stop while a certificate is made leaves nothing that is claimed and
         core::clearance::ClearanceOptions options;
         options.motion = true;
         options.should_stop = [&] { return left-- <= 0; };
-        const auto proven = core::clearance::certify_clearance_with_proof(c.model, c.trajectory, {{0, 1, 1e-6}}, options);
+        const auto proven = core::clearance::certify_with_proof(c.model, c.trajectory, {{0, 1, 1e-6}}, options);
         CAPTURE(calls, proven.pairs[0].lower);
         for (const PairCertificate& pair : proven.certificate.pairs) {
             CHECK(pair.lower == proven.pairs[0].lower);

@@ -26,7 +26,7 @@ Case case_of(const Solid& a, const Solid& b, const Vector3& place, double minimu
         c.trajectory.body_names.push_back(body.name);
         c.trajectory.poses[0].push_back({core::kinematics::rotation(Vector3(0.3, 0.2, -1)), position});
     }
-    auto proven = core::clearance::certify_clearance_with_proof(c.model, c.trajectory, {{0, 1, minimum}}, {});
+    auto proven = core::clearance::certify_with_proof(c.model, c.trajectory, {{0, 1, minimum}}, {});
     c.results = std::move(proven.pairs);
     c.certificate = std::move(proven.certificate);
     return c;

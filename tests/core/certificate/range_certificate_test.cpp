@@ -33,7 +33,7 @@ RangeCase certified_case(std::mt19937& random, int most_coordinates_of_it) {
         ClearanceOptions options;
         const double size = c.tree.model.bodies[c.tree.b].radius;
         options.tolerance = (count <= 2 ? 1e-3 : 5e-2) * size;
-        auto proven = certify_ranges_with_proof(c.tree.model, c.tree.ranges, {{c.tree.a, c.tree.b}}, options);
+        auto proven = certify_with_proof(c.tree.model, c.tree.ranges, {{c.tree.a, c.tree.b}}, options);
         c.found = proven.pairs.front();
         c.certificate = std::move(proven.certificate);
         if (c.found.lower > 0 && c.found.solids != Solids::overlap) return c;

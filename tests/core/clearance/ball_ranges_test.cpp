@@ -176,7 +176,7 @@ TEST_CASE("ball ranges: no sample is below the bound, the bound is attained, its
         REQUIRE(ranges);
         ClearanceOptions options;
         options.tolerance = 1e-3;
-        const ProvenClearances proven = certify_ranges_with_proof(model, *ranges, {{0, 1}}, options);
+        const ProvenClearances proven = certify_with_proof(model, *ranges, {{0, 1}}, options);
         const PairClearance& found = proven.pairs.front();
         CAPTURE(found.lower, found.upper, found.bounds);
         CHECK(found.lower > 0);
@@ -216,7 +216,7 @@ TEST_CASE("ball ranges: two balls in a row, six coordinates", "[ranges]") {
     const auto ranges = joint_ranges(model);
     REQUIRE(ranges);
     const std::vector<PairRequest> pairs{{1, 2, 5e-3}};
-    const ProvenClearances proven = certify_ranges_with_proof(model, *ranges, pairs, usual_options(pairs, 0.03));
+    const ProvenClearances proven = certify_with_proof(model, *ranges, pairs, usual_options(pairs, 0.03));
     const PairClearance& found = proven.pairs.front();
     CAPTURE(found.lower, found.upper, found.bounds);
     CHECK(found.coordinates.size() == 6);
@@ -248,7 +248,7 @@ TEST_CASE("free ranges: a swing is free to all sides as far as its nearest obsta
             there.linkage.coordinates[0].low = there.linkage.coordinates[0].high = i * M_PI / 360 - M_PI;
             there.linkage.coordinates[1].low = there.linkage.coordinates[1].high = value;
             ClearanceOptions plain;
-            any = any || certify_ranges(model, there, {{0, 1}}, plain).front().is_clash();
+            any = any || certify(model, there, {{0, 1}}, plain).front().is_clash();
         }
         return any;
     };

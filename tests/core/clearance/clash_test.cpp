@@ -23,7 +23,7 @@ TEST_CASE("A plate that is passed through between two nodes is a clash, since it
     const auto model = model_of({box({0.01, 1, 1}), box({0.1, 0.1, 0.1})}, {{0, 0, 0}, {-1, 0.02, 0.03}});
     const auto trajectory = one_step(model, {{{-1, 0.02, 0.03}, zero}, {{3, 0.02, 0.03}, zero}});
     for (const double minimum : {0.0, 0.001}) {
-        const auto result = certify_clearance(model, trajectory, {{0, 1, minimum}}, over_motion())[0];
+        const auto result = certify(model, trajectory, {{0, 1, minimum}}, over_motion())[0];
         CHECK(result.is_clash());
         CHECK(result.status == PairStatus::violated);
         CHECK(result.lower == 0);
@@ -49,7 +49,7 @@ TEST_CASE("A clash in a later step is found with its first instant", "[clearance
         trajectory.poses.push_back(trajectory.poses.back());
         trajectory.poses.back()[1].position = {x, 0, 0};
     }
-    const auto result = certify_clearance(model, trajectory, {{0, 1, 0.001}}, over_motion())[0];
+    const auto result = certify(model, trajectory, {{0, 1, 0.001}}, over_motion())[0];
     CHECK(result.status == PairStatus::violated);
     CHECK(result.is_clash());
     const double first = 2 + 0.5 * (2 + 0.39);
@@ -64,7 +64,7 @@ TEST_CASE("Solids that coincide are a clash, though no edge passes through a fac
         const auto model = model_of({box({1, 1, 1}), box({1, 1, 1})}, {{0, 0, 0}, {0, 0, 0}});
         const auto trajectory = motion ? one_step(model, {{zero, zero}, {zero, zero}}) : as_assembled(model);
         for (const double minimum : {0.0, 0.1}) {
-            const auto result = certify_clearance(model, trajectory, {{0, 1, minimum}}, over_motion())[0];
+            const auto result = certify(model, trajectory, {{0, 1, minimum}}, over_motion())[0];
             CHECK(result.is_clash());
             CHECK(result.status == PairStatus::violated);
             REQUIRE(result.overlap);
@@ -76,7 +76,7 @@ TEST_CASE("Solids that coincide are a clash, though no edge passes through a fac
 
 TEST_CASE("One wholly inside another with no gap is a clash", "[clearance]") {
     const auto model = model_of({box({1, 1, 1}), box({0.5, 0.5, 0.5})}, {{0, 0, 0}, {0.5, 0, 0}});  // a face in a face
-    const auto result = certify_clearance(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0];
+    const auto result = certify(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0];
     CHECK(result.is_clash());
     CHECK(result.status == PairStatus::violated);
     CHECK(result.lower == 0);
@@ -84,7 +84,7 @@ TEST_CASE("One wholly inside another with no gap is a clash", "[clearance]") {
 
 TEST_CASE("Faces that touch exactly are neither a clash nor apart", "[clearance]") {
     const auto model = model_of({box({1, 1, 1}), box({0.5, 0.5, 0.5})}, {{0, 0, 0}, {1.5, 0, 0}});
-    const auto result = certify_clearance(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0];
+    const auto result = certify(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0];
     CHECK(!result.is_clash());
     CHECK(result.lower == 0);
     CHECK(result.status == PairStatus::undecided);
@@ -93,7 +93,7 @@ TEST_CASE("Faces that touch exactly are neither a clash nor apart", "[clearance]
     CHECK(result.reason.find("they touch") != std::string::npos);
     // Closer than the tolerance, but apart.
     const auto near = model_of({box({1, 1, 1}), box({0.5, 0.5, 0.5})}, {{0, 0, 0}, {1.5 + 1e-9, 0, 0}});
-    const auto contact = certify_clearance(near, as_assembled(near), {{0, 1, 0}}, options_with(1e-6))[0];
+    const auto contact = certify(near, as_assembled(near), {{0, 1, 0}}, options_with(1e-6))[0];
     CHECK(contact.status == PairStatus::contact);
     CHECK(contact.lower > 0.9e-9);
 }
@@ -102,7 +102,7 @@ TEST_CASE("Edges that run along a border are no clash: blocks that slide on each
     const auto model = model_of({box({1, 1, 1}), box({1, 1, 1})}, {{0, 0, 0}, {0.9, 0.02, 2}});
     const auto sliding = one_step(model, {{{0.9, 0.02, 2}, zero}, {{0.5, 0.1, 2}, {0, 0, 0.3}}, {{0.2, 0.4, 2}, {0, 0, 0.1}}});
     for (const auto& trajectory : {as_assembled(model), sliding}) {
-        const auto result = certify_clearance(model, trajectory, {{0, 1, 0}}, over_motion())[0];
+        const auto result = certify(model, trajectory, {{0, 1, 0}}, over_motion())[0];
         CHECK(!result.is_clash());
         CHECK(result.touch);
         CHECK(result.status == PairStatus::undecided);
@@ -110,7 +110,7 @@ TEST_CASE("Edges that run along a border are no clash: blocks that slide on each
     // In each other by less than the decimals of a file tell they touch all the same, but that is proven not to be apart.
     const auto blocks = [](double depth) {
         const auto model = model_of({box({1, 1, 1}), box({1, 1, 1})}, {{0, 0, 0}, {0.9, 0.02, 2 - depth}});
-        return certify_clearance(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0];
+        return certify(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0];
     };
     CHECK(blocks(1e-7).touch);
     CHECK(blocks(1e-7).status == PairStatus::violated);
@@ -119,9 +119,9 @@ TEST_CASE("Edges that run along a border are no clash: blocks that slide on each
 
 TEST_CASE("Contact is as far as minimum separation and activation distance reach", "[clearance]") {
     auto model = model_of({box({1, 1, 1}), box({0.5, 0.5, 0.5})}, {{0, 0, 0}, {1.5 + 1.5e-4, 0, 0}});
-    CHECK(certify_clearance(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0].status == PairStatus::clear);
+    CHECK(certify(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0].status == PairStatus::clear);
     model.dmin = 1e-4;  // dhat is 1e-4, too
-    CHECK(certify_clearance(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0].status == PairStatus::contact);
+    CHECK(certify(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0].status == PairStatus::contact);
 }
 
 TEST_CASE("A body inside a block is a clash for the library and its certificate, over the motion too", "[clearance]") {
@@ -166,7 +166,7 @@ TEST_CASE("A cavity is not material; a body is told in whichever shell it lies",
     const Solid block = join({{box({1, 1, 1}), zero}, {box({0.5, 0.5, 0.5}), zero}, {box({1, 1, 1}), {5, 0, 0}}}, 1);
     const auto status_at = [&](const Vector3& place) {
         const auto model = model_of({block, box({0.1, 0.1, 0.1})}, {zero, place});
-        return certify_clearance(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0];
+        return certify(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0];
     };
     CHECK(status_at({0, 0, 0}).status == PairStatus::clear);
     CHECK(status_at({0, 0, 0}).solids == Solids::disjoint);
@@ -176,7 +176,7 @@ TEST_CASE("A cavity is not material; a body is told in whichever shell it lies",
     // Two small blocks as one body: one of them inside is enough.
     const Solid two = join({{box({0.1, 0.1, 0.1}), {3, 0, 0}}, {box({0.1, 0.1, 0.1}), {5, 0, 0}}}, 9);
     const auto model = model_of({two, block}, {zero, zero});
-    CHECK(certify_clearance(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0].status == PairStatus::violated);
+    CHECK(certify(model, as_assembled(model), {{0, 1, 0}}, options_with(1e-6))[0].status == PairStatus::violated);
 }
 
 namespace {
@@ -228,7 +228,7 @@ TEST_CASE("Beside its mirror image an open box is no less open", "[clearance]") 
     auto triangles = open.mesh.triangles;
     for (const auto& t : open.mesh.triangles) triangles.push_back({t[1] + count, t[0] + count, t[2] + count});
     const auto model = model_of({make_solid(vertices, triangles), box({0.1, 0.1, 0.1})}, {zero, zero});
-    const auto result = certify_clearance(model, as_assembled(model), {{0, 1, 0.1}}, options_with(1e-6))[0];
+    const auto result = certify(model, as_assembled(model), {{0, 1, 0.1}}, options_with(1e-6))[0];
     CHECK(result.solids == Solids::unverified);
     CHECK(result.status == PairStatus::undecided);
 }
@@ -238,7 +238,7 @@ TEST_CASE("What joints may have off the path counts for the lids of an open mesh
     const auto found = [&](double charge) {
         core::clearance::PairRequest request{0, 1, 0.01};
         request.charge = charge;
-        return certify_clearance(model, as_assembled(model), {request}, options_with(1e-6))[0].solids;
+        return certify(model, as_assembled(model), {request}, options_with(1e-6))[0].solids;
     };
     CHECK(found(0) == Solids::not_closed);
     CHECK(found(0.1) == Solids::not_closed);
@@ -257,7 +257,7 @@ TEST_CASE("A cup in a fixture, which has no word for sheets, is not taken for on
     const auto built = core::setup::build_model(*scene);
     REQUIRE(built);
     CHECK(!is_sheet(built->bodies[0]));
-    const auto result = certify_clearance(*built, as_assembled(*built), {{0, 1, 0.01}}, options_with(1e-6))[0];
+    const auto result = certify(*built, as_assembled(*built), {{0, 1, 0.01}}, options_with(1e-6))[0];
     CHECK(result.lower > 0.01);
     CHECK(result.solids == Solids::unverified);
     CHECK(result.status == PairStatus::undecided);
@@ -282,7 +282,7 @@ TEST_CASE("A part that comes in through the opening of a mesh that is not closed
     // The triangle that is missing: to which side of the diagonal?
     const auto within = [&](double x, double y) {
         const auto path = one_step(model, {{{x, y, 3}, zero}, {{x, y, 0}, zero}});
-        return certify_clearance(model, path, {{0, 1, 0.01}}, over_motion())[0];
+        return certify(model, path, {{0, 1, 0.01}}, over_motion())[0];
     };
     int through = 0;
     for (const auto& [x, y] : {std::pair{0.5, 0.5}, {-0.5, -0.5}, {0.5, -0.5}, {-0.5, 0.5}}) {
@@ -311,7 +311,7 @@ TEST_CASE("What is proven apart is so with a certificate too, however small the 
         const auto trajectory = one_step(model, {{from, zero}, {to, Vector3(0, 0, turn)}});
         ClearanceOptions options = over_motion();
         options.tolerance = 1e-5;
-        const PairClearance plain = certify_clearance(model, trajectory, {{0, 1, 0}}, options)[0];
+        const PairClearance plain = certify(model, trajectory, {{0, 1, 0}}, options)[0];
         const auto [pairs, certificate] = certified(model, trajectory, 0, options, true);
         const PairClearance& proven = pairs[0];
         CAPTURE(gap, turn, plain.lower, plain.upper, proven.lower, proven.upper, proven.reason);
@@ -330,7 +330,7 @@ TEST_CASE("Whether a minimum is kept hangs neither on the tolerance nor on a cer
     const auto trajectory = one_step(model, {{{0, 0, 11e-3}, zero}, {{1e-3, 0, 11e-3}, Vector3(0.1, 0.2, 0)}});
     ClearanceOptions exact = over_motion();
     exact.tolerance = 1e-10;
-    const PairClearance truth = certify_clearance(model, trajectory, {{0, 1, 0}}, exact)[0];
+    const PairClearance truth = certify(model, trajectory, {{0, 1, 0}}, exact)[0];
     REQUIRE(truth.lower > 0);
     for (const double off : {-3e-7, -2e-8, 2e-8, 3e-7})
         for (const bool recorded : {false, true}) {

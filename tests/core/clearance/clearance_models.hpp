@@ -52,8 +52,8 @@ inline core::clearance::ClearanceOptions over_motion(double tolerance = 1e-6) {
 inline core::clearance::ProvenClearances certified(const core::model::Model& model, const core::stepper::Trajectory& trajectory,
                                                    double minimum, const core::clearance::ClearanceOptions& options, bool with_proof) {
     const std::vector<core::clearance::PairRequest> pairs{{0, 1, minimum}};
-    if (with_proof) return certify_clearance_with_proof(model, trajectory, pairs, options);
-    return {certify_clearance(model, trajectory, pairs, options), {}};
+    if (with_proof) return certify_with_proof(model, trajectory, pairs, options);
+    return {certify(model, trajectory, pairs, options), {}};
 }
 
 }  // namespace fettle::tests::clearance

@@ -16,7 +16,7 @@ TEST_CASE("Boxes as assembled: bounds, status and witness", "[clearance]") {
     CHECK(start.steps.empty());
     CHECK(start.body_names[2] == "body 2");
     const auto results =
-        certify_clearance(model, start, {{0, 1, 0.4}, {0, 1, 0.6}, {1, 0, 0.5}, {0, 1, 0}, {0, 2, 0}, {1, 2, 0.1}}, options_with(1e-6));
+        certify(model, start, {{0, 1, 0.4}, {0, 1, 0.6}, {1, 0, 0.5}, {0, 1, 0}, {0, 2, 0}, {1, 2, 0.1}}, options_with(1e-6));
     const std::vector<PairStatus> expected{PairStatus::clear, PairStatus::violated, PairStatus::undecided,
                                            PairStatus::clear, PairStatus::contact,  PairStatus::clear};
     for (std::size_t i = 0; i < results.size(); ++i) {
@@ -38,7 +38,7 @@ TEST_CASE("A pin in a bore as assembled: distance of polygons", "[clearance]") {
     const int n = 24;
     const double pin = 0.005, bore = 0.0053;
     const auto model = model_of({prism(n, pin, 0.03), ring(n, bore, 0.01, 0.02)}, {{0, 0, 0}, {0, 0, 0}});
-    const auto result = certify_clearance(model, as_assembled(model), {{0, 1, 3e-4}}, options_with(1e-9))[0];
+    const auto result = certify(model, as_assembled(model), {{0, 1, 3e-4}}, options_with(1e-9))[0];
     const double exact = (bore - pin) * std::cos(M_PI / n);
     CHECK(result.lower <= exact);
     CHECK(result.lower >= exact - 1e-9);
@@ -52,13 +52,13 @@ TEST_CASE("Over the motion: intermediate nodes, time of the witness", "[clearanc
     const auto trajectory = one_step(model, {{{3, 0, 0}, Vector3::Zero()}, {{1.7, 0, 0}, Vector3::Zero()}, {{2.5, 1, 0}, {0, 0, 0.3}}});
     ClearanceOptions options;
     options.motion = true;
-    const auto over_motion = certify_clearance(model, trajectory, {{0, 1, 0.1}}, options)[0];
+    const auto over_motion = certify(model, trajectory, {{0, 1, 0.1}}, options)[0];
     CHECK(over_motion.upper == Approx(0.2).epsilon(0).margin(1e-6));
     CHECK(over_motion.lower == Approx(0.2).epsilon(0).margin(1e-6));
     CHECK(over_motion.witness.step == 0);
     CHECK(over_motion.witness.time == Approx(2.25).epsilon(0).margin(1e-5));
     options.motion = false;
-    const auto as_it_starts = certify_clearance(model, trajectory, {{0, 1, 0.1}}, options)[0];
+    const auto as_it_starts = certify(model, trajectory, {{0, 1, 0.1}}, options)[0];
     CHECK(as_it_starts.upper == Approx(1.5).epsilon(0).margin(1e-12));
     CHECK(as_it_starts.witness.time == 2);
 }
@@ -71,7 +71,7 @@ TEST_CASE("A lever's tip on an arc: the least distance is that of the arc, not o
     ClearanceOptions options;
     options.motion = true;
     options.tolerance = 1e-9;
-    const auto result = certify_clearance(model, trajectory, {{0, 1, 0.01}}, options)[0];
+    const auto result = certify(model, trajectory, {{0, 1, 0.01}}, options)[0];
     CHECK(result.lower <= 1.1 - reach);
     CHECK(result.upper >= 1.1 - reach);
     CHECK(result.upper - result.lower <= 1e-9);
@@ -94,7 +94,7 @@ TEST_CASE("The number of threads and the order of pairs change no bit", "[cleara
         int reports = 0;
         ClearanceOptions options;
         options.on_pair = [&](int, int of) { reports += of == count_of(requests); };
-        const auto results = certify_clearance(model, as_assembled(model), requests, options);
+        const auto results = certify(model, as_assembled(model), requests, options);
         CHECK(reports == count_of(requests));
         return results;
     };
@@ -116,7 +116,7 @@ TEST_CASE("The margin curve bounds every segment, and the nodes alone see less t
     trajectory.poses[1][1].rotation = core::kinematics::rotation(Vector3(0, 0, 5.2));
     ClearanceOptions options = options_with(1e-7);
     options.motion = options.margin_curve = true;
-    const auto result = certify_clearance(model, trajectory, {{0, 1, 0.01}}, options)[0];
+    const auto result = certify(model, trajectory, {{0, 1, 0.01}}, options)[0];
     CHECK(result.upper == Approx(1.1 - reach).epsilon(0).margin(1e-7));
     CHECK(result.witness.segment == 1);  // half a turn from the start: the other tip
     REQUIRE(result.margin.size() == 3);
@@ -144,9 +144,9 @@ TEST_CASE("All witnesses that tie, each once", "[clearance]") {
     const int n = 8;
     const auto model = model_of({prism(n, 0.005, 0.03), ring(n, 0.0053, 0.01, 0.02)}, {{0, 0, 0}, {0, 0, 0}});
     ClearanceOptions options = options_with(1e-9);
-    CHECK(certify_clearance(model, as_assembled(model), {{0, 1, 0}}, options)[0].witnesses.size() == 1);
+    CHECK(certify(model, as_assembled(model), {{0, 1, 0}}, options)[0].witnesses.size() == 1);
     options.witness_tolerance = 1e-7;
-    const auto result = certify_clearance(model, as_assembled(model), {{0, 1, 0}}, options)[0];
+    const auto result = certify(model, as_assembled(model), {{0, 1, 0}}, options)[0];
     REQUIRE(result.witnesses.size() >= static_cast<std::size_t>(n));
     CHECK(result.witnesses.size() <= static_cast<std::size_t>(options.max_witnesses));
     CHECK((result.witnesses[0].point_a == result.witness.point_a && result.witnesses[0].primitive_b == result.witness.primitive_b));
@@ -162,7 +162,7 @@ TEST_CASE("All witnesses that tie, each once", "[clearance]") {
     }
     CHECK(std::count(side.begin(), side.end(), true) == n);  // one at least from each flat of the bore
     options.max_witnesses = 3;
-    CHECK(certify_clearance(model, as_assembled(model), {{0, 1, 0}}, options)[0].witnesses.size() == 3);
+    CHECK(certify(model, as_assembled(model), {{0, 1, 0}}, options)[0].witnesses.size() == 3);
 }
 
 TEST_CASE("Nearest twice during a motion: two witnesses", "[clearance]") {
@@ -176,7 +176,7 @@ TEST_CASE("Nearest twice during a motion: two witnesses", "[clearance]") {
     ClearanceOptions options = options_with(1e-8);
     options.motion = true;
     options.witness_tolerance = 1e-9;
-    const auto result = certify_clearance(model, trajectory, {{0, 1, 0}}, options)[0];
+    const auto result = certify(model, trajectory, {{0, 1, 0}}, options)[0];
     std::vector<double> times;
     for (const Witness& w : result.witnesses) times.push_back(w.time);
     std::sort(times.begin(), times.end());
@@ -187,7 +187,7 @@ TEST_CASE("Nearest twice during a motion: two witnesses", "[clearance]") {
 
 TEST_CASE("Passing through is told from touching", "[clearance]") {
     const auto model = model_of({box({1, 1, 1}), box({0.2, 0.2, 3}), box({1, 1, 1})}, {{0, 0, 0}, {0.1, 0.15, 0.3}, {2, 0, 0}});
-    const auto results = certify_clearance(model, as_assembled(model), {{0, 1, 0}, {0, 2, 0}, {0, 1, 0.1}}, options_with(1e-6));
+    const auto results = certify(model, as_assembled(model), {{0, 1, 0}, {0, 2, 0}, {0, 1, 0.1}}, options_with(1e-6));
     CHECK(results[0].intersecting);
     CHECK(results[0].status == PairStatus::violated);
     CHECK(results[0].lower == 0);
@@ -199,23 +199,23 @@ TEST_CASE("Passing through is told from touching", "[clearance]") {
 TEST_CASE("Stopped, out of budget, or far enough: true bounds that say so", "[clearance]") {
     const auto model = model_of({prism(24, 0.005, 0.03), ring(24, 0.0053, 0.01, 0.02)}, {{0, 0, 0}, {1e-5, 0, 0}});
     const auto start = as_assembled(model);
-    const auto whole = certify_clearance(model, start, {{0, 1, 2.8e-4}}, options_with(1e-9))[0];
+    const auto whole = certify(model, start, {{0, 1, 2.8e-4}}, options_with(1e-9))[0];
     CHECK(whole.complete);
     ClearanceOptions stopped = options_with(1e-9);
     stopped.should_stop = [] { return true; };
-    const auto at_once = certify_clearance(model, start, {{0, 1, 2.8e-4}}, stopped)[0];
+    const auto at_once = certify(model, start, {{0, 1, 2.8e-4}}, stopped)[0];
     CHECK(!at_once.complete);
     CHECK((at_once.lower <= whole.lower && at_once.upper >= whole.upper));
     CHECK(at_once.status == PairStatus::undecided);
     ClearanceOptions poor = options_with(1e-9);
     poor.max_evaluations = 3;
-    const auto out = certify_clearance(model, start, {{0, 1, 2.8e-4}}, poor)[0];
+    const auto out = certify(model, start, {{0, 1, 2.8e-4}}, poor)[0];
     CHECK(!out.complete);
     CHECK((out.lower <= whole.lower && out.upper >= whole.upper));
     const auto boxes = model_of({box({1, 1, 1}), box({1, 1, 1})}, {{0, 0, 0}, {4, 0.1, 0.2}});
     ClearanceOptions enough = options_with(1e-9);
     enough.enough = 1;
-    const auto far = certify_clearance(boxes, as_assembled(boxes), {{0, 1, 0.5}}, enough)[0];
+    const auto far = certify(boxes, as_assembled(boxes), {{0, 1, 0.5}}, enough)[0];
     CHECK(far.status == PairStatus::clear);
     CHECK((far.lower >= 1 && far.lower <= 2 && far.upper >= 2));
 }
@@ -232,8 +232,8 @@ TEST_CASE("Wires and points have clearances too", "[clearance]") {
     };
     const Solid wire = loose({{-1, 0, 0}, {1, 0, 0}}, {{0, 1}}), point = loose({{0, 0, 0}}, {}), solid = box({1, 1, 1});
     const auto model = model_of({wire, wire, point, point, solid}, {{0, 0, 0}, {0.2, 0, 0.5}, {0.1, 0, -0.7}, {3, 0, 4}, {0, -3, 0}});
-    const auto results = certify_clearance(model, as_assembled(model), {{0, 1, 0}, {0, 2, 0}, {2, 0, 0}, {2, 3, 0}, {0, 4, 0}, {4, 2, 0}},
-                                           options_with(1e-9));
+    const auto results =
+        certify(model, as_assembled(model), {{0, 1, 0}, {0, 2, 0}, {2, 0, 0}, {2, 3, 0}, {0, 4, 0}, {4, 2, 0}}, options_with(1e-9));
     const std::vector<double> expected{0.5, 0.7, 0.7, std::hypot(2.9, 4.7), 2, 2};
     for (std::size_t i = 0; i < expected.size(); ++i) {
         CAPTURE(i);

@@ -32,10 +32,10 @@ TEST_CASE("faces of two bodies alone are certified, and their witness is told by
     const FacesAlone faces(*model, {0, {8, 9}}, {1, {2, 3}});
     ClearanceOptions options;
     options.tolerance = 1e-9;
-    const auto certify = [&](const FacesAlone& of) {
-        return of.in_whole(certify_clearance(of.model(), as_assembled(of.model()), {{0, 1}}, options).front());
+    const auto measured = [&](const FacesAlone& of) {
+        return of.in_whole(certify(of.model(), as_assembled(of.model()), {{0, 1}}, options).front());
     };
-    const PairClearance pair = certify(faces);
+    const PairClearance pair = measured(faces);
     CHECK(pair.lower > 0);
     CHECK(pair.lower <= 0.05);
     CHECK(pair.upper == Approx(0.05));  // from x = -0.01 to x = 0.04, where the upper face's edge is
@@ -51,13 +51,13 @@ TEST_CASE("faces of two bodies alone are certified, and their witness is told by
     for (const int v : corners(1, w.kind_b, w.primitive_b)) CHECK(model->bodies[1].mesh.vertices(2, v) > 0);
 
     // One whole body: still a solid, within which a face of the other would be found.
-    CHECK(certify(FacesAlone(*model, {0, {}}, {1, {8, 9}})).upper == Approx(0.03));
+    CHECK(measured(FacesAlone(*model, {0, {}}, {1, {8, 9}})).upper == Approx(0.03));
     scene.bodies[1].pose.position.x() = 0.005;
     scene.bodies[1].mesh = tests::support::box_mesh(Vector3::Constant(-0.002), Vector3::Constant(0.002));
     const auto inside = setup::build_model(scene);
     REQUIRE(inside);
     const FacesAlone face(*inside, {0, {}}, {1, {8, 9}});
-    CHECK(certify_clearance(face.model(), as_assembled(face.model()), {{0, 1}}, options).front().solids == Solids::overlap);
+    CHECK(certify(face.model(), as_assembled(face.model()), {{0, 1}}, options).front().solids == Solids::overlap);
 }
 
 }  // namespace fettle::core::clearance::faces_alone_test

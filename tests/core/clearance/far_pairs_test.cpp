@@ -51,9 +51,8 @@ struct Counts {
 
 // Compares pairs asked for with `far` with the same without.
 void compare(const Scene& scene, const ClearanceOptions& options, double minimum, double far, Counts& counts) {
-    const auto exact =
-        certify_clearance(scene.model, scene.trajectory, all_pairs(scene, minimum, std::numeric_limits<double>::infinity()), options);
-    const auto found = certify_clearance(scene.model, scene.trajectory, all_pairs(scene, minimum, far), options);
+    const auto exact = certify(scene.model, scene.trajectory, all_pairs(scene, minimum, std::numeric_limits<double>::infinity()), options);
+    const auto found = certify(scene.model, scene.trajectory, all_pairs(scene, minimum, far), options);
     REQUIRE(found.size() == exact.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
         CAPTURE(far, found[i].a, found[i].b, exact[i].lower, exact[i].upper, found[i].lower);
@@ -93,14 +92,14 @@ TEST_CASE("nothing hangs on the number of threads, nor on what else is asked") {
     const Scene scene = tumbling(8, 3, 3);
     const ClearanceOptions options = over_motion();
     const std::vector<PairRequest> pairs = all_pairs(scene, 0.1, 0.2);
-    const auto found = certify_clearance(scene.model, scene.trajectory, pairs, options);
+    const auto found = certify(scene.model, scene.trajectory, pairs, options);
     const base::ThreadLimit limit(4);
-    const auto again = certify_clearance(scene.model, scene.trajectory, pairs, options);
+    const auto again = certify(scene.model, scene.trajectory, pairs, options);
     for (std::size_t i = 0; i < pairs.size(); ++i) CHECK((are_same(found[i], again[i]) && found[i].is_far == again[i].is_far));
     // Each has a distance of its own that is far enough for it.
     std::vector<PairRequest> mixed = pairs;
     for (std::size_t i = 0; i < mixed.size(); i += 2) mixed[i].far = std::numeric_limits<double>::infinity();
-    const auto some = certify_clearance(scene.model, scene.trajectory, mixed, options);
+    const auto some = certify(scene.model, scene.trajectory, mixed, options);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         CHECK(some[i].is_far == (i % 2 == 1 && found[i].is_far));
         if (!found[i].is_far) CHECK(are_same(found[i], some[i]));
@@ -115,18 +114,18 @@ TEST_CASE("what is inside is not far, however far its surfaces; nor is what cann
     scene.trajectory = as_assembled(scene.model);
     ClearanceOptions options;
     const std::vector<PairRequest> pairs{{0, 1, 0.1, 0.2}, {0, 2, 0.1, 0.2}, {1, 2, 0.1, 0.2}};
-    auto found = certify_clearance(scene.model, scene.trajectory, pairs, options);
+    auto found = certify(scene.model, scene.trajectory, pairs, options);
     CHECK((!found[0].is_far && found[0].status == PairStatus::violated && found[0].solids == Solids::overlap));
     CHECK((found[1].is_far && found[1].solids == Solids::disjoint));
     CHECK(found[2].is_far);
     scene.trajectory.poses[0][2].position.x() = std::nan("");
-    found = certify_clearance(scene.model, scene.trajectory, pairs, options);
+    found = certify(scene.model, scene.trajectory, pairs, options);
     CHECK((!found[1].is_far && found[1].status == PairStatus::undecided && found[1].lower == 0));
     CHECK((!found[2].is_far && found[2].status == PairStatus::undecided));
     options.should_stop = [] { return true; };
     scene.trajectory = as_assembled(scene.model);
     scene.trajectory.poses[0][2].position.x() = 1.15;  // boxes do not tell: 0.05 apart
-    for (const PairClearance& pair : certify_clearance(scene.model, scene.trajectory, {{0, 2, 0.01, 0.1}}, options))
+    for (const PairClearance& pair : certify(scene.model, scene.trajectory, {{0, 2, 0.01, 0.1}}, options))
         CHECK((!pair.is_far && !pair.complete));
 }
 
@@ -135,7 +134,7 @@ TEST_CASE("a certificate covers far pairs, and claims no more than is told") {
     for (const unsigned seed : {2U, 5U}) {
         const Scene scene = tumbling(5, 2, seed);
         const std::vector<PairRequest> pairs = all_pairs(scene, 0.1, 0.2);
-        auto [found, certificate] = certify_clearance_with_proof(scene.model, scene.trajectory, pairs, over_motion());
+        auto [found, certificate] = certify_with_proof(scene.model, scene.trajectory, pairs, over_motion());
         REQUIRE(certificate.pairs.size() == pairs.size());
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             CHECK(certificate.pairs[i].lower == found[i].lower);

@@ -41,8 +41,8 @@ Looked look(double allowed_gap, double tolerance, double minimum, double plate_l
     options.tolerance = tolerance;
     std::vector<PairRequest> pairs{{coupler_body, plate_body, minimum}};
     pairs[0].touch_depth = touch_depth;
-    out.of_path = certify_clearance(out.model, out.trajectory, pairs, options).front();
-    auto proven = certify_jointed_with_proof(out.model, out.trajectory, pairs, options, out.path);
+    out.of_path = certify(out.model, out.trajectory, pairs, options).front();
+    auto proven = certify_with_proof(out.model, out.trajectory, out.path, pairs, options);
     out.result = proven.pairs.front();
     out.certificate = std::move(proven.certificate);
     return out;
@@ -170,7 +170,7 @@ TEST_CASE("jointed clearance: where the joints have bodies is not proven, so the
     CHECK(jointed_bodies(model, {"crank", "coupler", "rocker"}).empty());
     const JointedPath unproven{std::nullopt, "why", jointed_bodies(model, {})};
     const std::vector<PairRequest> pairs{{coupler_body, plate_body, 1e-3}, {plate_body, post, 0.1}, {crank_body, rocker_body, 0}};
-    const auto [results, certificate] = certify_jointed_with_proof(model, trajectory, pairs, options, unproven);
+    const auto [results, certificate] = certify_with_proof(model, trajectory, unproven, pairs, options);
     for (const int k : {0, 2}) {
         const PairClearance& untold = results[k];
         CAPTURE(k, untold.reason);

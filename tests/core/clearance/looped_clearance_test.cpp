@@ -84,7 +84,7 @@ Looked looked_at(const scene::Scene& scene, const std::vector<PairRequest>& pair
     out.bodies = looped_bodies(out.model, *looped);
     CHECK(out.bodies.deviations.empty());
     CHECK(is_over_ranges(out.bodies));
-    ProvenClearances proven = certify_toleranced_with_proof(out.model, out.bodies, pairs, usual_options(pairs, 1e-3));
+    ProvenClearances proven = certify_with_proof(out.model, out.bodies, pairs, usual_options(pairs, 1e-3));
     out.found = std::move(proven.pairs);
     out.certificate = std::move(proven.certificate);
     return out;

@@ -44,7 +44,7 @@ double least_alone(const Scene& scene, const ClearanceOptions& options) {
         }
     }
     double least = std::numeric_limits<double>::infinity();
-    for (const PairClearance& pair : certify_clearance(scene.model, scene.trajectory, pairs, options)) least = std::min(least, pair.lower);
+    for (const PairClearance& pair : certify(scene.model, scene.trajectory, pairs, options)) least = std::min(least, pair.lower);
     return least;
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("what is not in a window is farther apart than the reach") {
                         }
                         ++left_out;
                         CAPTURE(seed, reach, a, b, place);
-                        REQUIRE(certify_clearance(scene.model, part, {{a, b, 0}}, options).front().upper > reach);
+                        REQUIRE(certify(scene.model, part, {{a, b, 0}}, options).front().upper > reach);
                     }
                 }
             }

@@ -39,7 +39,7 @@ PairClearance certified(const scene::Scene& scene, int a, int b, double toleranc
     REQUIRE(ranges);
     ClearanceOptions options;
     options.tolerance = tolerance;
-    return certify_ranges(model, *ranges, {{a, b, minimum}}, options).front();
+    return certify(model, *ranges, {{a, b, minimum}}, options).front();
 }
 
 double size_of(const Tree& tree) { return tree.model.bodies[tree.a].radius + tree.model.bodies[tree.b].radius; }
@@ -47,7 +47,7 @@ double size_of(const Tree& tree) { return tree.model.bodies[tree.a].radius + tre
 PairClearance certified(const Tree& tree, double tolerance) {
     ClearanceOptions options;
     options.tolerance = tolerance;
-    return certify_ranges(tree.model, tree.ranges, {{tree.a, tree.b}}, options).front();
+    return certify(tree.model, tree.ranges, {{tree.a, tree.b}}, options).front();
 }
 
 // All of the linkage, the pair's own at the witness.

@@ -53,7 +53,7 @@ Fit fit_of(const RoundMesh& inner, const RoundMesh& outer, const scene::Joint& j
     REQUIRE(ranges);
     out.ranges = *std::move(ranges);
     const std::vector<PairRequest> pairs{{0, 1, minimum}};
-    ProvenClearances proven = certify_ranges_with_proof(out.model, out.ranges, pairs, usual_options(pairs));
+    ProvenClearances proven = certify_with_proof(out.model, out.ranges, pairs, usual_options(pairs));
     out.found = proven.pairs.front();
     out.certificate = std::move(proven.certificate);
     return out;

@@ -108,8 +108,8 @@ TEST_CASE("An answer that is enough is the answer, over paths, ranges and tolera
                {tree.a, tree.b},
                options,
                [&](const auto& pairs, const ClearanceOptions& with, bool proof) -> ProvenClearances {
-                   if (proof) return certify_toleranced_with_proof(tree.tree.model, tree.toleranced, pairs, with);
-                   return {certify_toleranced(tree.tree.model, tree.toleranced, pairs, with), {}};
+                   if (proof) return certify_with_proof(tree.tree.model, tree.toleranced, pairs, with);
+                   return {certify(tree.tree.model, tree.toleranced, pairs, with), {}};
                }});
         options.tolerance = 1e-6;
         options.max_bounds = 200'000;
@@ -119,8 +119,8 @@ TEST_CASE("An answer that is enough is the answer, over paths, ranges and tolera
                {tree.a, tree.b},
                options,
                [&](const auto& pairs, const ClearanceOptions& with, bool proof) -> ProvenClearances {
-                   if (proof) return certify_ranges_with_proof(tree.tree.model, tree.tree.ranges, pairs, with);
-                   return {certify_ranges(tree.tree.model, tree.tree.ranges, pairs, with), {}};
+                   if (proof) return certify_with_proof(tree.tree.model, tree.tree.ranges, pairs, with);
+                   return {certify(tree.tree.model, tree.tree.ranges, pairs, with), {}};
                }});
     }
     for (unsigned seed = 1; seed <= 6; ++seed) {
@@ -135,8 +135,8 @@ TEST_CASE("An answer that is enough is the answer, over paths, ranges and tolera
                    {0, b},
                    options,
                    [&](const auto& pairs, const ClearanceOptions& with, bool proof) -> ProvenClearances {
-                       if (proof) return certify_clearance_with_proof(scene.model, scene.trajectory, pairs, with);
-                       return {certify_clearance(scene.model, scene.trajectory, pairs, with), {}};
+                       if (proof) return certify_with_proof(scene.model, scene.trajectory, pairs, with);
+                       return {certify(scene.model, scene.trajectory, pairs, with), {}};
                    }});
     }
 }

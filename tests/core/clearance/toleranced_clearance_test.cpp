@@ -52,8 +52,8 @@ PairClearance certified(const TolerancedTree& tree, double tolerance, long bound
     ClearanceOptions options;
     options.tolerance = tolerance;
     options.max_bounds = bounds;
-    if (proven == nullptr) return certify_toleranced(tree.tree.model, tree.toleranced, {{tree.a, tree.b}}, options).front();
-    *proven = certify_toleranced_with_proof(tree.tree.model, tree.toleranced, {{tree.a, tree.b}}, options);
+    if (proven == nullptr) return certify(tree.tree.model, tree.toleranced, {{tree.a, tree.b}}, options).front();
+    *proven = certify_with_proof(tree.tree.model, tree.toleranced, {{tree.a, tree.b}}, options);
     return proven->pairs.front();
 }
 

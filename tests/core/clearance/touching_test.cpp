@@ -18,7 +18,7 @@ PairClearance judged(const model::Model& model, double minimum, bool may_touch, 
     PairRequest request{0, 1, minimum};
     request.may_touch = may_touch;
     request.touch_depth = depth;
-    return certify_clearance(model, as_assembled(model), {request}, options_with(1e-6))[0];
+    return certify(model, as_assembled(model), {request}, options_with(1e-6))[0];
 }
 
 // In metres: a base of 60 x 40 x 10 mm and a lid of 30 x 8 x 5 mm on it, higher by `gap`.
@@ -119,7 +119,7 @@ TEST_CASE("A slide that keeps touching its rail does so all along its path; one 
     request.may_touch = true;
     const auto along = [&](const Vector3& middle) {
         const auto path = one_step(model, {{start, zero}, {start + middle, zero}, {start + Vector3(0.01, 0, 0), zero}});
-        return certify_clearance(model, path, {request}, over_motion())[0];
+        return certify(model, path, {request}, over_motion())[0];
     };
     const PairClearance slid = along({0.005, 0, 0});
     REQUIRE(slid.touch);

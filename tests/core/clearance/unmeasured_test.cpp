@@ -52,7 +52,7 @@ TEST_CASE("Paths that are no numbers or absurd ones are undecided", "[clearance]
     }
     // The pairs beside it are measured all the same.
     const auto three = model_of({box({1, 1, 1}), box({0.5, 0.5, 0.5}), box({1, 1, 1})}, {{0, 0, 0}, {3, 0, 0}, {nan, 0, 0}});
-    const auto results = certify_clearance(three, as_assembled(three), {{0, 2, 0}, {0, 1, 0.1}}, options_with(1e-6));
+    const auto results = certify(three, as_assembled(three), {{0, 2, 0}, {0, 1, 0.1}}, options_with(1e-6));
     check_undecided(results[0]);
     CHECK(results[1].status == PairStatus::clear);
 }

@@ -142,7 +142,7 @@ TEST_CASE("A script that closes a gap altogether leaves what can be proven, what
         core::clearance::ClearanceOptions options;
         options.motion = true;
         options.tolerance = 1e-12;
-        const auto proven = core::clearance::certify_clearance(model, out.trajectory, {{0, 1, 0}, {1, 2, 0}}, options);
+        const auto proven = core::clearance::certify(model, out.trajectory, {{0, 1, 0}, {1, 2, 0}}, options);
         for (const auto& pair : proven) CHECK(pair.lower > 0);
     }
 }

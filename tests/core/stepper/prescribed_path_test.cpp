@@ -62,7 +62,7 @@ clearance::PairClearance judged(const model::Model& model, const Trajectory& tra
     clearance::ClearanceOptions options;
     options.motion = true;
     options.tolerance = 1e-5;
-    return clearance::certify_clearance(model, trajectory, {{0, 1, 1e-4}}, options).front();
+    return clearance::certify(model, trajectory, {{0, 1, 1e-4}}, options).front();
 }
 
 }  // namespace

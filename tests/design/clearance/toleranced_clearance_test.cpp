@@ -85,13 +85,13 @@ int body_named(const Subject& subject, const std::string& name) {
 PairClearance certified(const Subject& subject, const std::string& a, const std::string& b, double tolerance = 1e-7) {
     ClearanceOptions options;
     options.tolerance = tolerance;
-    return certify(subject, {{body_named(subject, a), body_named(subject, b)}}, options).front();
+    return certify(subject.model, subject.domain, {{body_named(subject, a), body_named(subject, b)}}, options).front();
 }
 
 // In alphabetical order: what a design lists is a set.
 std::vector<std::string> names_of(const Subject& subject, const std::vector<int>& deviations) {
     std::vector<std::string> out;
-    for (const int k : deviations) out.push_back(subject.toleranced->deviations[k].of);
+    for (const int k : deviations) out.push_back(subject.domain.made()->deviations[k].of);
     std::sort(out.begin(), out.end());
     return out;
 }
@@ -105,7 +105,7 @@ core::certificate::Deviation& deviation_of(core::certificate::Toleranced& tolera
 
 double worst_of(const Subject& subject, const PairClearance& found, const std::string& name) {
     for (std::size_t k = 0; k < found.deviations.size(); ++k)
-        if (subject.toleranced->deviations[found.deviations[k]].of == name) return found.deviations_at[k];
+        if (subject.domain.made()->deviations[found.deviations[k]].of == name) return found.deviations_at[k];
     FAIL(name);
     return 0;
 }
@@ -117,7 +117,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 }
 
 core::certificate::CertificateReport checked(const Certificate& certificate, const Subject& subject) {
-    return core::certificate::check_certificate(certificate, subject.model, subject.trajectory);
+    return core::certificate::check_certificate(certificate, subject.model, subject.domain.path());
 }
 
 }  // namespace
@@ -173,7 +173,7 @@ TEST_CASE("Its certificate is checked, and damaged ones are rejected", "[toleran
     ClearanceOptions options;
     options.tolerance = 1e-4;
     const int a = body_named(subject, "fore"), b = body_named(subject, "post");
-    const auto proven = certify_with_proof(subject, {{a, b}}, options);
+    const auto proven = certify_with_proof(subject.model, subject.domain, {{a, b}}, options);
     const Certificate& certificate = proven.certificate;
     REQUIRE(certificate.pairs.size() == 1);
     const core::certificate::PairCertificate& pair = certificate.pairs.front();
@@ -190,7 +190,7 @@ TEST_CASE("Its certificate is checked, and damaged ones are rejected", "[toleran
     for (const Error& error : read.errors()) UNSCOPED_INFO(error.where << ": " << error.message);
     REQUIRE(read);
     REQUIRE(read->toleranced);
-    CHECK(same_toleranced(*read->toleranced, *subject.toleranced));
+    CHECK(same_toleranced(*read->toleranced, *subject.domain.made()));
     CHECK(checked(*read, subject).accepted());
     const auto is_rejected = [&](const auto& damage) {
         Certificate damaged = certificate;

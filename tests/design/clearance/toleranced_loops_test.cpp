@@ -128,7 +128,7 @@ TEST_CASE("A four-bar linkage's coupler over the whole turn and all lengths with
     const int coupler = body_named(subject, "coupler"), post = body_named(subject, "post");
     ClearanceOptions options;
     options.tolerance = 1e-4;
-    const auto proven = certify_with_proof(subject, {{coupler, post}}, options);
+    const auto proven = certify_with_proof(subject.model, subject.domain, {{coupler, post}}, options);
     const PairClearance& found = proven.pairs.front();
     INFO(found.lower << " " << found.upper << " " << found.bounds << " " << found.reason);
     REQUIRE(found.lower > 0);
@@ -152,7 +152,7 @@ TEST_CASE("A four-bar linkage's coupler over the whole turn and all lengths with
     CHECK(nominal - least > 1e-4);  // the tolerances matter
 
     const auto checked = [&](const Certificate& certificate) {
-        return core::certificate::check_certificate(certificate, subject.model, subject.trajectory);
+        return core::certificate::check_certificate(certificate, subject.model, subject.domain.path());
     };
     const auto report = checked(proven.certificate);
     for (const auto& fault : report.faults) UNSCOPED_INFO(fault.where << ": " << fault.message);
@@ -176,7 +176,8 @@ TEST_CASE("A loop that does not close for all lengths is undecided, with its rea
     const tests::support::TemporaryFolder folder;
     // With 9.9 mm more on the crank and as much less on coupler and rocker it has no whole turn.
     const Subject subject = subject_of(folder, R"({"crank": "+-9.9 mm", "coupler": "+-9.9 mm", "rocker": "+-9.9 mm"})");
-    const PairClearance found = certify(subject, {{body_named(subject, "coupler"), body_named(subject, "post")}}, {}).front();
+    const PairClearance found =
+        certify(subject.model, subject.domain, {{body_named(subject, "coupler"), body_named(subject, "post")}}, {}).front();
     CHECK(found.status == PairStatus::undecided);
     CHECK_THAT(found.reason, Catch::Contains("cannot be enclosed for all of their range and all tolerances"));
 }

@@ -62,7 +62,7 @@ struct Folder : tests::support::TemporaryFolder {
 PairClearance of_arm_and_slide(const Subject& subject, double tolerance = 1e-6) {
     ClearanceOptions options;
     options.tolerance = tolerance;
-    return certify(subject, {{0, 1}}, options).front();
+    return certify(subject.model, subject.domain, {{0, 1}}, options).front();
 }
 
 // The arm's far corner from the slide's face, where both are at `time`; the arm ends beside no corner of the slide.
@@ -94,8 +94,8 @@ TEST_CASE("Two scripted bodies at even speed share the time, within tolerances",
     CHECK(found.coordinates.size() == 1);
     ClearanceOptions options;
     options.tolerance = 1e-5;
-    const auto proven = certify_with_proof(subject, {{0, 1}}, options);
-    const auto checked = core::certificate::check_certificate(proven.certificate, subject.model, subject.trajectory);
+    const auto proven = certify_with_proof(subject.model, subject.domain, {{0, 1}}, options);
+    const auto checked = core::certificate::check_certificate(proven.certificate, subject.model, subject.domain.path());
     for (const auto& fault : checked.faults) UNSCOPED_INFO(fault.where << ": " << fault.message);
     CHECK(checked.accepted());
     CHECK(proven.certificate.toleranced->duration == 1);
@@ -178,7 +178,7 @@ TEST_CASE("How far a motor goes deviates: the lever made anew at the end of its 
             const Subject anew = read("anew.scene.json", false);
             ClearanceOptions over_motion;
             over_motion.motion = true;
-            least = std::min(least, certify(anew, {{0, 1}}, over_motion).front().upper);
+            least = std::min(least, certify(anew.model, anew.domain, {{0, 1}}, over_motion).front().upper);
         }
     INFO(found.lower << " " << found.upper << " anew " << least);
     CHECK(found.lower <= least);
@@ -186,18 +186,18 @@ TEST_CASE("How far a motor goes deviates: the lever made anew at the end of its 
     CHECK(found.upper < 7e-3);
     ClearanceOptions options;
     options.tolerance = 1e-5;
-    const auto proven = certify_with_proof(subject, {{0, 1}}, options);
+    const auto proven = certify_with_proof(subject.model, subject.domain, {{0, 1}}, options);
     REQUIRE(write_certificate(folder.file("x.certificate.json"), proven.certificate).empty());
     const auto stored = core::certificate::read_certificate(folder.file("x.certificate.json"));
     REQUIRE(stored);
-    CHECK(same_toleranced(*stored->toleranced, *subject.toleranced));
-    CHECK(core::certificate::check_certificate(*stored, subject.model, subject.trajectory).accepted());
+    CHECK(same_toleranced(*stored->toleranced, *subject.domain.made()));
+    CHECK(core::certificate::check_certificate(*stored, subject.model, subject.domain.path()).accepted());
     // Without the curve's formulas, or with less of them, it is another claim.
     core::certificate::Certificate damaged = *stored;
     damaged.toleranced->bodies[0].screws[0].driven.reset();
-    CHECK_FALSE(same_toleranced(*damaged.toleranced, *subject.toleranced));
+    CHECK_FALSE(same_toleranced(*damaged.toleranced, *subject.domain.made()));
     damaged.toleranced->bodies[0].screws[0].driven = {9999, 0};
-    CHECK_FALSE(core::certificate::check_certificate(damaged, subject.model, subject.trajectory).accepted());
+    CHECK_FALSE(core::certificate::check_certificate(damaged, subject.model, subject.domain.path()).accepted());
 }
 
 }  // namespace fettle::design::clearance::toleranced_motion_test

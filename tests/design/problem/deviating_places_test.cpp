@@ -253,9 +253,8 @@ Asked within(const Design& design, const std::vector<Tolerance>& tolerances, con
     Asked out;
     for (const PairRequest& pair : of.pairs) {
         const bool matters = !core::certificate::toleranced_pair(*toleranced, pair.a, pair.b).deviations.empty();
-        out.pairs.push_back(
-            matters ? std::optional(core::clearance::certify_toleranced(*model, *toleranced, {pair}, options(of.accuracy)).front())
-                    : std::nullopt);
+        out.pairs.push_back(matters ? std::optional(core::clearance::certify(*model, *toleranced, {pair}, options(of.accuracy)).front())
+                                    : std::nullopt);
     }
     return out;
 }
@@ -345,8 +344,7 @@ double distance_in(const Positions& positions, const PairRequest& pair) {
     double least = HUGE_VAL;
     for (const auto& poses : positions.poses) {
         for (std::size_t i = 0; i < poses.size(); ++i) model.bodies[i].pose_start = poses[i];
-        least =
-            std::min(least, core::clearance::certify_clearance(model, core::clearance::as_assembled(model), {pair}, fine).front().upper);
+        least = std::min(least, core::clearance::certify(model, core::clearance::as_assembled(model), {pair}, fine).front().upper);
     }
     return least;
 }
