@@ -14,6 +14,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -105,15 +106,30 @@ struct MeshProgram {
     bool operator==(const MeshProgram&) const = default;
 };
 
-/// A part that is made from dimensions, by its file or by a program (design/shapes/); core makes none, see read_options.hpp.
+/// A mesh of someone else, which gets dimensions by handles (core/features/handle.hpp).
+struct HandledMeshSpec {
+    std::shared_ptr<const geometry::Mesh> mesh;  ///< as read and mended [m]
+    std::string source;                          ///< file, unit and whatever else decides what `mesh` and `targets` are
+    std::string handles;                         ///< by name, as JSON; numbers count in `unit`
+    std::map<std::string, std::shared_ptr<const geometry::Mesh>> targets = {};  ///< of handles that go towards another mesh, by name
+    double unit = 1;                                                            ///< [m]
+    double wall = 0;  ///< that must be left behind features that are changed [m]; 0: some
+    bool operator==(const HandledMeshSpec& other) const {
+        return source == other.source && handles == other.handles && unit == other.unit && wall == other.wall;
+    }
+};
+
+/// A part that is made from dimensions, by its file, by a program or by handles of a mesh (design/shapes/); core makes none, see
+/// read_options.hpp.
 struct ShapeSpec {
-    std::string part;                          ///< of the library, a file, or the text of one; empty: a program makes the part
+    std::string part;                          ///< of the library, a file, or the text of one; empty: something else makes the part
     std::map<std::string, double> dimensions;  ///< lengths [m], but for those that are listed below
     std::map<std::string, int> counts;         ///< numbers of teeth, holes, facets
     std::optional<MeshProgram> program = {};
     double chord = 0;                      ///< of a part: largest distance of a facet from what it stands for [m]; 0: not by this
     std::vector<std::string> angles = {};  ///< dimensions of a part that are no lengths: angles [rad], plain numbers
     std::vector<std::string> numbers = {};
+    std::optional<HandledMeshSpec> handled = {};
     bool operator==(const ShapeSpec&) const = default;
 };
 

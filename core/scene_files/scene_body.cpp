@@ -146,6 +146,11 @@ SceneBodies::MeshSource SceneBodies::read_geometry(const files::JsonNode& node, 
     }
     if (node["mesh_unit"].exists() && !mesh.exists())
         node["mesh_unit"].fail(ErrorCode::inconsistent, "only a `mesh` file has a unit of its own");
+    for (const char* key : {"handles", "dimensions"})
+        if (node[key].exists())
+            node[key].fail(ErrorCode::inconsistent, std::string("`") + key +
+                                                        "` are of a `shape`: write \"shape\": {\"mesh\": \"base.stl\", \"handles\": "
+                                                        "{...}, \"dimensions\": {...}} in place of the `mesh`");
     for (const char* key : {"mesh_item", "mesh_solid", "mesh_facets", "surface_tolerance"})
         if (node[key].exists() && !mesh.exists()) node[key].fail(ErrorCode::inconsistent, std::string("`") + key + "` is of a `mesh` file");
     if (mesh.exists()) source = read_mesh_file(node, body);
@@ -293,11 +298,53 @@ void SceneBodies::read_own_part(const files::JsonNode& node, scene::ShapeSpec& s
         "{\"fettle_part\": 1, \"units\": \"" + unit + "\", \"dimensions\": {" + dimensions + "}, \"counts\": {" + counts + "}" + text + "}";
 }
 
+// A mesh file, mended as where a body has it without handles.
+std::shared_ptr<const geometry::Mesh> SceneBodies::mended_mesh(const files::JsonNode& node, MeshSource& source) {
+    scene::Body read;
+    source = read_mesh_file(node, read);
+    if (read.mesh.vertices.cols() == 0) return nullptr;
+    if (!options_.strict_meshes && read.mesh.vertices.allFinite())
+        for (const std::string& done : solids::repair_mesh(read.mesh)) node["mesh"].warn("`" + read.mesh.name + "`: " + done);
+    return std::make_shared<const geometry::Mesh>(std::move(read.mesh));
+}
+
+void SceneBodies::read_handled_mesh(const files::JsonNode& node, scene::ShapeSpec& spec) {
+    node.allow_keys({"mesh", "mesh_unit", "mesh_item", "mesh_solid", "mesh_facets", "surface_tolerance", "handles", "dimensions", "wall"});
+    scene::HandledMeshSpec handled;
+    MeshSource source;
+    handled.mesh = mended_mesh(node, source);
+    handled.source = std::get<0>(source) + "\n" + std::to_string(std::get<1>(source));
+    handled.unit = unit_;
+    handled.wall = node["wall"].length(unit_, files::not_negative).value_or(0);
+    for (const auto& [name, handle] : node.require("handles").members()) {
+        if (name.starts_with('#') || !handle.is_object() || !handle["morph"].is_string()) continue;
+        const std::string file = handle["morph"].string().value();
+        const auto found = mesh_files::find_mesh_file(file, document_.path(), options_.mesh_dirs, handle["morph"].where());
+        if (!found) {
+            report(found.errors(), handle["morph"]);
+            continue;
+        }
+        mesh_files::MeshReadOptions options;
+        options.unit = std::get<1>(source);
+        options.should_stop = options_.should_stop;
+        auto target = mesh_files::read_mesh(*found, options);
+        if (!target) {
+            report(target.errors(), handle["morph"]);
+            continue;
+        }
+        if (!options_.strict_meshes && target->vertices.allFinite()) solids::repair_mesh(*target);
+        handled.source += "\n" + *found;
+        handled.targets[name] = std::make_shared<const geometry::Mesh>(*std::move(target));
+    }
+    handled.handles = node["handles"].exists() ? node["handles"].text() : "{}";
+    spec.handled = std::move(handled);
+}
+
 void SceneBodies::read_dimensions(const files::JsonNode& node, scene::ShapeSpec& spec) {
     std::map<std::string, base::Dimension> quantities;
-    if (!spec.part.empty() && options_.part_dimensions) {
+    if ((!spec.part.empty() || spec.handled) && options_.part_dimensions) {
         const auto found = options_.part_dimensions(spec);
-        if (!found) return report(found.errors(), node["part"]);
+        if (!found) return report(found.errors(), spec.handled ? node["handles"] : node["part"]);
         quantities = *found;
         for (const auto& [name, quantity] : quantities) {
             if (quantity == base::Dimension::angle) spec.angles.push_back(name);
@@ -337,12 +384,15 @@ void SceneBodies::make_shape(const files::JsonNode& node, scene::Body& body) {
             spec.part = *file;
         }
         spec.chord = node["facets"].length(unit_, files::positive).value_or(0);
+    } else if (node["mesh"].exists()) {
+        read_handled_mesh(node, spec);
+        body.mesh_policy = scene::MeshPolicy::tolerant;
     } else if (node["solid"].exists()) {
         read_own_part(node, spec);
     } else if (node["generator"].exists()) {
         return node["generator"].fail(ErrorCode::unknown_key, in_place_of_generator(node["generator"].string().value_or("")));
     } else {
-        node.allow_keys({"part", "program", "solid", "dimensions", "counts", "facets"});
+        node.allow_keys({"part", "program", "solid", "mesh", "dimensions", "counts", "facets"});
         node.require("part");
     }
     const std::size_t faults = document_.errors().size();
@@ -351,10 +401,10 @@ void SceneBodies::make_shape(const files::JsonNode& node, scene::Body& body) {
     if (!node["solid"].exists()) read_dimensions(node, spec);
     body.shape = spec;
     if (document_.errors().size() > faults) return;  // of numbers that nobody gave more faults would be told
-    if (spec.part.empty() && (!spec.program || spec.program->command.empty())) return;
+    if (spec.part.empty() && (!spec.program || spec.program->command.empty()) && (!spec.handled || !spec.handled->mesh)) return;
     if (!options_.shape_maker) {
-        node.fail(ErrorCode::unsupported, "shape \"" + (spec.program ? spec.program->command.front() : spec.part) +
-                                              "\" cannot be made here: this program was given nothing that makes parts");
+        const std::string name = spec.handled ? spec.handled->mesh->name : spec.program ? spec.program->command.front() : spec.part;
+        node.fail(ErrorCode::unsupported, "shape \"" + name + "\" cannot be made here: this program was given nothing that makes parts");
         return;
     }
     auto made = options_.shape_maker(spec);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -48,6 +49,8 @@ private:
     base::Result<geometry::Mesh> item_of_file(const std::string& file, const std::string& item, const mesh_files::MeshReadOptions& options);
     const std::vector<geometry::Mesh>& solids_of_file(const std::pair<std::string, double>& key, geometry::Mesh mesh);
     void make_shape(const files::JsonNode& node, scene::Body& body);
+    void read_handled_mesh(const files::JsonNode& node, scene::ShapeSpec& spec);
+    std::shared_ptr<const geometry::Mesh> mended_mesh(const files::JsonNode& node, MeshSource& source);
     void read_own_part(const files::JsonNode& node, scene::ShapeSpec& spec);
     void read_dimensions(const files::JsonNode& node, scene::ShapeSpec& spec);
     void read_inline(const files::JsonNode& node, scene::Body& body);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/features/resize.hpp"
+#include "core/features/wall.hpp"
 #include "design/features/features_report.hpp"
 
 namespace fettle::design::features {

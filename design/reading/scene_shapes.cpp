@@ -6,6 +6,7 @@
 #include <string>
 
 #include "design/shapes/file_part.hpp"
+#include "design/shapes/handled_part.hpp"
 #include "design/shapes/mesh_program.hpp"
 #include "design/shapes/part_library.hpp"
 
@@ -22,6 +23,7 @@ MadeShape as_shape(const Result<std::shared_ptr<const Part>>& part) {
 }
 
 Result<std::map<std::string, core::base::Dimension>> dimensions_of_part(const core::scene::ShapeSpec& spec) {
+    if (spec.handled) return shapes::dimensions_of_handles(*spec.handled);
     core::part_files::Counts counts = spec.counts;
     counts.erase("segments");
     const auto file = shapes::find_part(spec.part, counts);
@@ -33,6 +35,7 @@ Result<std::map<std::string, core::base::Dimension>> dimensions_of_part(const co
 }
 
 MadeShape shape_of_spec(const core::scene::ShapeSpec& spec, Programs programs, int finer_facets) {
+    if (spec.handled) return as_shape(shapes::HandledPart::create(*spec.handled, spec.dimensions));
     if (!spec.program) return as_shape(shapes::FilePart::create(spec.part, spec.dimensions, {spec.counts, spec.chord, finer_facets}));
     if (programs == Programs::refused) {
         const std::string name = spec.program->command.empty() ? "" : spec.program->command.front();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Round features made larger and smaller: radii, the rest bit for bit, walls, refusals.
 #include "core/features/resize.hpp"
+#include "core/features/wall.hpp"
 
 #include <catch2/catch.hpp>
 #include <set>

@@ -374,6 +374,8 @@ TEST_CASE("The schema lists exactly the keys that the reader accepts", "[scene]"
     of_file["bodies"][0]["shape"] = {{"part", "x"}};
     json written_here = shaped;
     written_here["bodies"][0]["shape"] = {{"solid", {{"sphere", 1}}}};
+    json handled = shaped;
+    handled["bodies"][0]["shape"] = {{"mesh", "none.stl"}, {"handles", json::object()}};
     const std::vector<std::tuple<std::string, std::vector<json>, json>> objects{
         {"", {scene}, schema.at("properties")},
         {"/contact", {scene}, schema.at("properties").at("contact").at("properties")},
@@ -384,7 +386,7 @@ TEST_CASE("The schema lists exactly the keys that the reader accepts", "[scene]"
         {"/bodies/0", {scene}, schema.at("$defs").at("body").at("properties")},
         {"/bodies/0/prescribed", {scene}, schema.at("$defs").at("body").at("properties").at("prescribed").at("properties")},
         {"/bodies/0/prescribed/rz", {scene}, schema.at("$defs").at("motion").at("properties")},
-        {"/bodies/0/shape", {shaped, made, of_file, written_here}, schema.at("$defs").at("shape").at("properties")},
+        {"/bodies/0/shape", {shaped, made, of_file, written_here, handled}, schema.at("$defs").at("shape").at("properties")},
     };
     for (const auto& [pointer, documents, properties] : objects) {
         CAPTURE(pointer);
