@@ -199,9 +199,9 @@ std::vector<Command> add_commands(CommandLine& program, const CommonOptions& com
         }
     };
     add("Start", {add_new(program), add_shapes(program), add_joints(program), add_quantities(program), add_optimisers(program)});
-    add("Check",
-        {add_validate(program, common), add_check(program, common), add_clearance(program, common), add_ranges(program, common),
-         add_features(program, common), add_fit(program, common), add_check_resolution(program, common), add_tolerance(program, common)});
+    add("Check", {add_validate(program, common), add_check(program, common), add_clearance(program, common), add_ranges(program, common),
+                  add_features(program, common), add_fit(program, common), add_resize(program, common), add_stretch(program, common),
+                  add_check_resolution(program, common), add_tolerance(program, common)});
     add("Measure your printer", {add_coupon(program), add_process(program)});
     add("Simulate and tune",
         {add_simulate(program, common), add_optimise(program, common), add_explore(program, common), add_gradient(program, common)});
