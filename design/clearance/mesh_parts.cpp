@@ -117,6 +117,26 @@ std::string body_name(const std::string& of_file, core::files::UniqueNames& name
     return names.unique(name);
 }
 
+std::string proposed_unit(const std::vector<std::string>& files, std::vector<std::string>& warnings) {
+    constexpr double least = 0.3, largest = 3000;  // [mm]
+    double side = 0;
+    std::string of;
+    for (const std::string& path : files) {
+        if (core::mesh_files::states_its_unit(path)) continue;
+        const Result<Mesh> mesh = core::mesh_files::read_mesh(path);
+        if (!mesh || mesh->vertices.cols() == 0 || !(longest_side(*mesh) > side)) continue;
+        side = longest_side(*mesh);
+        of = path;
+    }
+    if (of.empty()) return {};
+    const std::string unit = side > largest ? "um" : side < least ? "m" : "mm";
+    const double metres = core::base::metres_per_unit(unit).value();
+    warnings.push_back("--unit auto: lengths are taken as " + unit + ", in which the longest side of " + of + " is " +
+                       core::base::formatted("%.4g mm (in inches it would be %.4g mm); say --unit where that is not meant",
+                                             1e3 * metres * side, 25.4 * side));
+    return unit;
+}
+
 std::string doubted_side(double side, const std::string& unit) {
     constexpr double largest = 3, printed = 0.3, smallest = 1e-4, micrometre = 1e-6;  // [m]
     const Result<double> metres = unit.empty() ? Result<double>(1e-3) : core::base::metres_per_unit(unit, "--unit");
@@ -145,11 +165,12 @@ bool are_meshes(const std::vector<std::string>& paths) {
     return core::mesh_files::has_mesh_extension(paths.front());
 }
 
-Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::string& unit, const reading::InputOptions& input,
+Result<MeshParts> load_meshes(const std::vector<std::string>& paths, const std::string& given_unit, const reading::InputOptions& input,
                               bool split, const reading::StepWishes& step) {
     MeshParts subject;
     const Result<std::vector<std::string>> files = mesh_files(paths, subject.warnings);
     if (!files) return files.errors();
+    const std::string unit = given_unit == "auto" ? proposed_unit(*files, subject.warnings) : given_unit;
     core::scene::Scene scene;
     scene.length_unit = 1e-3;
     Errors errors;

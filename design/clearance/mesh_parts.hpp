@@ -42,11 +42,15 @@ struct MeshParts {
     std::vector<std::string> warnings;
 };
 
+/// What `--unit auto` stands for: mm, m or um, in which the largest part of the files is of a size that people print or cut (0.3 mm to 3
+/// m); a warning tells it, with that size. Empty: every file states its own.
+std::string proposed_unit(const std::vector<std::string>& files, std::vector<std::string>& warnings);
+
 /// Bodies: one for each file, called as it without its extension; of a 3MF one for each item of its build, where the build places it,
 /// called as its object; of a STEP file one for each solid. A name that is taken gets " 2", " 3"; `:` and `,`, which lists of pairs are
 /// written with, become `_`. A folder stands for the meshes in it, in the order of their names; a warning says that those in folders below
 /// it are left out. Meshes are mended and judged as those of a scene.
-/// @param unit  of files that state none: "mm"; empty: not given.
+/// @param unit  of files that state none: "mm"; "auto": proposed by the size of the largest part, which a warning tells; empty: not given.
 /// @param split  each solid of a mesh is a body of its own, with its cavities: "box#1", "box#2", in the order of their first triangles
 /// Errors: of the files; missing_key (--unit is needed), out_of_range (no unit, or fewer than one part), inconsistent (a path that is
 /// neither a mesh nor a folder among meshes).

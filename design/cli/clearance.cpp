@@ -112,7 +112,7 @@ int run_clearance(const ClearanceArguments& options, const CommonOptions& common
 
 void add_options(CommandLine& app, ClearanceArguments& options) {
     app.option("FILE", options.files, "Scene, design (at its values), or trajectory; or meshes and folders of meshes, in place").required();
-    app.option("--unit", options.subject.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
+    app.option("--unit", options.subject.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft, or auto: as their size suggests");
     app.flag("--split", options.subject.split,
              "Each solid of a mesh is a body of its own, with its cavities: box#1, box#2 (a print in place is one file)");
     add_step_options(app, options.subject.step);

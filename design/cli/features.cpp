@@ -69,7 +69,7 @@ Command add_features(CommandLine& program, const CommonOptions& common) {
     auto options = std::make_shared<FeaturesArguments>();
     app.option("FILE", options->files, "Meshes and folders of meshes, in place; or a scene, a design (at its values), a trajectory")
         .required();
-    app.option("--unit", options->subject.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
+    app.option("--unit", options->subject.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft, or auto: as their size suggests");
     app.flag("--split", options->subject.split, "Each solid of a mesh is a body of its own, with its cavities: box#1, box#2");
     app.option("--process", options->process,
                "Judge the play of each fit by what this process needs, or your own NAME.process.json (default: all known ones, not judged)")

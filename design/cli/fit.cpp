@@ -156,7 +156,7 @@ Command add_fit(CommandLine& program, const CommonOptions& common) {
     app.option("--clearance", options->clearance, "What fits need per side, with its unit: 0.3mm (in place of the process')");
     app.option("--change", options->change, "What is changed (default: holes)").one_of({"holes", "pins", "both"});
     app.flag("--close", options->close, "Close looser fits to the same play, too (default: they stay)");
-    app.option("--unit", options->unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
+    app.option("--unit", options->unit, "Unit of meshes that state none: mm, um, cm, m, in, ft, or auto: as their size suggests");
     app.flag("--split", options->split, "Each solid of a mesh is a body of its own, with its cavities: box#1, box#2");
     add_step_options(app, options->step);
     app.closing_words(

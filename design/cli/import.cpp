@@ -178,7 +178,7 @@ Command add_import(CommandLine& program, const CommonOptions& common) {
     auto options = std::make_shared<ImportArguments>();
     app.option("FILE", options->paths, "ROBOT.urdf; or meshes in place, folders of meshes, STEP files").required();
     app.option("--to", options->to, "Scene to write, X.scene.json; meshes of a robot go to X.meshes beside it").required();
-    app.option("--unit", options->unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
+    app.option("--unit", options->unit, "Unit of meshes that state none: mm, um, cm, m, in, ft, or auto: as their size suggests");
     app.flag("--split", options->split, "Each solid of a mesh is a body of its own, with its cavities: box#1, box#2");
     app.flag("--joints", options->joints,
              "Propose joints from what fits in what (see fettle features), with the limits that the parts' shapes set");

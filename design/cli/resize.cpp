@@ -179,7 +179,7 @@ void add_change_options(CommandLine& app, ChangeArguments& arguments) {
     app.option("--to", arguments.to, "File for the changed part, in mm: .stl, .3mf or .obj").required();
     app.option("--body", arguments.body, "Which body of a file that has several is changed");
     app.option("--wall", arguments.wall, "Material that must be left behind changed features, with its unit (default: some)");
-    app.option("--unit", arguments.unit, "Unit of a mesh that states none: mm, um, cm, m, in, ft");
+    app.option("--unit", arguments.unit, "Unit of a mesh that states none: mm, um, cm, m, in, ft, or auto: as its size suggests");
     app.flag("--split", arguments.split, "Each solid of a mesh is a body of its own, with its cavities: box#1, box#2");
     add_step_options(app, arguments.step);
 }

@@ -88,7 +88,7 @@ void add_shown_options(CommandLine& app, ShownOptions& options) {
            "Scene or design (as assembled), part file, trajectory, certificate (its path), mesh, or a folder (of a run, or with meshes)")
         .required();
     app.option("--bodies", options.bodies, "Only these, by their names with commas (default: all)");
-    app.option("--unit", options.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft");
+    app.option("--unit", options.unit, "Unit of meshes that state none: mm, um, cm, m, in, ft, or auto: as their size suggests");
     app.flag("--split", options.split, "Each solid of a mesh is a body of its own, with its cavities: box#1, box#2");
     add_step_options(app, options.step);
     app.option("--trajectory", options.trajectory, "For a certificate: the path that it is about (default: beside it)");

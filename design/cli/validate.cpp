@@ -98,9 +98,11 @@ void tell_solids(const core::geometry::Mesh& mesh, const std::string& path, cons
     verdict.facts["parts"] = std::move(list);
 }
 
-// @param unit  The unit of a file that states none; empty: its places are numbers.
-Verdict validate_mesh_file(const std::string& path, const std::string& unit, bool strict) {
+// @param given_unit  The unit of a file that states none; empty: its places are numbers.
+Verdict validate_mesh_file(const std::string& path, const std::string& given_unit, bool strict) {
     Verdict verdict;
+    std::vector<std::string> proposals;
+    const std::string unit = given_unit == "auto" ? clearance::proposed_unit({path}, proposals) : given_unit;
     const Result<double> metres = unit.empty() ? Result<double>(1e-3) : core::base::metres_per_unit(unit, "--unit");
     if (!metres) {
         verdict.errors = metres.errors();
@@ -119,6 +121,7 @@ Verdict validate_mesh_file(const std::string& path, const std::string& unit, boo
         verdict.errors = std::move(found.errors);
         verdict.warnings.insert(verdict.warnings.end(), found.warnings.begin(), found.warnings.end());
     }
+    verdict.warnings.insert(verdict.warnings.begin(), proposals.begin(), proposals.end());
     const bool has_unit = !unit.empty() || core::mesh_files::states_its_unit(path);
     if (!has_unit) {
         for (std::string& warning : verdict.warnings) warning = without_unit(warning);
@@ -244,7 +247,7 @@ Command add_validate(CommandLine& program, const CommonOptions& common) {
     app.option("FILE", options->path,
                "Scene, design, part, trajectory, certificate (.json) or mesh (" + core::mesh_files::mesh_extensions() + ")")
         .required();
-    app.option("--unit", options->unit, "Unit of a mesh that states none: mm, um, cm, m, in, ft");
+    app.option("--unit", options->unit, "Unit of a mesh that states none: mm, um, cm, m, in, ft, or auto: as its size suggests");
     add_step_options(app, options->step);
     app.option("--trajectory", options->trajectory,
                "For a certificate: the path that it is about (default: FILE's name, .trajectory.json)");

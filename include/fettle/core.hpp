@@ -12,13 +12,12 @@
 #include "core/stepper/jointed_motion.hpp"
 #include "core/stepper/scripted_motion.hpp"
 #include "core/stepper/simulate.hpp"
-// Certified clearances: over a motion, of joints met at all times, over ranges of joints; where joints are free; and who does not trust us
-// checks them.
+// Certified clearances over a domain: a motion, joints met at all times, ranges of joints, tolerances; where joints are free; and who does
+// not trust us checks them.
 #include "core/certificate/certificate_checker.hpp"
 #include "core/clearance/clearance.hpp"
+#include "core/clearance/domain.hpp"
 #include "core/clearance/free_ranges.hpp"
-#include "core/clearance/jointed_clearance.hpp"
-#include "core/clearance/range_clearance.hpp"
 // Files: trajectories and meshes, and whether a mesh is what it should be.
 #include "core/solids/mesh_judgement.hpp"
 #include "core/mesh_files/mesh_reader.hpp"

@@ -55,6 +55,23 @@ TEST_CASE("clearance: two meshes, with their unit, and an exit code for CI") {
           Approx(0.5 * 0.0254).epsilon(1e-3));
 }
 
+TEST_CASE("clearance: --unit auto takes the unit in which the parts are of a usual size, and tells it") {
+    const TemporaryFolder folder;
+    for (const auto& [size, unit, gap] : {std::tuple(10.0, "mm", 5e-4), std::tuple(0.01, "m", 5e-4), std::tuple(10000.0, "um", 5e-4)}) {
+        const core::geometry::Mesh a = box_mesh(Vector3::Zero(), Vector3::Constant(1e-3 * size)),
+                                   b = box_mesh({1.05e-3 * size, 0, 0}, {2e-3 * size, 1e-3 * size, 1e-3 * size});
+        const std::string files = folder.write("a.stl", core::mesh_files::stl_bytes({{"a", &a}})) + " " +
+                                  folder.write("b.stl", core::mesh_files::stl_bytes({{"b", &b}}));
+        const Answer found = run("clearance " + files + " --unit auto --json", true);
+        CAPTURE(unit, found.out);
+        CHECK(found.code == 0);
+        CHECK(found.says("--unit auto: lengths are taken as " + std::string(unit) + ","));
+        const Answer same = run("clearance " + files + " --unit auto --json");
+        CHECK(same.json()["least"].get<double>() == Approx(gap).epsilon(1e-2));
+        CHECK(run("validate " + folder.file("a.stl") + " --unit auto").says("10 x 10 x 10 mm"));
+    }
+}
+
 TEST_CASE("clearance: what meshes need is asked for, what they have not is refused") {
     const Boxes boxes;
     const std::string base = boxes.file("cad/base.stl");
