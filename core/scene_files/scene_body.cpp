@@ -316,7 +316,8 @@ void SceneBodies::read_handled_mesh(const files::JsonNode& node, scene::ShapeSpe
     handled.source = std::get<0>(source) + "\n" + std::to_string(std::get<1>(source));
     handled.unit = unit_;
     handled.wall = node["wall"].length(unit_, files::not_negative).value_or(0);
-    for (const auto& [name, handle] : node.require("handles").members()) {
+    const files::JsonNode handles = node.require("handles");
+    for (const auto& [name, handle] : handles.members()) {
         if (name.starts_with('#') || !handle.is_object() || !handle["morph"].is_string()) continue;
         const std::string file = handle["morph"].string().value();
         const auto found = mesh_files::find_mesh_file(file, document_.path(), options_.mesh_dirs, handle["morph"].where());
@@ -336,7 +337,8 @@ void SceneBodies::read_handled_mesh(const files::JsonNode& node, scene::ShapeSpe
         handled.source += "\n" + *found;
         handled.targets[name] = std::make_shared<const geometry::Mesh>(*std::move(target));
     }
-    handled.handles = node["handles"].exists() ? node["handles"].text() : "{}";
+    if (!handles.is_object()) return;
+    handled.handles = handles.text();
     spec.handled = std::move(handled);
 }
 
@@ -344,7 +346,7 @@ void SceneBodies::read_dimensions(const files::JsonNode& node, scene::ShapeSpec&
     std::map<std::string, base::Dimension> quantities;
     if ((!spec.part.empty() || spec.handled) && options_.part_dimensions) {
         const auto found = options_.part_dimensions(spec);
-        if (!found) return report(found.errors(), spec.handled ? node["handles"] : node["part"]);
+        if (!found) return report(found.errors(), spec.handled ? node : node["part"]);
         quantities = *found;
         for (const auto& [name, quantity] : quantities) {
             if (quantity == base::Dimension::angle) spec.angles.push_back(name);
