@@ -138,7 +138,11 @@ TEST_CASE("text of files reaches neither a terminal's controls nor the start of 
     CHECK(shapes.code == 0);
     CHECK(shapes.says("\\x1b[31mRED"));
     CHECK_FALSE(shapes.says("\033"));
-    if (std::system("command -v script >/dev/null") != 0) return;  // a terminal, of util-linux
+    // A terminal, of util-linux; a machine without /dev/pts has none.
+    if (std::system("script -qec true /dev/null >/dev/null 2>&1") != 0) {
+        WARN("no terminal can be made here: not looked at");
+        return;
+    }
     const Answer seen = fettle::tests::support::run_program(
         "script", "-qec \"'" + std::string(FETTLE_PROGRAM) + "' shapes " + folder.file("red.part.json") + "\" /dev/null", true);
     CAPTURE(seen.out);
