@@ -21,4 +21,11 @@ int Features::find(const std::string& name) const {
     return -1;
 }
 
+std::vector<int> Features::by_triangle(std::size_t triangles) const {
+    std::vector<int> out(triangles, -1);
+    for (int f = 0; f < count_of(features); ++f)
+        for (const int t : features[f].triangles) out[t] = f;
+    return out;
+}
+
 }  // namespace fettle::core::features

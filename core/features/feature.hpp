@@ -24,8 +24,8 @@ struct Stretch {
 };
 
 struct Feature {
-    std::string name;      ///< "B1" of a bore, P of a pin, R of a rounded edge or fillet, F of a flat face, C, S, T of the others
-    Surface surface;       ///< `point` lies beside the middle of the length; the axis points along its largest coordinate
+    std::string name;  ///< "B1" of a bore, P of a pin, R of a rounded edge or fillet, F of a flat face, C, S, T of the others
+    Surface surface;   ///< `point` lies beside the middle of the length; the axis points along its largest coordinate; of a plane outwards
     bool is_hole = false;  ///< the material is outside; of planes false
     bool is_rounding =
         false;  ///< a cylinder that joins its neighbours smoothly over less than a half turn: an edge rounded, a corner filled
@@ -58,6 +58,8 @@ struct Features {
     std::vector<int> free_form{};   ///< its triangles
     /// Index of the feature of this name; -1: none.
     int find(const std::string& name) const;
+    /// [triangle] the feature that it is of; -1: of none. @param triangles  of the mesh
+    std::vector<int> by_triangle(std::size_t triangles) const;
 };
 
 }  // namespace fettle::core::features

@@ -30,53 +30,12 @@ bool is_round(const Feature& feature) {
 
 bool is_flat(const Feature& feature) { return feature.surface.kind == SurfaceKind::plane; }
 
-// A chamfer of a bore or a pin, which ends at flat faces, goes along with it.
-class AlongWith {
-public:
-    AlongWith(const geometry::Mesh& mesh, const Features& features) : mesh_(mesh), features_(features), of_(mesh.triangles.size(), -1) {
-        for (int f = 0; f < count_of(features.features); ++f)
-            for (const int t : features.features[f].triangles) of_[t] = f;
-    }
-
-    std::vector<int> chamfers_of(int moving) const {
-        std::vector<int> out;
-        for (int f = 0; f < count_of(features_.features); ++f)
-            if (is_chamfer(moving, f)) out.push_back(f);
-        return out;
-    }
-
-private:
-    bool is_chamfer(int moving, int f) const {
-        const Feature &feature = features_.features[moving], &chamfer = features_.features[f];
-        const bool coaxial = std::find(feature.coaxial.begin(), feature.coaxial.end(), chamfer.name) != feature.coaxial.end();
-        if (chamfer.surface.kind != SurfaceKind::cone || chamfer.is_hole != feature.is_hole || !coaxial) return false;
-        std::vector<char> of_feature(static_cast<std::size_t>(mesh_.vertices.cols()), 0), of_chamfer = of_feature;
-        for (const int t : feature.triangles)
-            for (const int v : mesh_.triangles[t]) of_feature[v] = 1;
-        bool meets = false;
-        for (const int t : chamfer.triangles)
-            for (const int v : mesh_.triangles[t]) {
-                of_chamfer[v] = 1;
-                meets = meets || of_feature[v] != 0;
-            }
-        if (!meets) return false;
-        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-            const int other = of_[t];
-            if (other == moving || other == f || (other >= 0 && is_flat(features_.features[other]))) continue;
-            for (const int v : mesh_.triangles[t])
-                if (of_chamfer[v] != 0) return false;
-        }
-        return true;
-    }
-
-    const geometry::Mesh& mesh_;
-    const Features& features_;
-    std::vector<int> of_;
-};
+bool is_coaxial(const Feature& a, const Feature& b) { return std::find(a.coaxial.begin(), a.coaxial.end(), b.name) != a.coaxial.end(); }
 
 class Making {
 public:
-    Making(const Handle& handle, const geometry::Mesh& mesh, const Features& features) : handle_(handle), mesh_(mesh), features_(features) {
+    Making(const Handle& handle, const geometry::Mesh& mesh, const Features& features)
+        : handle_(handle), mesh_(mesh), features_(features), feature_of_(features.by_triangle(mesh.triangles.size())) {
         out_.kind = handle.kind;
         out_.axis = handle.axis;
         out_.point = handle.point;
@@ -123,8 +82,8 @@ public:
     }
 
 private:
-    void fail(ErrorCode code, const std::string& below, const std::string& message) {
-        if (!error_) error_ = Error{code, handle_.name + below, message};
+    void fail(ErrorCode code, const std::string& message) {
+        if (!error_) error_ = Error{code, handle_.name, message};
     }
 
     bool may_be(const Feature& feature) const {
@@ -138,10 +97,9 @@ private:
             const int found = features_.find(name);
             const auto meant = [this](const Feature& feature) { return may_be(feature); };
             const std::string known = names_of(features_, meant);
-            if (found < 0)
-                return fail(ErrorCode::out_of_range, "", "the mesh has no feature `" + name + "`; of that kind it has: " + known);
+            if (found < 0) return fail(ErrorCode::out_of_range, "the mesh has no feature `" + name + "`; of that kind it has: " + known);
             if (!may_be(features_.features[found]))
-                return fail(ErrorCode::inconsistent, "", "`" + name + "` is of another kind; of that kind the mesh has: " + known);
+                return fail(ErrorCode::inconsistent, "`" + name + "` is of another kind; of that kind the mesh has: " + known);
             out_.features.push_back(found);
         }
     }
@@ -157,12 +115,11 @@ private:
         const double first = features_.features[out_.features.front()].surface.radius;
         const double per_value = handle_.kind == HandleKind::diameter ? 0.5 : 1;
         out_.drawn = first / per_value;
-        const AlongWith along(mesh_, features_);
         for (const int f : out_.features) {
             const Feature& feature = features_.features[f];
             const Surface& surface = feature.surface;
             if (std::abs(surface.radius - first) > 2 * features_.tolerance + feature.residual)
-                return fail(ErrorCode::inconsistent, "",
+                return fail(ErrorCode::inconsistent,
                             base::formatted("`%s` has a radius of %.9g mm, `%s` one of %.9g mm: a handle is of one radius",
                                             features_.features[out_.features.front()].name.c_str(), 1e3 * first, feature.name.c_str(),
                                             1e3 * surface.radius));
@@ -171,7 +128,7 @@ private:
                 const Vector3 away = surface.kind == SurfaceKind::sphere ? from : Vector3(from - surface.axis.dot(from) * surface.axis);
                 by_[v] = per_value / surface.radius * away;
             });
-            for (const int chamfer : along.chamfers_of(f))
+            for (const int chamfer : chamfers_of(f))
                 for_corners(chamfer, [&](int v) {
                     const Vector3 from = mesh_.vertices.col(v) - surface.point, away = from - surface.axis.dot(from) * surface.axis;
                     if (away.norm() > 0) by_.try_emplace(v, per_value * feature.facets_largest / surface.radius * away.normalized());
@@ -179,33 +136,52 @@ private:
         }
     }
 
-    // A corner of the face moves so that it stays in the other flat faces that it is of: along their edge.
-    void offset() {
-        std::vector<int> of(mesh_.triangles.size(), -1);
-        for (int f = 0; f < count_of(features_.features); ++f)
-            for (const int t : features_.features[f].triangles) of[t] = f;
-        for (const int f : out_.features) {
-            const Vector3 outwards = features_.features[f].surface.axis;
-            std::map<int, std::vector<Vector3>> normals;
-            for_corners(f, [&](int v) { normals[v] = {}; });
-            for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-                if (of[t] < 0 || of[t] == f) continue;
-                const Feature& other = features_.features[of[t]];
-                for (const int v : mesh_.triangles[t]) {
-                    const auto mine = normals.find(v);
-                    if (mine != normals.end()) mine->second.push_back(normal_at(other.surface, mesh_.vertices.col(v)));
-                }
-            }
-            for (const auto& [v, beside] : normals)
-                by_.try_emplace(v, Vector3::Zero()).first->second += along_edge(outwards_of(f, outwards), beside);
-        }
+    std::vector<char> corners_of(int feature) const {
+        std::vector<char> out(static_cast<std::size_t>(mesh_.vertices.cols()), 0);
+        for_corners(feature, [&](int v) { out[v] = 1; });
+        return out;
     }
 
-    // A plane's axis points along its largest coordinate; which way is out, its facets say.
-    Vector3 outwards_of(int f, const Vector3& axis) const {
-        const auto& corners = mesh_.triangles[features_.features[f].triangles.front()];
-        const Vector3 a = mesh_.vertices.col(corners[0]), b = mesh_.vertices.col(corners[1]), c = mesh_.vertices.col(corners[2]);
-        return (b - a).cross(c - a).dot(axis) < 0 ? Vector3(-axis) : axis;
+    // Cones on a bore's or a pin's axis that meet it and else flat faces alone: they go along with it.
+    std::vector<int> chamfers_of(int moving) const {
+        std::vector<int> out;
+        const Feature& feature = features_.features[moving];
+        const std::vector<char> of_feature = corners_of(moving);
+        for (int f = 0; f < count_of(features_.features); ++f) {
+            const Feature& cone = features_.features[f];
+            if (cone.surface.kind != SurfaceKind::cone || cone.is_hole != feature.is_hole || !is_coaxial(feature, cone)) continue;
+            const std::vector<char> of_cone = corners_of(f);
+            bool meets = false;
+            for (std::size_t v = 0; v < of_cone.size(); ++v) meets = meets || (of_cone[v] != 0 && of_feature[v] != 0);
+            if (meets && meets_flat_faces_alone(of_cone, moving, f)) out.push_back(f);
+        }
+        return out;
+    }
+
+    bool meets_flat_faces_alone(const std::vector<char>& corners, int moving, int own) const {
+        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+            const int other = feature_of_[t];
+            if (other == moving || other == own || (other >= 0 && is_flat(features_.features[other]))) continue;
+            for (const int v : mesh_.triangles[t])
+                if (corners[v] != 0) return false;
+        }
+        return true;
+    }
+
+    // A corner of the face moves so that it stays in the other flat faces that it is of: along their edge.
+    void offset() {
+        for (const int f : out_.features) {
+            std::map<int, std::vector<Vector3>> normals;  // [corner] of the other faces
+            for_corners(f, [&](int v) { normals[v] = {}; });
+            for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+                if (feature_of_[t] < 0 || feature_of_[t] == f) continue;
+                for (const int v : mesh_.triangles[t])
+                    if (const auto mine = normals.find(v); mine != normals.end())
+                        mine->second.push_back(normal_at(features_.features[feature_of_[t]].surface, mesh_.vertices.col(v)));
+            }
+            for (const auto& [v, beside] : normals)
+                by_.try_emplace(v, Vector3::Zero()).first->second += along_edge(features_.features[f].surface.axis, beside);
+        }
     }
 
     // The shortest step d with outwards . d = 1 that keeps to all of `beside`, in the sense of least squares.
@@ -266,7 +242,7 @@ private:
 
     void morph() {
         if (handle_.target.cols() != mesh_.vertices.cols())
-            return fail(ErrorCode::inconsistent, "",
+            return fail(ErrorCode::inconsistent,
                         "the other mesh has " + base::counted(static_cast<std::size_t>(handle_.target.cols()), "corner") + ", this one " +
                             std::to_string(mesh_.vertices.cols()) + ": both must have the same triangles, in the same order");
         for (int v = 0; v < mesh_.vertices.cols(); ++v) {
@@ -278,6 +254,7 @@ private:
     const Handle& handle_;
     const geometry::Mesh& mesh_;
     const Features& features_;
+    const std::vector<int> feature_of_;  // [triangle]
     Displacement out_;
     std::map<int, Vector3> by_;
     std::map<int, double> weights_;

@@ -81,7 +81,7 @@ struct Displacement {
     Vector3 slope(std::size_t k, const Vector3& x, double change) const;
 };
 
-/// Errors (inconsistent, out_of_range), with `where` below the handle's name: features that the mesh does not have or that are of another
+/// Errors (inconsistent, out_of_range), with `where` the handle's name: features that the mesh does not have or that are of another
 /// kind, radii that are not one, a handle that moves nothing.
 base::Result<Displacement> displacement_of(const Handle& handle, const geometry::Mesh& mesh, const Features& features);
 

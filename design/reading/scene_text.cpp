@@ -75,8 +75,13 @@ void move_names(Json& scene, const fs::path& from, const fs::path& to) {
     if (!scene.contains("bodies")) return;
     for (Json& body : scene["bodies"]) {
         move_name(body, "mesh", "", from, to);
-        if (body.contains("shape") && body["shape"].is_object())
-            move_name(body["shape"], "part", core::part_files::part_file_ending, from, to);
+        if (!body.contains("shape") || !body["shape"].is_object()) continue;
+        Json& shape = body["shape"];
+        move_name(shape, "part", core::part_files::part_file_ending, from, to);
+        move_name(shape, "mesh", "", from, to);
+        if (!shape.contains("handles") || !shape["handles"].is_object()) continue;
+        for (auto& [name, handle] : shape["handles"].items())
+            if (handle.is_object()) move_name(handle, "morph", "", from, to);
     }
 }
 

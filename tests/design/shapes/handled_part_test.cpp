@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <filesystem>
 
 #include "core/clearance/domain.hpp"
+#include "core/mesh_files/mesh_reader.hpp"
 #include "core/mesh_files/mesh_writer.hpp"
 #include "design/clearance/read_subject.hpp"
 #include "design/problem/design_problem.hpp"
 #include "design/reading/design_reader.hpp"
 #include "design/reading/scene_shapes.hpp"
 #include "design/shapes/file_part.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fettle::design::shapes::handled_part_test {
@@ -91,6 +94,26 @@ TEST_CASE("handled part: faults name the handle and the place in the file") {
     REQUIRE_FALSE(misplaced);
     CHECK(std::any_of(misplaced.errors().begin(), misplaced.errors().end(),
                       [](const Error& error) { return contains(error.message, "write \"shape\": {\"mesh\""); }));
+}
+
+TEST_CASE("handled part: a design leaves as a scene into another folder, whose files are found from there") {
+    const Files files;
+    std::filesystem::create_directories(files.file("out"));
+    const auto wider = core::features::HandledMesh::create(core::mesh_files::read_mesh(files.file("plate.stl"), {.unit = 1e-3}).value(),
+                                                           {{.name = "bore", .features = {"B1"}}});
+    REQUIRE(wider);
+    const core::geometry::Mesh other = wider->at({4.5e-3}).value();
+    files.write("other.stl", core::mesh_files::stl_bytes({{.name = "other", .mesh = &other}}));
+    files.write("a.scene.json",
+                files.scene(R"({"bore": {"bores": ["B1"]}, "like": {"morph": "other.stl"}})", R"({"bore": "= bore", "like": 0.1})"));
+    files.write("a.design.json", R"({"fettle_design": 1, "scene": "a.scene.json", "units": "mm", "simulation": {"steps": 1},
+        "parameters": [{"name": "bore", "value": 4.3, "lower": 3.5, "upper": 5}], "objective": [{"type": "mass", "bodies": ["plate"]}]})");
+    const auto answer = tests::support::run("export " + files.file("a.design.json") + " --to " + files.file("out/b.scene.json"), true);
+    CAPTURE(answer.out);
+    REQUIRE(answer.code == 0);
+    const auto written = core::scene_files::read_scene(files.file("out/b.scene.json"), reading::scene_read_options());
+    REQUIRE(written);
+    CHECK(written->bodies[0].shape->dimensions.at("bore") == Approx(4.3e-3));
 }
 
 TEST_CASE("handled part: a bore of an STL is tuned beside a kernel part, with exact derivatives") {
