@@ -19,10 +19,12 @@ Vector6 tangent_of(const Matrix34& bar, const Matrix3& rotation) {
     return core::kinematics::tangent_gradient({bar.col(3), bar.leftCols<3>() * rotation.transpose()});
 }
 
-class Assembled {
+}  // namespace
+
+class AssemblyAdjoint::Implementation {
 public:
-    Assembled(const AssemblyProblem& problem, const std::vector<DependentRow>& dependent, const std::vector<Pose>& written,
-              const std::vector<Pose>& poses, std::vector<double> angles)
+    Implementation(const AssemblyProblem& problem, const std::vector<DependentRow>& dependent, const std::vector<Pose>& written,
+                   const std::vector<Pose>& poses, std::vector<double> angles)
         : problem_(problem),
           written_(written),
           poses_(poses),
@@ -37,13 +39,13 @@ public:
         }
         jacobian_ = row_jacobian(problem.set, rows_, frames_);
         find_multipliers();
+        solver_.factorise(hessian_, jacobian_);
     }
 
-    AssemblyGradient reverse(const std::vector<Matrix34>& pose_bar) {
+    AssemblyGradient reverse(const std::vector<Matrix34>& pose_bar) const {
         const std::size_t n = poses_.size();
         std::vector<Vector6> y_bar(n), lambda(n, Vector6::Zero());
         for (std::size_t i = 0; i < n; ++i) y_bar[i] = tangent_of(pose_bar[i], poses_[i].rotation);
-        solver_.factorise(hessian_, jacobian_);
         const auto solution = solver_.solve_refined(hessian_, jacobian_, gather(problem_.dofs, y_bar), VectorX::Zero(jacobian_.count()));
         scatter(problem_.dofs, solution.y, lambda);
         AssemblyGradient out;
@@ -130,13 +132,14 @@ private:
     VectorX multipliers_;
 };
 
-}  // namespace
-
-AssemblyGradient assembly_adjoint(const AssemblyProblem& problem, const std::vector<DependentRow>& dependent,
-                                  const std::vector<Pose>& written, const std::vector<Pose>& assembled,
-                                  const std::vector<Matrix34>& pose_bar, std::vector<double> angles) {
+AssemblyAdjoint::AssemblyAdjoint(const AssemblyProblem& problem, const std::vector<DependentRow>& dependent,
+                                 const std::vector<Pose>& written, const std::vector<Pose>& assembled, std::vector<double> angles) {
     if (angles.empty()) angles = core::constraint::angles_at(problem.set, assembled, core::constraint::angles_at(problem.set, written, {}));
-    return Assembled(problem, dependent, written, assembled, std::move(angles)).reverse(pose_bar);
+    implementation_ = std::make_unique<Implementation>(problem, dependent, written, assembled, std::move(angles));
 }
+
+AssemblyAdjoint::~AssemblyAdjoint() = default;
+
+AssemblyGradient AssemblyAdjoint::reverse(const std::vector<Matrix34>& pose_bar) const { return implementation_->reverse(pose_bar); }
 
 }  // namespace fettle::adjoint::constraint

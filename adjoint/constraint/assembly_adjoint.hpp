@@ -8,6 +8,9 @@
 /// Coordinates that may not move are where they were written, and get P_bar - H lambda - C^T mu.
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "adjoint/model_gradient.hpp"
 #include "core/constraint/assembly.hpp"
 
@@ -21,13 +24,25 @@ struct AssemblyGradient {
     std::vector<std::vector<double>> factors_bar;  ///< per row and part; 0 of the same
 };
 
-/// @param problem   its rows as they were assembled; `dependent` those that were left out.
-/// @param assembled where they are met, `written` what was written.
-/// @param pose_bar  per body: derivative in the assembled pose's matrix, entry by entry.
-/// @param angles    of the measures, with their turns, where the rows are met; empty: the nearest to those as written.
-AssemblyGradient assembly_adjoint(const core::constraint::AssemblyProblem& problem,
-                                  const std::vector<core::constraint::DependentRow>& dependent,
-                                  const std::vector<core::kinematics::Pose>& written, const std::vector<core::kinematics::Pose>& assembled,
-                                  const std::vector<Matrix34>& pose_bar, std::vector<double> angles = {});
+/// Factorised once, for any number of gradients.
+class AssemblyAdjoint {
+public:
+    /// @param problem   its rows as they were assembled; `dependent` those that were left out. Must not outlive it, nor the poses.
+    /// @param assembled where they are met, `written` what was written.
+    /// @param angles    of the measures, with their turns, where the rows are met; empty: the nearest to those as written.
+    AssemblyAdjoint(const core::constraint::AssemblyProblem& problem, const std::vector<core::constraint::DependentRow>& dependent,
+                    const std::vector<core::kinematics::Pose>& written, const std::vector<core::kinematics::Pose>& assembled,
+                    std::vector<double> angles = {});
+    ~AssemblyAdjoint();
+    AssemblyAdjoint(const AssemblyAdjoint&) = delete;
+    AssemblyAdjoint& operator=(const AssemblyAdjoint&) = delete;
+
+    /// @param pose_bar  per body: derivative in the assembled pose's matrix, entry by entry.
+    AssemblyGradient reverse(const std::vector<Matrix34>& pose_bar) const;
+
+private:
+    class Implementation;
+    std::unique_ptr<const Implementation> implementation_;
+};
 
 }  // namespace fettle::adjoint::constraint

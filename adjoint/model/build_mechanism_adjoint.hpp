@@ -13,7 +13,7 @@
 
 namespace fettle::adjoint::model {
 
-/// @param gradient  of the model, after written_start_adjoint.
+/// @param gradient  of the model, after MechanismStartAdjoint::reverse.
 /// @param start     poses as written: added to.
 /// @param bar       adjoint/scene/scene_gradient.hpp, the mechanism's: added into.
 /// Contract: the model was built from the scene; a load whose force is 0 has no frames and no derivative, for the caller to refuse.

@@ -5,7 +5,6 @@
 
 #include "adjoint/model/build_friction_adjoint.hpp"
 #include "adjoint/model/build_mechanism_adjoint.hpp"
-#include "adjoint/model/mechanism_start_adjoint.hpp"
 #include "adjoint/scene/scene_gradient.hpp"
 
 namespace fettle::adjoint::model {
@@ -46,8 +45,9 @@ double rate_bar(const core::scene::MotionCurve& curve, const Model& model, const
 
 }  // namespace
 
-core::scene::Scene build_model_adjoint(const core::scene::Scene& scene, const Model& model, ModelGradient gradient) {
-    WrittenStartGradient start = written_start_adjoint(model, gradient);
+core::scene::Scene build_model_adjoint(const core::scene::Scene& scene, const Model& model, const MechanismStartAdjoint& start_adjoint,
+                                       ModelGradient gradient) {
+    WrittenStartGradient start = start_adjoint.reverse(gradient);
     core::scene::Scene out = scene::zero_scene_gradient(scene);
     build_mechanism_adjoint(scene, model, gradient.mechanism, start, out.mechanism);
     build_friction_adjoint(scene, gradient.friction_bar, out);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "adjoint/model/mechanism_start_adjoint.hpp"
 
+#include <optional>
+
 #include "adjoint/constraint/assembly_adjoint.hpp"
 #include "adjoint/model/body_mass_adjoint.hpp"
 #include "core/base/contract.hpp"
@@ -54,36 +56,40 @@ std::vector<Matrix3> frame_rotations(const Model& model) {
 // The projection of start velocities backwards.
 class AgreedVelocities {
 public:
-    AgreedVelocities(const Model& model, const AssemblyProblem& problem, std::vector<Matrix4>& moments_bar)
+    AgreedVelocities(const Model& model, const AssemblyProblem& problem)
         : model_(model),
           problem_(problem),
-          moments_bar_(moments_bar),
           frames_(placed(model.mechanism.set.frames, start_poses(model))),
           rotations_(frame_rotations(model)),
           rows_(row_jacobian(problem.set, problem.rows, frames_)),
-          solver_(problem.dofs) {}
+          solver_(problem.dofs) {
+        const Motions& written = model.mechanism.written.velocities;
+        if (written.empty()) return;
+        for (const Body& body : model.bodies)
+            mass_.diagonal.push_back(core::kinematics::mass_matrix(body.pose_start.rotation, body.moments));
+        if (!solver_.factorise(mass_, rows_)) return;  // as forwards: nothing is made to agree
+        const VectorX none = VectorX::Zero(problem_.dofs.count);
+        found_ = solver_.solve_refined(mass_, rows_, none, rates() - multiply(rows_, written));
+    }
 
-    // @param agreed_bar  (v, omega) of what the model has. Adds to the poses' gradients and the mechanism's.
-    void reverse(const Motions& agreed_bar, WrittenStartGradient& out, Motions& pose_bar, ModelGradient& gradient) {
+    // @param agreed_bar  (v, omega) of what the model has. Adds to the poses' gradients, the moments' and the mechanism's.
+    void reverse(const Motions& agreed_bar, WrittenStartGradient& out, std::vector<Matrix4>& moments_bar, ModelGradient& gradient) const {
+        if (!found_) return;
         const Motions& written = model_.mechanism.written.velocities;
-        core::kinematics::BlockHessian mass;
-        for (const Body& body : model_.bodies)
-            mass.diagonal.push_back(core::kinematics::mass_matrix(body.pose_start.rotation, body.moments));
-        if (!solver_.factorise(mass, rows_)) return;  // as forwards: nothing is made to agree
-        const VectorX none = VectorX::Zero(problem_.dofs.count), still = VectorX::Zero(rows_.count());
-        const auto found = solver_.solve_refined(mass, rows_, none, rates() - multiply(rows_, written));
-        const auto back = solver_.solve_refined(mass, rows_, gather(problem_.dofs, agreed_bar), still);
+        const VectorX still = VectorX::Zero(rows_.count());
+        const auto back = solver_.solve_refined(mass_, rows_, gather(problem_.dofs, agreed_bar), still);
+        Motions& pose_bar = out.pose_bar;
         Motions delta(written.size(), Vector6::Zero()), lambda = delta;
-        scatter(problem_.dofs, found.y, delta);
+        scatter(problem_.dofs, found_->y, delta);
         scatter(problem_.dofs, back.y, lambda);
         Motions agreed = written, reaction(written.size(), Vector6::Zero());
         add_transposed(rows_, back.multipliers, reaction);
         for (std::size_t i = 0; i < agreed.size(); ++i) {
             agreed[i] += delta[i];
             spread(i, agreed_bar[i], -reaction[i], out);
-            add_mass(i, lambda[i], delta[i], pose_bar[i]);
+            add_mass(i, lambda[i], delta[i], pose_bar[i], moments_bar[i]);
         }
-        add_rows(-found.multipliers, lambda, pose_bar, gradient);
+        add_rows(-found_->multipliers, lambda, pose_bar, gradient);
         add_rows(-back.multipliers, agreed, pose_bar, gradient);
         add_rates(back.multipliers, gradient.mechanism);
     }
@@ -106,7 +112,7 @@ private:
     }
 
     // - lambda . M delta = - <V_lambda moments, V_delta>, in R and in the moments.
-    void add_mass(std::size_t i, const Vector6& lambda, const Vector6& delta, Vector6& pose_bar) {
+    void add_mass(std::size_t i, const Vector6& lambda, const Vector6& delta, Vector6& pose_bar, Matrix4& moments_bar) const {
         const Matrix3& R = model_.bodies[i].pose_start.rotation;
         const Matrix4& moments = problem_.moments[i];
         const Matrix34 a = pose_change(lambda, R), b = pose_change(delta, R);
@@ -114,7 +120,7 @@ private:
         pose_bar.tail<3>() += axial_of(cross_matrix(lambda.tail<3>()) * mb.leftCols<3>(), R);
         pose_bar.tail<3>() += axial_of(cross_matrix(delta.tail<3>()) * ma.leftCols<3>(), R);
         const Matrix4 product = a.transpose() * b;
-        moments_bar_[i] -= 0.5 * (product + product.transpose());
+        moments_bar -= 0.5 * (product + product.transpose());
     }
 
     // sum weight_i (C motion)_i in poses and frames.
@@ -160,21 +166,20 @@ private:
 
     const Model& model_;
     const AssemblyProblem& problem_;
-    std::vector<Matrix4>& moments_bar_;
     const std::vector<core::measure::PlacedFrame> frames_;
     const std::vector<Matrix3> rotations_;
     const core::constraint::RowJacobian rows_;
     core::linear::LinearSystem solver_;
+    core::kinematics::BlockHessian mass_;
+    std::optional<core::linear::LinearSystem::Solution> found_;  // of the velocities; nothing: none were made to agree
 };
 
 // The assembly backwards. The gradients of the poses as written take the place of those of the poses.
-void reverse_assembly(const Model& model, const AssemblyProblem& problem, Motions& pose_bar, std::vector<Matrix4>& moments_bar,
-                      MechanismGradient& mechanism) {
-    const std::vector<Pose> assembled = start_poses(model);
+void reverse_assembly(const Model& model, const AssemblyProblem& problem, const constraint::AssemblyAdjoint& assembly, Motions& pose_bar,
+                      std::vector<Matrix4>& moments_bar, MechanismGradient& mechanism) {
     std::vector<Matrix34> entries;
-    for (std::size_t i = 0; i < assembled.size(); ++i) entries.push_back(entries_of(pose_bar[i], assembled[i].rotation));
-    const constraint::AssemblyGradient found =
-        constraint::assembly_adjoint(problem, {}, model.mechanism.written.poses, assembled, entries, model.mechanism.angles_start);
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) entries.push_back(entries_of(pose_bar[i], model.bodies[i].pose_start.rotation));
+    const constraint::AssemblyGradient found = assembly.reverse(entries);
     pose_bar = found.written_bar;
     for (std::size_t i = 0; i < moments_bar.size(); ++i) moments_bar[i] += found.moments_bar[i];
     for (std::size_t f = 0; f < found.frames.size(); ++f) {
@@ -199,7 +204,26 @@ void add_moments(const Model& model, const std::vector<Matrix4>& moments_bar, Mo
 
 }  // namespace
 
-WrittenStartGradient written_start_adjoint(const Model& model, ModelGradient& gradient) {
+struct MechanismStartAdjoint::Rows {
+    explicit Rows(const Model& model)
+        : problem(core::model::start_problem(model)),
+          assembled(start_poses(model)),
+          velocities(model, problem),
+          assembly(problem, {}, model.mechanism.written.poses, assembled, model.mechanism.angles_start) {}
+
+    const AssemblyProblem problem;
+    const std::vector<Pose> assembled;
+    const AgreedVelocities velocities;
+    const constraint::AssemblyAdjoint assembly;
+};
+
+MechanismStartAdjoint::MechanismStartAdjoint(const Model& model)
+    : model_(model), rows_(model.mechanism.rows.empty() ? nullptr : std::make_unique<const Rows>(model)) {}
+
+MechanismStartAdjoint::~MechanismStartAdjoint() = default;
+
+WrittenStartGradient MechanismStartAdjoint::reverse(ModelGradient& gradient) const {
+    const Model& model = model_;
     const std::size_t n = model.bodies.size();
     WrittenStartGradient out{Motions(n, Vector6::Zero()), Motions(n, Vector6::Zero()), Motions(n, Vector6::Zero())};
     Motions velocity_bar(n, Vector6::Zero());
@@ -212,15 +236,13 @@ WrittenStartGradient written_start_adjoint(const Model& model, ModelGradient& gr
         const Matrix3 omega = rate.leftCols<3>() * R.transpose();
         out.pose_bar[i] << pose.col(3), axial_of(pose.leftCols<3>() + omega.transpose() * velocity.leftCols<3>(), R);
     }
-    if (model.mechanism.rows.empty()) {
+    if (!rows_) {
         out.velocity_bar = velocity_bar;
         return out;
     }
-    const AssemblyProblem problem = core::model::start_problem(model);
     std::vector<Matrix4> moments_bar(n, Matrix4::Zero());
-    if (!model.mechanism.written.velocities.empty())
-        AgreedVelocities(model, problem, moments_bar).reverse(velocity_bar, out, out.pose_bar, gradient);
-    reverse_assembly(model, problem, out.pose_bar, moments_bar, gradient.mechanism);
+    rows_->velocities.reverse(velocity_bar, out, moments_bar, gradient);
+    reverse_assembly(model, rows_->problem, rows_->assembly, out.pose_bar, moments_bar, gradient.mechanism);
     add_moments(model, moments_bar, gradient);
     return out;
 }

@@ -9,6 +9,9 @@
 /// written a little differently is put on the constraints too.
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "adjoint/model_gradient.hpp"
 
 namespace fettle::adjoint::model {
@@ -20,8 +23,23 @@ struct WrittenStartGradient {
     std::vector<Vector6> rate_bar;      ///< of prescribed coordinates: how fast their curves begin
 };
 
-/// @param gradient  whole: of the model's start too. What the start depends on of frames, rows, densities and vertices is added to it.
-/// Contract: masses of bodies that may move are those of their meshes and densities (body_mass_adjoint.hpp: check_masses).
-WrittenStartGradient written_start_adjoint(const core::model::Model& model, ModelGradient& gradient);
+/// Factorised once, for any number of gradients.
+class MechanismStartAdjoint {
+public:
+    /// Contract: masses of bodies that may move are those of their meshes and densities (body_mass_adjoint.hpp: check_masses). The model
+    /// outlives this.
+    explicit MechanismStartAdjoint(const core::model::Model& model);
+    ~MechanismStartAdjoint();
+    MechanismStartAdjoint(const MechanismStartAdjoint&) = delete;
+    MechanismStartAdjoint& operator=(const MechanismStartAdjoint&) = delete;
+
+    /// @param gradient  whole: of the model's start too. What the start depends on of frames, rows, densities and vertices is added to it.
+    WrittenStartGradient reverse(ModelGradient& gradient) const;
+
+private:
+    struct Rows;
+    const core::model::Model& model_;
+    std::unique_ptr<const Rows> rows_;  // null: the model has none
+};
 
 }  // namespace fettle::adjoint::model

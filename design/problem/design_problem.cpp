@@ -74,10 +74,9 @@ std::string name_of(const description::Constraint& constraint) { return "constra
 // d/d(parameters) of each: by the model, and what follows from parameters itself. Contract: parameters_bar is that of the seeds.
 MatrixX rows_of(const MovedScene& moved, const Model& model, const std::vector<adjoint::ModelGradient>& gradients,
                 const std::vector<VectorX>& parameters_bar, int parameter_count) {
-    MatrixX rows(gradients.size(), parameter_count);
+    MatrixX rows = pull_back(moved, model, gradients, parameter_count);
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
         const auto k = static_cast<size_t>(i);
-        rows.row(i) = pull_back(moved, model, gradients[k], parameter_count).transpose();
         if (parameters_bar[k].size() > 0) rows.row(i) += parameters_bar[k].transpose();
     }
     return rows;

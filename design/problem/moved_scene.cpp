@@ -131,12 +131,16 @@ Result<MovedScene> move_scene(const Design& design, const VectorX& p, SceneDeriv
     return Mover(design, p, derivative).run();
 }
 
-VectorX pull_back(const MovedScene& moved, const core::model::Model& model, const adjoint::ModelGradient& gradient, int parameter_count) {
-    Scene bar = adjoint::model::build_model_adjoint(moved.scene, model, gradient);
-    for (size_t i = 0; i < bar.bodies.size(); ++i) reverse_made(moved, i, bar.bodies[i]);
-    VectorX result = VectorX::Zero(parameter_count);
-    for (const MovedNumber& number : moved.numbers) result[number.parameter] += number.slope * core::scene::at(bar, number.place);
-    return result;
+MatrixX pull_back(const MovedScene& moved, const core::model::Model& model, const std::vector<adjoint::ModelGradient>& gradients,
+                  int parameter_count) {
+    const adjoint::model::MechanismStartAdjoint start(model);
+    MatrixX rows = MatrixX::Zero(count_of(gradients), parameter_count);
+    for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+        Scene bar = adjoint::model::build_model_adjoint(moved.scene, model, start, gradients[k]);
+        for (size_t i = 0; i < bar.bodies.size(); ++i) reverse_made(moved, i, bar.bodies[i]);
+        for (const MovedNumber& number : moved.numbers) rows(k, number.parameter) += number.slope * core::scene::at(bar, number.place);
+    }
+    return rows;
 }
 
 }  // namespace fettle::design::problem

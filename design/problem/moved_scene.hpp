@@ -41,6 +41,8 @@ Result<MovedScene> move_scene(const description::Design& design, const VectorX& 
 /// dJ/dp from dJ/d(model data), exactly transposed to move_scene: with x_bar of the numbers x of the scene (adjoint/model/
 /// build_model_adjoint.hpp; of a dimension <dJ/d(vertices), d(vertices)/dx>, of a turn theta J(theta)^T times that of the rotation),
 ///   dJ/dp_k = sum x_bar dx/dp_k          with x = f(p), the number's formula
-VectorX pull_back(const MovedScene& moved, const core::model::Model& model, const adjoint::ModelGradient& gradient, int parameter_count);
+/// @return  a row per gradient.
+MatrixX pull_back(const MovedScene& moved, const core::model::Model& model, const std::vector<adjoint::ModelGradient>& gradients,
+                  int parameter_count);
 
 }  // namespace fettle::design::problem

@@ -77,7 +77,8 @@ TEST_CASE("assembled poses have the derivatives of their joints, masses and writ
     for (Matrix34& w : weights) noise(w, 1);
     const Assembly assembled = base.assembled();
     REQUIRE(assembled.has_moved);
-    const AssemblyGradient bar = assembly_adjoint(base.problem(), assembled.dependent, base.written, assembled.poses, weights);
+    const core::constraint::AssemblyProblem problem = base.problem();
+    const AssemblyGradient bar = AssemblyAdjoint(problem, assembled.dependent, base.written, assembled.poses).reverse(weights);
 
     for (int kind = 0; kind < 4; ++kind) {
         std::vector<Vector6> written_dot(n, Vector6::Zero());

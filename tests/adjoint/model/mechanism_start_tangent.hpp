@@ -27,7 +27,7 @@ struct StartTangent {
 };
 
 /// @param direction  of mechanism, densities and vertices; of its starts no use is made.
-/// Contract: as written_start_adjoint.
+/// Contract: as MechanismStartAdjoint.
 StartTangent written_start_tangent(const core::model::Model& model, const WrittenStartTangent& written, const ModelTangent& direction);
 
 }  // namespace fettle::adjoint::model

@@ -111,7 +111,7 @@ TEST_CASE("assembly and start velocities: forwards and backwards agree", "[adjoi
                 forwards +=
                     bar.pose_start_bar.cwiseProduct(pose_dot).sum() + bar.velocity_start_bar.cwiseProduct(tangent.velocity[i]).sum();
             }
-            const WrittenStartGradient bar = written_start_adjoint(model, gradient);
+            const WrittenStartGradient bar = MechanismStartAdjoint(model).reverse(gradient);
             for (std::size_t i = 0; i < n; ++i) {
                 backwards += bar.pose_bar[i].dot(written.pose[i]) + bar.velocity_bar[i].dot(written.velocity[i]) +
                              bar.rate_bar[i].dot(written.rate[i]);
@@ -164,7 +164,7 @@ TEST_CASE("a linkage assembled on the branch that is asked for has that branch's
             const auto central = [&](double h) { return (at(h) - at(-h)) / (2 * h); };
             return (4 * central(5e-5) - central(1e-4)) / 3;
         };
-        written_start_adjoint(model, gradient);
+        MechanismStartAdjoint(model).reverse(gradient);
         const MechanismGradient& bar = gradient.mechanism;  // frames 2 k and 2 k + 1: the ends of joint k
         const double of_crank = bar.frames[2].point.x(), of_coupler = bar.frames[4].point.x();
         double of_angle = 0;

@@ -408,12 +408,12 @@ TEST_CASE("whatever a parameter moves, its derivative goes back through the star
         for (double& w : weights) w = unit(random);
         Result<MovedScene> moved = move_scene(design, start);
         REQUIRE(moved);
-        const VectorX gradient = pull_back(*moved, model, gradient_of(model, weights), static_cast<int>(n));
+        const VectorX gradient = pull_back(*moved, model, {gradient_of(model, weights)}, static_cast<int>(n)).transpose();
         for (MovedNumber& number : moved->numbers) {
             rows.insert(number.place.row);
             number.slope *= 1.001;
         }
-        const VectorX wrong = pull_back(*moved, model, gradient_of(model, weights), static_cast<int>(n));
+        const VectorX wrong = pull_back(*moved, model, {gradient_of(model, weights)}, static_cast<int>(n)).transpose();
         const auto functional = [&](Eigen::Index k, double s) {
             VectorX p = start;
             p[k] = s;
@@ -463,7 +463,7 @@ void check_random_formulas(unsigned seed, int runs) {
         for (double& w : weights) w = unit(random);
         const Result<MovedScene> moved = move_scene(design, start);
         REQUIRE(moved);
-        const VectorX gradient = pull_back(*moved, model, gradient_of(model, weights), 3);
+        const VectorX gradient = pull_back(*moved, model, {gradient_of(model, weights)}, 3).transpose();
         for (Eigen::Index k = 0; k < 3; ++k) {
             const auto functional = [&](double s) {
                 const std::vector<double> numbers = numbers_of(model_at(design, start + s * VectorX::Unit(3, k), reference_points));

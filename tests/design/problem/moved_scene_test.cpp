@@ -80,7 +80,7 @@ TEST_CASE("pull_back is the transpose of move_scene's derivative") {
     for (const auto& body : first.bodies) reference_points.push_back(body.reference_point + Vector3(1e-3, 2e-3, -1e-3));
     const core::model::Model model = built(moved->scene, reference_points);
     const adjoint::ModelGradient weights = random_weights(model);
-    const VectorX gradient = pull_back(*moved, model, weights, 5);
+    const VectorX gradient = pull_back(*moved, model, {weights}, 5).transpose();
     const VectorX scale = p.cwiseAbs();
     const auto check = tests::support::check_gradient(
         [&](const VectorX& x) {
