@@ -86,6 +86,7 @@ Evaluator::Evaluator(const Problem& problem, EvaluatorOptions options) : problem
     FETTLE_ASSERT(problem.lower.size() == variables() && problem.upper.size() == variables(), "one bound per variable");
     FETTLE_ASSERT((problem.lower.array() <= problem.start.array()).all() && (problem.start.array() <= problem.upper.array()).all(),
                   "the start lies within the bounds");
+    FETTLE_ASSERT(problem.periodic.empty() || count_of(problem.periodic) == variables(), "said of each variable or of none");
     FETTLE_ASSERT(problem.constraint_upper.size() == problem.constraint_lower.size(), "one bound per constraint");
     FETTLE_ASSERT(problem.relation_upper.size() == problem.relation_lower.size(), "one bound per relation");
     margin_ =
@@ -163,10 +164,35 @@ double Evaluator::missed_margins(const VectorX& scaled_constraints) const {
     return largest;
 }
 
+VectorX Evaluator::within(VectorX scaled) const {
+    for (Eigen::Index k = 0; k < scaled.size(); ++k) {
+        const bool is_outside = scaled[k] < 0 || scaled[k] > 1;
+        if (is_outside) scaled[k] = is_periodic(k) ? scaled[k] - std::floor(scaled[k]) : std::clamp(scaled[k], 0.0, 1.0);
+    }
+    return scaled;
+}
+
+VectorX Evaluator::step_between(const VectorX& from, const VectorX& to) const {
+    VectorX step = to - from;
+    for (Eigen::Index k = 0; k < step.size(); ++k)
+        if (is_periodic(k)) step[k] -= std::round(step[k]);
+    return step;
+}
+
+Evaluator::Box Evaluator::steps_from(const VectorX& scaled, double radius) const {
+    Box box{(-scaled).cwiseMax(-radius), (VectorX::Ones(scaled.size()) - scaled).cwiseMin(radius)};
+    for (Eigen::Index k = 0; k < scaled.size(); ++k) {
+        if (!is_periodic(k)) continue;
+        box.lower[k] = -radius;
+        box.upper[k] = radius;
+    }
+    return box;
+}
+
 VectorX Evaluator::unscaled(const VectorX& scaled_point) const {
     // The start is answered exactly: lower + (start - lower) / range * range can differ from it in the last bit.
     if (scaled_point == scaled_start_) return problem_.start;
-    VectorX point = (problem_.lower + scaled_point.cwiseProduct(range_)).cwiseMax(problem_.lower).cwiseMin(problem_.upper);
+    VectorX point = (problem_.lower + within(scaled_point).cwiseProduct(range_)).cwiseMax(problem_.lower).cwiseMin(problem_.upper);
     if (!problem_.representable) return point;
     return problem_.representable(point).cwiseMax(problem_.lower).cwiseMin(problem_.upper);
 }
@@ -198,13 +224,13 @@ Evaluation Evaluator::scaled(const Record& record) const {
 }
 
 const Evaluator::Record& Evaluator::asked(const VectorX& point, Wanted wanted) {
-    const VectorX clamped = point.cwiseMax(0).cwiseMin(1);
-    const auto found = index_.find(bits_of(clamped));
-    if (found == index_.end()) return evaluate_new(clamped, wanted);
+    const VectorX inside = within(point);
+    const auto found = index_.find(bits_of(inside));
+    if (found == index_.end()) return evaluate_new(inside, wanted);
     const Record& before = records_[found->second];
     if (wanted != Wanted::derivatives || !before.evaluation.usable || before.evaluation.has_derivatives) return before;
     const bool was_best = best_index_ == found->second;
-    const Record& complete = evaluate_new(clamped, wanted);
+    const Record& complete = evaluate_new(inside, wanted);
     if (was_best && complete.evaluation.usable) best_index_ = known() - 1;
     return complete;
 }

@@ -57,7 +57,19 @@ public:
 
     int simulated_constraints() const { return count_of(problem_.constraint_lower); }  ///< the others are relations
 
-    /// Scaled evaluation: x in [0, 1] (clamped), f, (c, r) and derivatives scaled. `usable` may be false.
+    bool is_periodic(Eigen::Index k) const { return !problem_.periodic.empty() && problem_.periodic[static_cast<size_t>(k)]; }
+    /// The point of [0, 1]^n that a scaled point stands for: the nearest one, and of a periodic variable the same one of the first period.
+    VectorX within(VectorX scaled) const;
+    VectorX moved(const VectorX& scaled, const VectorX& step) const { return within(scaled + step); }
+    /// The shortest step from one scaled point to another: the two ends of a period are one place.
+    VectorX step_between(const VectorX& from, const VectorX& to) const;
+    /// Steps from a scaled point that stay within |d_k| <= radius and the bounds.
+    struct Box {
+        VectorX lower, upper;
+    };
+    Box steps_from(const VectorX& scaled, double radius) const;
+
+    /// Scaled evaluation: x in [0, 1] (within()), f, (c, r) and derivatives scaled. `usable` may be false.
     /// Throws StopOptimisation when the run is over.
     const Evaluation& at(const VectorX& scaled);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/limits.hpp"
 #include "design/optimisers/nonlinear_program.hpp"
 
 namespace fettle::design::optimisers {
@@ -22,6 +23,11 @@ public:
 
     Bounds bounds() const override {
         Bounds out{VectorX::Zero(n()), VectorX::Ones(n()), VectorX(m()), VectorX(m())};
+        for (int k = 0; k < n(); ++k) {
+            if (!evaluator_.is_periodic(k)) continue;
+            out.lower[k] = -core::base::infinity;
+            out.upper[k] = core::base::infinity;
+        }
         for (int i = 0; i < m(); ++i) {
             out.row_lower[i] = evaluator_.scaled_constraint_lower()[row(i)];
             out.row_upper[i] = evaluator_.scaled_constraint_upper()[row(i)];

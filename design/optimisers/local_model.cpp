@@ -21,13 +21,6 @@ double lagrangian(const Evaluation& e, const VectorX& y) {
         if (is_first(e.objective_branches, k)) value -= e.objective_branches.values[k];
     return value;
 }
-VectorX lagrangian_gradient(const Evaluation& e, const VectorX& y) {
-    VectorX gradient = e.gradient - e.jacobian.transpose() * y;
-    for (size_t k = 0; k < e.objective_branches.of.size(); ++k)
-        if (is_first(e.objective_branches, k)) gradient -= e.objective_branches.jacobian.row(k).transpose();
-    return gradient;
-}
-
 Cuts cuts_of(const Evaluator& evaluator, const Evaluation& e) {
     const Branches &rows = e.constraint_branches, &terms = e.objective_branches;
     Cuts cuts;
@@ -63,7 +56,7 @@ std::vector<int> nearest(const Evaluator& evaluator, const VectorX& point) {
     constexpr double within = 0.3;
     std::vector<std::pair<double, int>> order;
     for (int k = 0; k < evaluator.known(); ++k) {
-        const double distance = (evaluator.scaled_point(k) - point).norm();
+        const double distance = evaluator.step_between(point, evaluator.scaled_point(k)).norm();
         if (distance > 0 && distance < within && tells(evaluator.scaled_evaluation(k))) order.emplace_back(distance, k);
     }
     std::sort(order.begin(), order.end());
@@ -86,6 +79,13 @@ void choose_rows(const MatrixX& changes, const MatrixX& steps, const MatrixX& re
 
 }  // namespace
 
+VectorX lagrangian_gradient(const Evaluation& e, const VectorX& y) {
+    VectorX gradient = e.gradient - e.jacobian.transpose() * y;
+    for (size_t k = 0; k < e.objective_branches.of.size(); ++k)
+        if (is_first(e.objective_branches, k)) gradient -= e.objective_branches.jacobian.row(k).transpose();
+    return gradient;
+}
+
 Evaluation with_telling_derivatives(const Evaluator& evaluator, const VectorX& point, const Evaluation& e) {
     const std::optional<Evaluation> reference = evaluator.scaled_reference();
     if (!reference || reference->residuals.size() != e.residuals.size()) return e;
@@ -94,7 +94,7 @@ Evaluation with_telling_derivatives(const Evaluator& evaluator, const VectorX& p
     MatrixX steps(count, point.size()), constraints(count, e.constraints.size()), residuals(count, e.residuals.size());
     for (Eigen::Index k = 0; k < count; ++k) {
         const int other = others[k];
-        const VectorX step = evaluator.scaled_point(other) - point;
+        const VectorX step = evaluator.step_between(point, evaluator.scaled_point(other));
         const double length = step.norm();  // near ones count as much as far ones
         steps.row(k) = step.transpose() / length;
         const Evaluation& there = evaluator.scaled_evaluation(other);
@@ -118,9 +118,7 @@ MatrixX residual_curvature(const Evaluation& e) {
     return 2 * e.residual_jacobian.transpose() * e.residual_jacobian;
 }
 
-void RestCurvature::learn(const VectorX& from_point, const Evaluation& from, const VectorX& to_point, const Evaluation& to,
-                          const VectorX& y) {
-    const VectorX s = to_point - from_point;
+void RestCurvature::learn(const Evaluation& from, const VectorX& s, const Evaluation& to, const VectorX& y) {
     const MatrixX known = residual_curvature(to);
     const VectorX rest = lagrangian_gradient(to, y) - lagrangian_gradient(from, y) - known * s - matrix_ * s;
     const double denominator = rest.dot(s);
@@ -156,8 +154,9 @@ QuadraticSolution best_step(const Evaluator& evaluator, const VectorX& point, co
     program.rows = e.jacobian;
     program.lower = evaluator.scaled_constraint_lower() - e.constraints;
     program.upper = evaluator.scaled_constraint_upper() - e.constraints;
-    program.box_lower = (-point).cwiseMax(-radius);
-    program.box_upper = (VectorX::Ones(point.size()) - point).cwiseMin(radius);
+    Evaluator::Box box = evaluator.steps_from(point, radius);
+    program.box_lower = std::move(box.lower);
+    program.box_upper = std::move(box.upper);
     program.penalty = penalty;
     program.cuts = cuts_of(evaluator, e);
     return solve(program);

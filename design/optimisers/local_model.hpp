@@ -16,12 +16,16 @@ public:
     explicit RestCurvature(int n) : matrix_(MatrixX::Zero(n, n)) {}
     const MatrixX& matrix() const { return matrix_; }
     /// Terms of f that have branches are left out at both points: their gradients jump, which is no curvature.
-    /// @param y  Multipliers of the constraints, scaled (smooth_multipliers).
-    void learn(const VectorX& from_point, const Evaluation& from, const VectorX& to_point, const Evaluation& to, const VectorX& y);
+    /// @param step  From the first point to the second (Evaluator::step_between).
+    /// @param y     Multipliers of the constraints, scaled (smooth_multipliers).
+    void learn(const Evaluation& from, const VectorX& step, const Evaluation& to, const VectorX& y);
 
 private:
     MatrixX matrix_;
 };
+
+/// f - y.c's gradient, without the terms of f that have branches.
+VectorX lagrangian_gradient(const Evaluation& e, const VectorX& y);
 
 /// 2 sum_i dr_i dr_i^T of the squared deviations that the objective has; zero if it has none.
 MatrixX residual_curvature(const Evaluation& e);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// The problem of repair: of all points that meet the constraints of a problem, the one nearest to a given point.
 ///   minimise sum_k r_k^2,   r_k = (x_k - origin_k) / (upper_k - lower_k),   under the constraints of the problem
+/// Of a periodic variable r_k is the shorter way round; of one that is fixed by its bounds, 0.
 #pragma once
 
 #include "design/optimisers/problem.hpp"

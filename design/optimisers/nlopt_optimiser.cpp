@@ -189,7 +189,8 @@ NativeOutcome NloptOptimiser::minimise(Evaluator& evaluator, const OptimiserOpti
     double radius = 1;
     NativeOutcome outcome;
     for (int restart = 0; restart <= most_restarts; ++restart) {
-        const VectorX lower = (start.array() - radius).cwiseMax(0), upper = (start.array() + radius).cwiseMin(1);
+        const Evaluator::Box steps = evaluator.steps_from(start, radius);
+        const VectorX lower = start + steps.lower, upper = start + steps.upper;
         const int before = evaluator.evaluations();
         const NativeRun run = run_native(algorithm_, evaluator, options, start, lower, upper);
         outcome.iterations += evaluator.evaluations() - before;
@@ -207,8 +208,13 @@ NativeOutcome NloptOptimiser::minimise(Evaluator& evaluator, const OptimiserOpti
         }
         // Rounding limits SLSQP at a good optimum as often as at a bad one; the verdict does not ask it (optimisation.hpp).
         const bool ended = run.result > 0 || run.result == NLOPT_ROUNDOFF_LIMITED;
-        const bool at_box =
-            ((best - lower).array() <= 0 && lower.array() > 0).any() || ((upper - best).array() <= 0 && upper.array() < 1).any();
+        const VectorX moved = evaluator.step_between(start, best);
+        bool at_box = false;
+        for (int k = 0; k < n; ++k) {
+            const bool has_walls = !evaluator.is_periodic(k);
+            at_box = at_box || (moved[k] <= steps.lower[k] && !(has_walls && lower[k] <= 0)) ||
+                     (moved[k] >= steps.upper[k] && !(has_walls && upper[k] >= 1));
+        }
         if (ended && at_box) {
             radius = std::min(1.0, 2 * radius);
             start = best;

@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <utility>
 
+#include "core/linear/factorisations.hpp"
+#include "design/optimisers/least_squares.hpp"
 #include "design/optimisers/local_model.hpp"
 #include "design/optimisers/noise.hpp"
 #include "design/optimisers/unexplored.hpp"
@@ -18,6 +22,8 @@ constexpr double smallest_radius = 3e-4;  // below it a gain is one of microns: 
 constexpr int most_probes = 5;
 constexpr double near = 0.3;  // evaluations within this distance tell of the curvature
 constexpr double exact_penalty = 1e3;
+constexpr std::size_t most_measured = 8;
+constexpr int most_measured_probes = 3;
 constexpr int most_looks_aside = 2, most_steps_aside = 3, most_restorations = 2;
 constexpr double least_margin = 0.05, most_margin = 0.25;  // shares that the verdict keeps to; the second where the first was missed
 constexpr int noise_values = 7;
@@ -29,14 +35,15 @@ constexpr double telling_share = 0.1;  // of a gain, below which a variable is n
 RestCurvature curvature_near(const Evaluator& evaluator, const VectorX& best, const Evaluation& at, const VectorX& multipliers) {
     std::vector<std::pair<double, int>> order;
     for (int k = 0; k < evaluator.known(); ++k) {
-        const double distance = (evaluator.scaled_point(k) - best).norm();
+        const double distance = evaluator.step_between(best, evaluator.scaled_point(k)).norm();
         if (distance > 0 && distance < near && tells(evaluator.scaled_evaluation(k))) order.emplace_back(distance, k);
     }
     std::sort(order.begin(), order.end());
     order.resize(std::min(order.size(), static_cast<size_t>(2 * best.size() + 2)));
     RestCurvature rest(count_of(best));
     for (auto it = order.rbegin(); it != order.rend(); ++it)
-        rest.learn(evaluator.scaled_point(it->second), evaluator.scaled_evaluation(it->second), best, at, multipliers);
+        rest.learn(evaluator.scaled_evaluation(it->second), evaluator.step_between(evaluator.scaled_point(it->second), best), at,
+                   multipliers);
     return rest;
 }
 
@@ -88,10 +95,11 @@ private:
         if (margin_ == 1) {
             if (probe()) return true;
             if (!is_settled()) return false;
-            if (leaves_saddle()) return true;
+            if (leaves_saddle() || gains_by_measured_curvature()) return true;
             margin_ = least_margin;
         }
-        return probe();
+        if (probe()) return true;
+        return evaluator_.margin_share() < 1 && is_settled() && gains_by_measured_curvature();
     }
 
     bool is_settled() const { return now_.solution.solved && now_.gain <= worth_ && result_.refused.empty(); }
@@ -149,7 +157,7 @@ private:
             const Evaluation telling = with_telling_derivatives(evaluator_, there, seen);
             const QuadraticSolution back = restoring_step(evaluator_, there, telling, now_.radius, exact_penalty);
             if (!back.solved || !(at_.objective - (seen.objective + telling.gradient.dot(back.step)) > worth_)) return false;
-            there = (there + back.step).cwiseMax(0).cwiseMin(1);
+            there = evaluator_.moved(there, back.step);
             if (!evaluator_.refusal(there).empty()) return false;
             evaluator_.at(there);
             if (gained()) return true;
@@ -199,7 +207,7 @@ private:
     MatrixX known_steps() const {
         std::vector<VectorX> steps;
         for (int k = 0; k < evaluator_.known(); ++k) {
-            const VectorX step = evaluator_.scaled_point(k) - point_;
+            const VectorX step = evaluator_.step_between(point_, evaluator_.scaled_point(k));
             if (step.norm() < near && tells(evaluator_.scaled_evaluation(k))) steps.push_back(step);
         }
         MatrixX out(count_of(steps), point_.size());
@@ -224,38 +232,127 @@ private:
                 if (!onward.solved) break;
                 const double promised = merit(evaluator_, at_, exact_penalty) - (merit(evaluator_, seen, exact_penalty) - onward.decrease);
                 if (!(promised > worth_)) break;
-                there = there + onward.step;
+                there = evaluator_.moved(there, onward.step);
             }
+        }
+        return false;
+    }
+
+    // Unit vectors along which no gain is promised for the curvature that the model has there, and one would be for a hundredth of it: the
+    // columns, those with the steepest slope first. Gauss-Newton's curvature of residuals that do not vanish, and an estimate from a few
+    // evaluations, can be that wrong.
+    MatrixX doubtful_directions(const MatrixX& curvature, const VectorX& slope) const {
+        constexpr double overrated = 100;
+        const MatrixX free = free_directions(holding());
+        if (free.cols() == 0) return free;
+        const auto modes = core::linear::symmetric_eigen<Eigen::Dynamic>(free.transpose() * curvature * free);
+        std::vector<std::pair<double, Eigen::Index>> order;
+        for (Eigen::Index i = 0; i < free.cols(); ++i) {
+            const double along = std::abs(slope.dot(free * modes.vectors.col(i))), bend = std::max(0.0, modes.values[i]) / overrated;
+            const double gain = along <= bend * first_radius ? 0.5 * along * along / bend : along * first_radius;
+            if (gain > worth_) order.emplace_back(-along, i);
+        }
+        std::sort(order.begin(), order.end());
+        order.resize(std::min(order.size(), most_measured));
+        MatrixX out(point_.size(), count_of(order));
+        for (Eigen::Index k = 0; k < out.cols(); ++k) out.col(k) = free * modes.vectors.col(order[static_cast<size_t>(k)].second);
+        return out;
+    }
+
+    // The curvature that differences of gradients show along these directions; elsewhere as it was. The nearest symmetric matrix
+    // (Frobenius) to the former one of which this is so. Nothing: a point could not be evaluated.
+    std::optional<MatrixX> measured_curvature(const MatrixX& before, const MatrixX& along, const VectorX& y) {
+        constexpr double spacing = 1e-3;
+        const VectorX here = lagrangian_gradient(at_, y);
+        MatrixX change(along.rows(), along.cols());
+        for (Eigen::Index k = 0; k < along.cols(); ++k) {
+            const VectorX there = evaluator_.moved(point_, spacing * along.col(k)), step = evaluator_.step_between(point_, there);
+            if ((step - spacing * along.col(k)).norm() > 0.1 * spacing) return std::nullopt;
+            const Evaluation& seen = evaluator_.at(there);
+            if (!seen.usable) return std::nullopt;
+            change.col(k) = (lagrangian_gradient(seen, y) - here) / spacing - before * along.col(k);
+        }
+        const MatrixX symmetric = 0.5 * (along.transpose() * change + change.transpose() * along);
+        return before + change * along.transpose() + along * change.transpose() - along * symmetric * along.transpose();
+    }
+
+    // A gain that only the model's curvature denies: is the curvature there? What the measured one promises is tried.
+    // @return whether a better point was found.
+    bool gains_by_measured_curvature() {
+        if (!at_.objective_branches.of.empty() || !at_.constraint_branches.of.empty()) return false;  // at a kink gradients differ anyhow
+        const VectorX y = smooth_multipliers(now_.solution);
+        const MatrixX residuals = residual_curvature(at_);
+        const MatrixX modelled = residuals + curvature_near(evaluator_, point_, at_, y).matrix();
+        const MatrixX along = doubtful_directions(modelled, lagrangian_gradient(at_, y));
+        if (along.cols() == 0) return false;
+        const std::optional<MatrixX> measured = measured_curvature(modelled, along, y);
+        if (!measured) return false;
+        const MatrixX rest = *measured - residuals;
+        double radius = first_radius;
+        for (int k = 0; k < most_measured_probes && radius > smallest_radius; ++k) {
+            const QuadraticSolution step = best_step(evaluator_, point_, at_, &rest, radius, exact_penalty);
+            if (!step.solved || predicted_gain(at_, rest, step) <= worth_) return false;
+            const VectorX there = evaluator_.moved(point_, step.step);
+            if (evaluator_.refusal(there).empty()) evaluator_.at(there);
+            if (gained()) return true;
+            radius = step_shrink * std::min(radius, step.step.lpNorm<Eigen::Infinity>());
         }
         return false;
     }
 
     // To the side on which the bounds leave more room.
     VectorX aside(const VectorX& direction) const {
-        const VectorX one = (point_ + first_radius * direction).cwiseMax(0).cwiseMin(1);
-        const VectorX other = (point_ - first_radius * direction).cwiseMax(0).cwiseMin(1);
-        return (one - point_).norm() >= (other - point_).norm() ? one : other;
+        const VectorX one = evaluator_.moved(point_, first_radius * direction), other = evaluator_.moved(point_, -first_radius * direction);
+        const auto room = [&](const VectorX& there) { return evaluator_.step_between(point_, there).norm(); };
+        return room(one) >= room(other) ? one : other;
+    }
+
+    // The objective's, then the constraints', along a line; empty: a point next to the best one cannot be evaluated.
+    std::vector<NoiseLevel> noise_levels(double spacing) {
+        const int m = evaluator_.constraints();
+        MatrixX values(noise_values, 1 + m);
+        const VectorX direction = inward(point_);
+        for (int i = 0; i < noise_values; ++i) {
+            const Evaluation& e = evaluator_.look(point_ + i * spacing * direction);
+            if (!e.usable) return {};
+            values(i, 0) = e.objective;
+            values.row(i).tail(m) = e.constraints.transpose();
+        }
+        return estimate_noise_by_column(values, spacing);
+    }
+
+    // Noise is as large over a quarter of the spacing; what a smooth function's curvature, or a kink, looks like over a wide one is a
+    // quarter of that at most. @return whether it could be told.
+    bool keep_what_does_not_shrink(std::vector<NoiseLevel>& levels) {
+        constexpr double quarter = 0.25, shrunk = 1.0 / 3;
+        const std::vector<NoiseLevel> nearer = noise_levels(quarter * noise_spacing);
+        if (nearer.empty()) return false;
+        for (size_t q = 0; q < levels.size(); ++q)
+            if (nearer[q].noise < shrunk * levels[q].noise)
+                levels[q] = {.noise = nearer[q].noise, .status = NoiseStatus::spacing_too_large};
+        return true;
     }
 
     // @return whether it could be: a point next to the best one may be none that can be evaluated.
     bool measure_noise() {
         const int m = evaluator_.constraints();
-        MatrixX values(noise_values, 1 + m);
-        const VectorX direction = inward(point_), multipliers = whole_multipliers(now_.solution);
-        for (int i = 0; i < noise_values; ++i) {
-            const Evaluation& e = evaluator_.look(point_ + i * noise_spacing * direction);
-            if (!e.usable) return false;
-            values(i, 0) = e.objective;
-            values.row(i).tail(m) = e.constraints.transpose();
-        }
+        const VectorX multipliers = whole_multipliers(now_.solution);
+        std::vector<NoiseLevel> levels = noise_levels(noise_spacing);
+        if (levels.empty()) return false;
+        const auto effect_of = [&](int q) {
+            const double weight = q == 0 ? 1 : now_.solution.solved ? std::abs(multipliers[q - 1]) : 0;
+            return weight * levels[q].noise;
+        };
+        const auto counts = [&](int q) { return levels[q].status != NoiseStatus::spacing_too_large && effect_of(q) > worth_; };
+        bool any = false;
+        for (int q = 0; q <= m; ++q) any = any || counts(q);
+        if (any && !keep_what_does_not_shrink(levels)) return false;
         result_.noise.resize(1 + m);
-        const std::vector<NoiseLevel> levels = estimate_noise_by_column(values, noise_spacing);
         for (int q = 0; q <= m; ++q) {
             const double scale = q == 0 ? evaluator_.objective_scale() : evaluator_.constraint_scale()[q - 1];
             const NoiseLevel& level = levels[q];
             result_.noise[q] = level.noise / scale;
-            const double weight = q == 0 ? 1 : now_.solution.solved ? std::abs(multipliers[q - 1]) : 0;
-            const double effect = weight * level.noise;
+            const double effect = effect_of(q);
             if (level.status == NoiseStatus::spacing_too_large) continue;  // only a bound on it, made of what is smooth
             if (effect > worth_ && effect > result_.noise_in_objective) result_.roughest = q;
             result_.noise_in_objective = std::max(result_.noise_in_objective, effect);
@@ -283,7 +380,8 @@ private:
         const std::vector<int> moving = improvable();
         if (std::find(moving.begin(), moving.end(), static_cast<int>(k)) != moving.end()) return Held::free;
         const double z = now_.solution.box_multipliers[k], d = now_.solution.step[k];
-        const bool at_lower = point_[k] + d <= near_bound, at_upper = point_[k] + d >= 1 - near_bound;
+        const bool has_walls = !evaluator_.is_periodic(k);
+        const bool at_lower = has_walls && point_[k] + d <= near_bound, at_upper = has_walls && point_[k] + d >= 1 - near_bound;
         const double size = std::max({std::abs(at_.gradient[k]), 1e-12});
         if (std::abs(z) > 1e-6 + telling_share * size && (z > 0 ? at_lower : at_upper))
             return z > 0 ? Held::lower_bound : Held::upper_bound;
@@ -353,8 +451,11 @@ std::string words(const Optimality& o) {
 
 double least_gain(const Evaluator& evaluator, const OptimiserOptions& options, double scaled_objective) {
     const Evaluation& start = evaluator.start_evaluation();
-    const double from = start.usable ? 1e-6 * std::abs(start.objective) * evaluator.objective_scale() : 0;
-    return options.tolerance * std::max({std::abs(scaled_objective), from, 1e-12});
+    const double size = start.usable ? std::abs(start.objective) * evaluator.objective_scale() : 0;
+    // A sum of squares is as small as its residuals are: a millionth of these is a millionth of a millionth of it.
+    const double vanishing = is_sum_of_squares(start) ? 1e-12 : 1e-6;
+    return std::max(options.tolerance * std::max({std::abs(scaled_objective), vanishing * size, 1e-30}),
+                    options.negligible * evaluator.objective_scale());
 }
 
 Optimality judge(Evaluator& evaluator, const OptimiserOptions& options, bool& moved) { return Judgement(evaluator, options).judge(moved); }

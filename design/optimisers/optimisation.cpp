@@ -41,7 +41,8 @@ const std::vector<std::string>& optimiser_names() {
 const std::vector<OptimiserInfo>& optimiser_table() {
     static const std::vector<OptimiserInfo> table{
         {"sqp", "sequential quadratic programming in a trust region, made for simulations: few evaluations; the default"},
-        {"gauss_newton", "as sqp, with the residuals' curvature alone; for sums of squares that can become nearly nothing"},
+        {"gauss_newton",
+         "as sqp, with the residuals' curvature alone (without constraints: Levenberg and Marquardt's); for sums of squares"},
         {"ipopt", "the interior-point method of Ipopt, which estimates curvature from gradients; uses gradients"},
         {"mma", "method of moving asymptotes (NLopt); uses gradients, inequality constraints"},
         {"ccsaq", "conservative convex separable approximations with a quadratic term (NLopt); uses gradients, inequality constraints"},
@@ -254,7 +255,7 @@ private:
         const StopReason ended = evaluator.stop_reason();
         if (ended == StopReason::none || ended == StopReason::budget) {
             const bool complete = complete_best(evaluator);
-            if (complete && evaluator.best_evaluation().violation <= 0) judge_and_go_on(evaluator, options);
+            if (options.judges && complete && evaluator.best_evaluation().violation <= 0) judge_and_go_on(evaluator, options);
         }
         evaluator.rethrow();
         report_.point = evaluator.best_point();
@@ -337,7 +338,7 @@ void take_if_better(OptimiserReport& report, const VectorX& point, const Evaluat
 }
 
 OptimiserReport better_of(OptimiserReport first, OptimiserReport later) {
-    OptimiserReport best = is_better(later.best, first.best) ? later : first;
+    OptimiserReport best = is_better(first.best, later.best) ? first : later;
     best.start = first.start;
     best.untried = later.untried;
     best.evaluations = first.evaluations + later.evaluations;

@@ -62,8 +62,8 @@ OptimiserReport optimise(const Problem& problem, const Optimiser& optimiser, con
 /// Gives the report this end, which was evaluated after the run, in place of `best` where it is better.
 void take_if_better(OptimiserReport& report, const VectorX& point, const Evaluation& evaluation);
 
-/// Two searches of one problem, one after the other, as one: the start of the first, the end of the better one and its verdict, evaluations
-/// of both. Interrupted if the later one was.
+/// Two searches of one problem, one after the other, as one: the start of the first, the end of the better one (the later one, where they
+/// are equal) and its verdict, evaluations of both. Interrupted if the later one was.
 OptimiserReport better_of(OptimiserReport first, OptimiserReport later);
 
 struct OptimiserInfo {

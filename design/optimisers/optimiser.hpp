@@ -14,8 +14,10 @@ namespace fettle::design::optimisers {
 struct OptimiserOptions {
     int max_evaluations = 200;
     double tolerance = 1e-4;            ///< of the objective: a gain that is smaller is not worth an evaluation (least_gain)
+    double negligible = 0;              ///< a gain in the objective that does not count, however small the objective is
     double radius = 0.25;               ///< of the first step, of each variable's range
     bool meets_requirements = true;     ///< a step that meets what is missed is worth an evaluation, however small the gain; "sqp" asks
+    bool judges = true;                 ///< false: the end is not looked at, and is never optimal: one search of many
     std::function<bool()> should_stop;  ///< optional (Ctrl-C)
     std::function<void(int, const VectorX&, const Evaluation&, bool best)> on_evaluation;  ///< optional
     std::function<void(const std::string&)> narrate;  ///< optional: what the evaluations that follow are for
@@ -26,7 +28,8 @@ inline void narrate(const OptimiserOptions& options, const std::string& line) {
     if (options.narrate) options.narrate(line);
 }
 
-/// The gain in the scaled objective that counts: tolerance |f|, and where f goes to nothing a millionth of that at the start.
+/// The gain in the scaled objective that counts: tolerance |f|, and where f goes to nothing a millionth of that at the start (of a sum of
+/// squares: of its residuals at the start); never less than what is negligible.
 double least_gain(const Evaluator& evaluator, const OptimiserOptions& options, double scaled_objective);
 
 /// What a native optimiser says of itself, for people. Whether it calls its end a success decides nothing: the verdict is our own

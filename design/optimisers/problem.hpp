@@ -61,7 +61,9 @@ struct SmootherModel {
 };
 
 struct Problem {
-    VectorX start, lower, upper;                 ///< n; finite, lower <= start <= upper
+    VectorX start, lower, upper;  ///< n; finite, lower <= start <= upper
+    /// n: whether all is the same at `lower` and `upper` of a variable, an angle's, so that neither is a wall; empty: none are so.
+    std::vector<bool> periodic = {};
     VectorX constraint_lower, constraint_upper;  ///< m; what the optimiser aims at; infinite where there is none
     VectorX relation_lower, relation_upper;      ///< k; what the optimiser aims at; infinite where there is none
     VectorX constraint_margin, relation_margin;  ///< m, k: by how much these lie inside of what is required; empty: they are that

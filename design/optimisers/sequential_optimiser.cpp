@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "design/optimisers/least_squares.hpp"
 #include "design/optimisers/local_model.hpp"
 
 namespace fettle::design::optimisers {
@@ -62,11 +63,9 @@ private:
     double least_radius() const { return 0.03 * std::sqrt(options_.tolerance); }
     NativeOutcome end(const char* words) const { return {iterations_, words}; }
 
-    bool is_sum_of_squares() const { return std::abs(at_->residuals.squaredNorm() - at_->objective) <= 1e-9 * std::abs(at_->objective); }
-
     // Steps are solved to 1e-9 of the numbers in them: where f is nearly nothing, it and the penalty are counted in larger units.
     QuadraticSolution step_at_penalty(const Evaluation& at) const {
-        if (curvature_ == Curvature::estimated || !is_sum_of_squares())
+        if (curvature_ == Curvature::estimated || !is_sum_of_squares(*at_))
             return best_step(evaluator_, point_, at, &rest_.matrix(), radius_, penalty_);
         Evaluation large = at;
         const double size = radius_ * large.gradient.lpNorm<Eigen::Infinity>(), factor = size > 0 ? std::max(1.0, 1 / size) : 1.0;
@@ -104,7 +103,6 @@ private:
         const Evaluation& trial = evaluator_.at(point);
         return trial.usable ? &trial : nullptr;
     }
-    VectorX moved_by(const VectorX& step) const { return (point_ + step).cwiseMax(0).cwiseMin(1); }
 
     // What came true of a predicted decrease.
     double share_of(double decrease, const Evaluation& trial) const {
@@ -133,7 +131,7 @@ private:
         const double objective = trial.objective + telling_.gradient.dot(corrected.step - step.step);
         const double promised = merit(evaluator_, *at_, penalty_) - (objective + penalty_ * corrected.violation);
         if (promised <= accepted_share * step.decrease) return false;
-        const VectorX point = moved_by(corrected.step);
+        const VectorX point = evaluator_.moved(point_, corrected.step);
         const Evaluation* there = evaluated(point);
         if (there == nullptr) return false;
         const double share = share_of(step.decrease, *there);
@@ -149,13 +147,13 @@ private:
     }
 
     void move_to(const VectorX& point, const Evaluation& there, const QuadraticSolution& step) {
-        rest_.learn(point_, *at_, point, there, smooth_multipliers(step));
+        rest_.learn(*at_, evaluator_.step_between(point_, point), there, smooth_multipliers(step));
         point_ = point;
         at_ = &there;
     }
 
     void take(const QuadraticSolution& step) {
-        const VectorX point = moved_by(step.step);
+        const VectorX point = evaluator_.moved(point_, step.step);
         const double length = step.step.lpNorm<Eigen::Infinity>();
         const Evaluation* trial = evaluated(point);
         if (trial == nullptr) {
@@ -167,7 +165,7 @@ private:
             move_to(point, *trial, step);
         } else {
             if (take_corrected(step, *trial)) return;
-            rest_.learn(point, *trial, point_, *at_, smooth_multipliers(step));
+            rest_.learn(*trial, evaluator_.step_between(point, point_), *at_, smooth_multipliers(step));
         }
         fit_radius(share, length);
     }
@@ -188,7 +186,15 @@ private:
 
 NativeOutcome SequentialOptimiser::minimise(Evaluator& evaluator, const OptimiserOptions& options) const {
     if (evaluator.variables() == 0) return {0, "no variables"};
-    return SequentialRun(evaluator, options, curvature_).minimise();
+    NativeOutcome squares;
+    if (is_least_squares(evaluator)) {
+        if (curvature_ == Curvature::gauss_newton) return minimise_squares(evaluator, options, options.tolerance);
+        constexpr double roughly = 1e-3;  // from there on the other curvature counts
+        squares = minimise_squares(evaluator, options, std::max(options.tolerance, roughly));
+    }
+    NativeOutcome outcome = SequentialRun(evaluator, options, curvature_).minimise();
+    outcome.iterations += squares.iterations;
+    return outcome;
 }
 
 }  // namespace fettle::design::optimisers

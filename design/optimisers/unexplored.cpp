@@ -28,10 +28,14 @@ MatrixX least_of(const MatrixX& matrix, double below) {
 
 }  // namespace
 
+MatrixX free_directions(const MatrixX& holding) {
+    const MatrixX rows = holding.rowwise().normalized();
+    return least_of(rows.transpose() * rows, kept * kept);
+}
+
 std::vector<VectorX> unexplored_directions(const MatrixX& holding, const MatrixX& steps, int most) {
     FETTLE_ASSERT(holding.cols() == steps.cols(), "rows and steps are of the same variables");
-    const MatrixX rows = holding.rowwise().normalized();
-    const MatrixX free = least_of(rows.transpose() * rows, kept * kept);
+    const MatrixX free = free_directions(holding);
     std::vector<VectorX> directions;
     if (free.cols() == 0) return directions;
     const MatrixX reached = steps * free;

@@ -10,6 +10,10 @@
 
 namespace fettle::design::optimisers {
 
+/// Unit vectors, orthogonal to each other, the columns, that keep what holds a point to within a tenth of its slope.
+/// @param holding  k x n: gradients of what holds it (constraints, bounds), of any length but 0.
+MatrixX free_directions(const MatrixX& holding);
+
 /// Unit vectors, orthogonal to each other, which keep what holds a point to within a tenth of its slope, and along which the known points
 /// reach less than 0.03 of the ranges; the least known first.
 /// @param holding  k x n: gradients of what holds the point (constraints, bounds), of any length but 0.

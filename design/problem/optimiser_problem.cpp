@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "design/optimisers/projection.hpp"
+#include "design/problem/periodic_parameters.hpp"
 
 namespace fettle::design::problem {
 
@@ -39,6 +40,7 @@ optimisers::Problem optimiser_problem(const DesignProblem& design_problem, const
         problem.lower[k] = design.parameters[k].lower;
         problem.upper[k] = design.parameters[k].upper;
     }
+    problem.periodic = periodic_parameters(design);
     problem.representable = [&design](const VectorX& p) {
         VectorX q = p;
         for (Eigen::Index k = 0; k < q.size(); ++k) q[k] = description::representable(p[k], design.parameters[k].unit);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "design/description/requirement_text.hpp"
+#include "design/optimisers/least_squares.hpp"
 #include "design/optimisers/nearest_design.hpp"
 #include "design/problem/buildable.hpp"
 #include "design/problem/optimiser_problem.hpp"
@@ -104,8 +105,10 @@ public:
         outcome_.unbuildable = problem::described(design_, problem::try_bounds(problem_));
         for (const std::string& line : outcome_.unbuildable) narrate("bounds: " + line);
         if (options_.repair) seen = optimisers::nearest_to(description::values_of(design_.parameters), std::move(seen));
-        outcome_.report = optimisers::optimise(seen, optimiser, settings());
-        if (options_.seed != 0 && !options_.repair && moves_by_joints_alone(problem_)) search_again(seen, optimiser);
+        if (options_.seed != 0 && !options_.repair && moves_by_joints_alone(problem_))
+            search_from_many_places(seen, optimiser);
+        else
+            outcome_.report = optimisers::optimise(seen, optimiser, settings());
         outcome_.replayed = outcome_.report.evaluations - computed_;
         has_ended_ = true;
         if (outcome_.report.untried.size() > 0) try_untried(seen);
@@ -144,6 +147,7 @@ private:
     }
 
     void look_at_start(const optimisers::Evaluation& e) {
+        has_squares_alone_ = optimisers::is_sum_of_squares(e);
         const Eigen::Index m = e.constraints.size();
         VectorX values(1 + m);
         values << e.objective, e.constraints;
@@ -179,32 +183,53 @@ private:
         };
     }
 
-    // From other places, for as long as evaluations are left.
-    void search_again(optimisers::Problem& seen, const optimisers::Optimiser& optimiser) {
-        constexpr int least = 40;  // worth a search, its verdict included
-        constexpr int enough = 3;  // searches that end with the same objective
-        constexpr double same = 5e-3;
-        std::vector<double> ends{outcome_.report.objective};
-        for (int k = 1; outcome_.report.status != optimisers::OptimiserStatus::interrupted; ++k) {
-            const double best = outcome_.report.objective;
-            const auto agree = [best](double end) { return std::abs(end - best) <= same * std::abs(best); };
-            if (std::count_if(ends.begin(), ends.end(), agree) >= enough) return;
-            const int left = design_.optimiser.max_evaluations - outcome_.report.evaluations;
-            if (left < least) return;
-            narrate("evaluations are left: on from another random place");
-            seen.start = later_start_of_seed(problem_, options_.seed, k);
-            optimisers::OptimiserOptions again = settings();
-            again.max_evaluations = left;
-            const optimisers::OptimiserReport before = outcome_.report;
-            again.on_evaluation = [&, tell = again.on_evaluation](int number, const VectorX& p, const optimisers::Evaluation& e,
-                                                                  bool best) {
-                tell(before.evaluations + number, p, e, best && optimisers::is_better(e, before.best));
-            };
-            const optimisers::OptimiserReport next = optimisers::optimise(seen, optimiser, again);
-            ends.push_back(next.objective);
-            outcome_.report = optimisers::better_of(before, next);
-            if (outcome_.report.evaluations == before.evaluations) return;
+    // Searches from one random place after another, roughly and without a verdict, then on from the best end, with one.
+    void search_from_many_places(optimisers::Problem& seen, const optimisers::Optimiser& optimiser) {
+        constexpr int least = 20;  // worth a search
+        constexpr int enough = 5;  // searches that end with the same objective
+        constexpr double same = 5e-3, roughly = 1e-3;
+        const int reserve = std::min(100, design_.optimiser.max_evaluations / 6);  // of the last one
+        std::vector<double> ends;
+        const auto agrees = [&](double end) {
+            return std::abs(end - outcome_.report.objective) <= same * std::abs(outcome_.report.objective);
+        };
+        for (int k = 0;; ++k) {
+            const int left = design_.optimiser.max_evaluations - outcome_.report.evaluations - reserve;
+            if (k > 0 && left < least) break;
+            optimisers::OptimiserOptions rough = settings();
+            rough.tolerance = std::max(roughly, rough.tolerance);
+            rough.judges = false;
+            if (k > 0) {
+                narrate("on from another random place");
+                seen.start = later_start_of_seed(problem_, options_.seed, k);
+            }
+            if (!go_on(seen, optimiser, rough, std::max(1, left))) return;
+            ends.push_back(last_end_);
+            if (outcome_.report.objective <= negligible() || std::count_if(ends.begin(), ends.end(), agrees) >= enough) break;
         }
+        if (!outcome_.report.best.usable) return;
+        narrate("on from the best of these");
+        seen.start = outcome_.report.point;
+        optimisers::OptimiserOptions last = settings();
+        last.negligible = negligible();
+        go_on(seen, optimiser, last, design_.optimiser.max_evaluations - outcome_.report.evaluations);
+    }
+
+    // What does not count of a sum of squares: its residuals are then a millionth of those at the start.
+    double negligible() const { return has_squares_alone_ ? 1e-12 * std::abs(outcome_.objective_start.value_or(0)) : 0; }
+
+    // One more search. @return false: there is no going on.
+    bool go_on(const optimisers::Problem& seen, const optimisers::Optimiser& optimiser, optimisers::OptimiserOptions options, int most) {
+        const optimisers::OptimiserReport before = outcome_.report;
+        options.max_evaluations = most;
+        options.on_evaluation = [&, tell = options.on_evaluation](int number, const VectorX& p, const optimisers::Evaluation& e,
+                                                                  bool best) {
+            tell(before.evaluations + number, p, e, best && (before.evaluations == 0 || optimisers::is_better(e, before.best)));
+        };
+        const optimisers::OptimiserReport next = optimisers::optimise(seen, optimiser, options);
+        last_end_ = next.objective;
+        outcome_.report = before.evaluations == 0 ? next : optimisers::better_of(before, next);
+        return next.status != optimisers::OptimiserStatus::interrupted && next.evaluations > 0;
     }
 
     optimisers::OptimiserOptions settings() {
@@ -282,7 +307,8 @@ private:
     std::vector<FailedTrial> failures_;
     std::vector<const HistoryEntry*> replayed_;  // of the design's own model, until the start is known
     int computed_ = 0, refused_ = 0;
-    bool has_begun_ = false, has_ended_ = false;
+    bool has_begun_ = false, has_ended_ = false, has_squares_alone_ = false;
+    double last_end_ = 0;  // of the search that was made last
     OptimiseOutcome outcome_;
 };
 

@@ -2,13 +2,13 @@
 #include "design/studies/random_start.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "core/base/contract.hpp"
 #include "design/optimisers/projection.hpp"
 #include "design/problem/buildable.hpp"
 #include "design/problem/optimiser_problem.hpp"
+#include "design/problem/periodic_parameters.hpp"
 
 namespace fettle::design::studies {
 
@@ -26,18 +26,14 @@ std::uint64_t next(std::uint64_t& state) {
 // In [0, 1), all 53 bits of a double's fraction.
 double next_fraction(std::uint64_t& state) { return static_cast<double>(next(state) >> 11) * 0x1p-53; }
 
-bool goes_all_round(const description::Parameter& p) {
-    constexpr double nearly = 1 - 1e-9;
-    return p.unit.dimension == core::base::Dimension::angle && p.upper - p.lower >= nearly * 2 * std::acos(-1.0);
-}
-
-// @param share  of each range, about the parameter's value; 1: the bounds.
+// @param share  of each range, about the parameter's value, of one that is periodic all of it; 1: the bounds.
 VectorX drawn(const description::Design& design, double share, std::uint64_t& state) {
     VectorX sample(design.parameters.size());
+    const std::vector<bool> has_no_ends = share < 1 ? problem::periodic_parameters(design) : std::vector<bool>(sample.size(), true);
     for (Eigen::Index k = 0; k < sample.size(); ++k) {
         const description::Parameter& p = design.parameters[k];
         double lower = p.lower, upper = p.upper;
-        if (share < 1 && !goes_all_round(p)) {
+        if (!has_no_ends[static_cast<size_t>(k)]) {
             const double width = share * (p.upper - p.lower);
             lower = std::clamp(p.value - width / 2, p.lower, p.upper - width);
             upper = std::min(p.upper, lower + width);

@@ -93,4 +93,29 @@ TEST_CASE("a constraint that hardly changes at the start counts by its distance 
     CHECK(scale_of(1e-9, 0.2, 0.2) == Approx(1 / 0.2e-3));  // on its bound: by its value
 }
 
+TEST_CASE("a periodic variable has no walls: points, steps and boxes go through its bounds") {
+    Parabola parabola;
+    parabola.problem.periodic = {true};
+    Evaluator evaluator(parabola.problem, {});
+    CHECK(evaluator.within(at(1.25))[0] == Approx(0.25));
+    CHECK(evaluator.within(at(-0.25))[0] == Approx(0.75));
+    CHECK(evaluator.within(at(1))[0] == 1);
+    CHECK(evaluator.moved(at(0.9), at(0.3))[0] == Approx(0.2));
+    CHECK(evaluator.step_between(at(0.9), at(0.2))[0] == Approx(0.3));
+    CHECK(evaluator.step_between(at(0.2), at(0.9))[0] == Approx(-0.3));
+    CHECK(evaluator.steps_from(at(0.9), 0.4).upper[0] == 0.4);
+    CHECK(evaluator.unscaled(at(1.25))[0] == Approx(0.25));
+    const int before = evaluator.known();
+    evaluator.at(at(0.5));
+    evaluator.at(at(1.5));  // the same place
+    CHECK(evaluator.known() == before + 1);
+
+    parabola.problem.periodic = {};
+    Evaluator walls(parabola.problem, {});
+    CHECK(walls.within(at(1.25))[0] == 1);
+    CHECK(walls.step_between(at(0.9), at(0.2))[0] == Approx(-0.7));
+    CHECK(walls.steps_from(at(0.9), 0.4).upper[0] == Approx(0.1));
+    CHECK(walls.steps_from(at(0.9), 0.4).lower[0] == -0.4);
+}
+
 }  // namespace fettle::design::optimisers::evaluator_test

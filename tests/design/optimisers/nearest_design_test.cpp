@@ -109,4 +109,14 @@ TEST_CASE("the derivatives of the change are those of its value") {
     CHECK(e.constraints == problem.evaluate(x).constraints);
 }
 
+TEST_CASE("the change of an angle is the shorter way round, and one of a fixed variable is none") {
+    Problem p;
+    p.lower = Vector2(0, 3);
+    p.upper = Vector2(6, 3);
+    p.periodic = {true, false};
+    CHECK(squared_change(p, Vector2(5.9, 3), Vector2(0.2, 3)) == Approx(0.05 * 0.05));
+    p.periodic = {};
+    CHECK(squared_change(p, Vector2(5.9, 3), Vector2(0.2, 3)) == Approx(0.95 * 0.95));
+}
+
 }  // namespace fettle::design::optimisers::nearest_design_test

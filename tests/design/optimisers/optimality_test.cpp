@@ -385,4 +385,62 @@ TEST_CASE("branches of a constraint hold a step that one of them would let go") 
     CHECK(centred.optimality.held[0] == Held::constraints);
 }
 
+TEST_CASE("what bends is not called noise, what scatters is") {
+    // The steeper the bowl, the more the differences of its values look like scatter over a wide spacing.
+    Problem smooth = rough_bowl(0);
+    smooth.start = Vector2(0.02, -0.01);
+    smooth.evaluate = [](const VectorX& x) {
+        Evaluation e;
+        e.usable = true;
+        const Vector2 steep(400 * x[0] + 30 * x[1], 300 * x[1]);
+        e.objective = 1 - std::cos(steep[0]) * std::cos(steep[1]);
+        e.gradient = Vector2(400 * std::sin(steep[0]) * std::cos(steep[1]),
+                             30 * std::sin(steep[0]) * std::cos(steep[1]) + 300 * std::cos(steep[0]) * std::sin(steep[1]));
+        e.constraints.resize(0);
+        e.jacobian.resize(0, 2);
+        return e;
+    };
+    const OptimiserReport bent = run(smooth, "sqp", tight(300));
+    CHECK(bent.optimality.judged);
+    CHECK(bent.optimality.roughest == -1);
+
+    Problem rough = rough_bowl(1e-3);
+    rough.start.setZero();
+    const OptimiserReport scattered = optimise(rough, Idle(), tight(100));
+    CHECK(scattered.optimality.roughest == 0);
+    CHECK(scattered.status == OptimiserStatus::feasible);
+}
+
+TEST_CASE("a curvature that residuals only seem to have hides no gain") {
+    // Two residuals a variable, 10 x and 10 sqrt(1 - 0.99 x^2 + 0.004 x): Gauss-Newton sees a curvature of 200 where there is one of 2.
+    constexpr int n = 6;
+    Problem p;
+    p.start = VectorX::Zero(n);
+    p.lower = VectorX::Constant(n, -0.9);
+    p.upper = VectorX::Constant(n, 0.9);
+    p.evaluate = [](const VectorX& x) {
+        Evaluation e;
+        e.usable = true;
+        e.residuals.resize(2 * n);
+        e.residual_jacobian = MatrixX::Zero(2 * n, n);
+        for (Eigen::Index k = 0; k < n; ++k) {
+            const double root = std::sqrt(1 - 0.99 * x[k] * x[k] + 0.004 * x[k]);
+            e.residuals[2 * k] = 10 * x[k];
+            e.residuals[2 * k + 1] = 10 * root;
+            e.residual_jacobian(2 * k, k) = 10;
+            e.residual_jacobian(2 * k + 1, k) = 5 * (0.004 - 1.98 * x[k]) / root;
+        }
+        e.objective = e.residuals.squaredNorm();
+        e.gradient = 2 * e.residual_jacobian.transpose() * e.residuals;
+        e.constraints.resize(0);
+        e.jacobian.resize(0, n);
+        return e;
+    };
+    // sum (100 + x^2 + 0.4 x): the least, 0.04 below the start for each, at x = -0.2.
+    OptimiserOptions options;
+    options.tolerance = 2e-5;  // 0.012 of 600
+    const OptimiserReport report = optimise(p, Idle(), options);
+    CHECK(report.best.objective < 100 * n - 0.04 * n + 0.02);
+}
+
 }  // namespace fettle::design::optimisers::optimality_test
