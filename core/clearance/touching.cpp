@@ -148,7 +148,7 @@ bool winds_once(const geometry::Mesh& mesh) {
 }
 
 double default_touch_depth(const geometry::Mesh& a, const geometry::Mesh& b) {
-    const auto size = [](const Matrix3X& x) { return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).norm(); };
+    const auto size = [](const Matrix3X& x) { return geometry::box_sides(x).norm(); };
     return touch_share * std::max(size(a.vertices), size(b.vertices));
 }
 

@@ -34,7 +34,7 @@ Parted part(const geometry::Mesh& mesh, const RegionOptions& options) {
     return out;
 }
 
-double diagonal_of(const geometry::Mesh& mesh) { return (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).norm(); }
+double diagonal_of(const geometry::Mesh& mesh) { return geometry::box_sides(mesh.vertices).norm(); }
 
 double of_digits(const geometry::Mesh& mesh) { return std::max(2e-6 * diagonal_of(mesh), 1.2e-5 * mesh.vertices.cwiseAbs().maxCoeff()); }
 

@@ -30,11 +30,9 @@ struct Shared {
     std::vector<int> lines, balls;  // indices of lines and of fits
 };
 
-double size_of(const geometry::Mesh& mesh) { return (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).norm(); }
+double size_of(const geometry::Mesh& mesh) { return geometry::box_sides(mesh.vertices).norm(); }
 
-double box_volume(const geometry::Mesh& mesh) {
-    return mesh.vertices.cols() == 0 ? 0 : (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).prod();
-}
+double box_volume(const geometry::Mesh& mesh) { return mesh.vertices.cols() == 0 ? 0 : geometry::box_sides(mesh.vertices).prod(); }
 
 double from_line(const Vector3& x, const Vector3& point, const Vector3& axis) { return axis.cross(x - point).norm(); }
 

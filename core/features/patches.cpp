@@ -195,7 +195,7 @@ Patches patches_of(const geometry::Mesh& mesh, double flatness, double limit) {
     if (mesh.triangles.empty()) return out;
     sort_mesh(mesh, out);
     measure_triangles(out);
-    out.size = (out.vertices.rowwise().maxCoeff() - out.vertices.rowwise().minCoeff()).norm();
+    out.size = geometry::box_sides(out.vertices).norm();
     const std::vector<HalfEdge> halves = geometry::sorted_half_edges(out.triangles);
     FlatGrowth(out, neighbours_of(out, halves), flatness, limit).run();
     find_creases(out, halves, limit);

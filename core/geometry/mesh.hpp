@@ -53,6 +53,9 @@ struct Mesh {
     std::optional<std::array<unsigned char, 3>> colour;  ///< sRGB, where its file has one (STEP)
 };
 
+/// The sides of the box round points, along the axes [m]. Contract: there is a point.
+inline Vector3 box_sides(const Matrix3X& points) { return points.rowwise().maxCoeff() - points.rowwise().minCoeff(); }
+
 /// Fills edges, codimensional_points, triangle_shell (and shell_names where it has the wrong length: "name/0", "name/1", ...)
 /// from vertices and triangles. Edges appear in the order of their first triangle; `extra_edges` follow.
 void build_connectivity(Mesh& mesh, const std::vector<Edge>& extra_edges = {});

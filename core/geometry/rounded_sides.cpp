@@ -38,7 +38,7 @@ class Rectangles {
 public:
     explicit Rectangles(const Mesh& mesh) : mesh_(mesh) {
         if (mesh.triangles.empty()) return;
-        const Vector3 extent = mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff();
+        const Vector3 extent = box_sides(mesh.vertices);
         allowed_ = tolerance * extent.norm();
         flat_ = flat_features(mesh, allowed_);
         if (!flat_.any()) return;  // a rectangle has two triangles or more

@@ -289,7 +289,7 @@ private:
 
 double longest_side(const scene::Body& body) {
     const Matrix3X& x = body.mesh.vertices;
-    return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+    return geometry::box_sides(x).maxCoeff();
 }
 
 std::string in_metres(double length) {

@@ -120,7 +120,7 @@ bool explains_about_point(const Vector3& centre, const CommonPart& piece, const 
     return std::all_of(others.begin(), others.end(), [&](const Corners& c) { return axis.is_round(c); });
 }
 
-double size_of(const geometry::Mesh& mesh) { return (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).norm(); }
+double size_of(const geometry::Mesh& mesh) { return geometry::box_sides(mesh.vertices).norm(); }
 
 template <class Visit>
 void for_joints_between(const Model& model, int a, int b, const Visit& visit) {

@@ -53,7 +53,7 @@ constexpr const char* no_2d = "2D scenes are not supported";
 Vector3 scale_factors(const files::JsonNode& node, const geometry::Mesh& mesh) {
     const files::JsonNode scale = node["scale"].unless_null(), dimensions = node["dimensions"].unless_null();
     if (dimensions.exists()) {
-        const Vector3 extent = mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff();
+        const Vector3 extent = geometry::box_sides(mesh.vertices);
         Vector3 factors = fixture_vector(dimensions).value_or(Vector3::Ones());
         for (int i = 0; i < 3; ++i) factors[i] /= extent[i] == 0 ? 1 : extent[i];
         return factors;

@@ -9,7 +9,7 @@
 namespace fettle::core::parts {
 namespace {
 
-double extent(const geometry::Mesh& mesh) { return (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).norm(); }
+double extent(const geometry::Mesh& mesh) { return geometry::box_sides(mesh.vertices).norm(); }
 
 // Directions that no face of a usual part lies in.
 constexpr std::array<std::array<double, 3>, 3> some_directions{{{0.43, 0.71, 0.56}, {-0.77, 0.37, 0.52}, {0.29, -0.61, 0.74}}};

@@ -97,7 +97,7 @@ Errors lengths_too_far_apart(const geometry::Mesh& mesh, const std::string& name
     double shortest = infinity;
     for (const geometry::Edge& edge : mesh.edges)
         shortest = std::min(shortest, (mesh.vertices.col(edge[0]) - mesh.vertices.col(edge[1])).norm());
-    const double size = (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).maxCoeff();
+    const double size = geometry::box_sides(mesh.vertices).maxCoeff();
     if (!(size > large && size > most * shortest)) return {};
     const auto millimetres = [](double x) { return base::formatted("%.3g mm", 1e3 * x); };
     return {{ErrorCode::mesh_invalid, name,

@@ -97,7 +97,7 @@ std::optional<Closure> closure_of(const geometry::Mesh& mesh) {
     // Not by the signed volume: parts, or faces, that are turned over cancel what is there.
     const auto parts = connected_parts(out.triangles, static_cast<std::size_t>(out.vertices.cols()));
     if (std::all_of(parts.begin(), parts.end(), [&](const auto& part) { return is_flat(out.vertices, part); })) return std::nullopt;
-    const double size = (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).norm();
+    const double size = geometry::box_sides(mesh.vertices).norm();
     out.reach += 1e-14 * (size + out.vertices.cwiseAbs().maxCoeff());  // rounding
     return out;
 }

@@ -107,7 +107,7 @@ private:
                 ends.col(2 * static_cast<Eigen::Index>(e)) = mesh_.vertices.col(hole.edges[e][0]);
                 ends.col(2 * static_cast<Eigen::Index>(e) + 1) = mesh_.vertices.col(hole.edges[e][1]);
             }
-            bound += (ends.rowwise().maxCoeff() - ends.rowwise().minCoeff()).prod();
+            bound += geometry::box_sides(ends).prod();
             if (hole.area.norm() > largest->area.norm()) largest = &hole;
         }
         warn("it is open in " + std::to_string(holes.size()) + (holes.size() == 1 ? " place" : " places") + ", the largest near " +

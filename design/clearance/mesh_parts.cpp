@@ -105,7 +105,7 @@ core::scene::Body body_of(NamedMesh solid, const std::string& path, const readin
     return body;
 }
 
-double longest_side(const Mesh& mesh) { return (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).maxCoeff(); }
+double longest_side(const Mesh& mesh) { return core::geometry::box_sides(mesh.vertices).maxCoeff(); }
 
 }  // namespace
 

@@ -301,7 +301,7 @@ private:
         double size = 0;
         for (const int i : unit.bodies) {
             const Matrix3X& x = model_.bodies[i].mesh.vertices;
-            size = std::max(size, (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff());
+            size = std::max(size, core::geometry::box_sides(x).maxCoeff());
         }
         return size;
     }

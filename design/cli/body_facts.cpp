@@ -26,7 +26,7 @@ const char* type_name(BodyType type) {
     return type == BodyType::dynamic_body ? "dynamic" : type == BodyType::static_body ? "static" : "kinematic";
 }
 
-Vector3 size_of(const Body& body) { return body.mesh.vertices.rowwise().maxCoeff() - body.mesh.vertices.rowwise().minCoeff(); }
+Vector3 size_of(const Body& body) { return core::geometry::box_sides(body.mesh.vertices); }
 
 struct MeshFacts {
     std::optional<double> volume;

@@ -113,17 +113,15 @@ Errors write_part(const std::string& name, const Mesh& mesh, const ChangeArgumen
     return together.take_names();
 }
 
-Vector3 extent_of(const Mesh& mesh) { return mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff(); }
-
 double enclosed_by(const Mesh& mesh) { return core::geometry::solid_moments(mesh.vertices, mesh.triangles)(3, 3); }
 
 std::string size_text(const Mesh& mesh) {
-    const Vector3 size = 1e3 * extent_of(mesh);
+    const Vector3 size = 1e3 * core::geometry::box_sides(mesh.vertices);
     return formatted("%.6g x %.6g x %.6g mm, %.6g mm^3", size.x(), size.y(), size.z(), 1e9 * enclosed_by(mesh));
 }
 
 Json size_json(const Mesh& mesh) {
-    const Vector3 size = extent_of(mesh);
+    const Vector3 size = core::geometry::box_sides(mesh.vertices);
     return {{"size", {size.x(), size.y(), size.z()}}, {"volume", enclosed_by(mesh)}};
 }
 

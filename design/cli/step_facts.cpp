@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using core::geometry::Mesh;
 
-Vector3 size_of(const Mesh& mesh) { return 1e3 * (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()); }
+Vector3 size_of(const Mesh& mesh) { return 1e3 * core::geometry::box_sides(mesh.vertices); }
 double volume_of(const Mesh& mesh) { return 1e9 * core::geometry::capped_solid_moments(mesh.vertices, mesh.triangles)(3, 3); }
 
 // Faces are called after their kind: "cylinder 7".

@@ -86,7 +86,7 @@ void tell_solids(const core::geometry::Mesh& mesh, const std::string& path, cons
     Json list = Json::array();
     for (std::size_t k = 0; k < solids.size(); ++k) {
         const Matrix3X& x = solids[k].vertices;
-        const Vector3 size = 1e3 * (x.rowwise().maxCoeff() - x.rowwise().minCoeff());
+        const Vector3 size = 1e3 * core::geometry::box_sides(x);
         const double volume = 1e9 * core::geometry::capped_solid_moments(x, solids[k].triangles)(3, 3);
         const std::string name = std::filesystem::path(path).stem().string() + "#" + std::to_string(k + 1);
         list.push_back({{"name", name}, {"size", {size.x(), size.y(), size.z()}}, {"volume", volume}});
@@ -127,7 +127,7 @@ Verdict validate_mesh_file(const std::string& path, const std::string& given_uni
         for (std::string& warning : verdict.warnings) warning = without_unit(warning);
         for (Error& error : verdict.errors) error.message = without_unit(error.message);
     }
-    const Vector3 size = 1e3 * (mesh->vertices.rowwise().maxCoeff() - mesh->vertices.rowwise().minCoeff());
+    const Vector3 size = 1e3 * core::geometry::box_sides(mesh->vertices);
     const double volume = 1e9 * core::geometry::capped_solid_moments(mesh->vertices, mesh->triangles)(3, 3);
     if (verdict.errors.empty()) {
         const std::string doubt = clearance::doubted_side(1e-3 * size.maxCoeff(), core::mesh_files::states_its_unit(path) ? ""

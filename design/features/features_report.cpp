@@ -20,7 +20,7 @@ using core::parts::SurfaceKind;
 
 double size_of(const core::model::Body& body) {
     const Matrix3X& x = body.mesh.vertices;
-    return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+    return core::geometry::box_sides(x).maxCoeff();
 }
 
 ProcessVerdict verdict_of(const tolerances::Process& process, const core::model::Model& model, const core::features::Fit& fit) {

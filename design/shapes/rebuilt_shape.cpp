@@ -102,7 +102,7 @@ RebuiltShape::Derivatives RebuiltShape::derivatives(const Mesh& middle, const Va
 RebuiltShape::Stencil RebuiltShape::stencil_of(const Mesh& middle, const Values& values, std::size_t k) const {
     Stencil stencil;
     stencil.rounding = options_.rounding.value_or(coordinate_rounding(middle.vertices, options_.unit));
-    const double size = (middle.vertices.rowwise().maxCoeff() - middle.vertices.rowwise().minCoeff()).norm();
+    const double size = core::geometry::box_sides(middle.vertices).norm();
     const double value = values[k], h = difference_step(stencil.rounding, size, value);
     stencil.step = h;
     stencil.at = {value + h, value - h, value + h / 2, value - h / 2};
