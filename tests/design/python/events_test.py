@@ -62,7 +62,7 @@ def test_what_cannot_be_is_refused():
         (fettle.EventTime(TURN, occurrence=0), "out_of_range", "0 is none"),
         (fettle.EventTime(fettle.BodyTurn("arm", [0, 0, 1], "largest")), "unsupported", "leave out what is taken over them"),
         (fettle.ValueAt(TURN, TURN), "wrong_type", "the time of an event"),
-        (fettle.EventTime(TURN, float("nan")), "not_finite", "a threshold is a finite number"),
+        (fettle.EventTime(TURN, float("nan")), "not_finite", "threshold: it is NaN"),
     ):
         with pytest.raises(fettle.Error, match=message) as found:
             fettle.DesignProblem(turning_arm(quantity))
