@@ -13,6 +13,8 @@ std::vector<Branch> Quantity::branches(const Simulated&, const Measurement&, dou
 
 std::optional<Continuation> Quantity::continuation(const Simulated&, const Measurement&, const Bounds&) const { return std::nullopt; }
 
+std::string Quantity::doubt(const Simulated&, const Measurement&) const { return {}; }
+
 std::string Quantity::explanation(const Measurement&) const { return {}; }
 
 Errors Quantity::check(const core::model::Model&, int) const { return {}; }

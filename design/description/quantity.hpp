@@ -113,6 +113,10 @@ public:
     /// The names of the parameters that it follows from itself, and not through the scene: those of a formula of its own, such as a target.
     virtual std::vector<std::string> parameters() const { return {}; }
 
+    /// What may make the value jump, or take it away, at a small change of the design, in a sentence for people: an event that is hardly
+    /// reached. Empty: nothing of the kind.
+    virtual std::string doubt(const Simulated& simulated, const Measurement& measured) const;
+
     /// What a value came from, where that says why it is not a finite number: "force = 3 N, mass = 0 kg". Empty: nothing to say.
     virtual std::string explanation(const Measurement& measured) const;
 

@@ -99,6 +99,8 @@ public:
     /// What is aimed at, relations too.
     const VectorX& scaled_constraint_lower() const { return scaled_constraint_lower_; }
     const VectorX& scaled_constraint_upper() const { return scaled_constraint_upper_; }
+    /// Are the branches of constraint i those of a value that is the greatest (Problem::is_greatest)?
+    bool is_greatest(int i) const { return i < count_of(problem_.is_greatest) && problem_.is_greatest[static_cast<std::size_t>(i)]; }
     std::optional<Evaluation> scaled_reference() const;
     VectorX unscaled(const VectorX& scaled) const;
     double objective_scale() const { return objective_scale_; }            ///< scaled f / f

@@ -34,7 +34,11 @@ Cuts cuts_of(const Evaluator& evaluator, const Evaluation& e) {
     };
     for (size_t k = 0; k < rows.of.size(); ++k) {
         const auto j = static_cast<Eigen::Index>(k);
-        add(rows.of[k], evaluator.scaled_constraint_lower()[rows.of[k]] - rows.values[j], rows.jacobian.row(j).transpose());
+        const int of = rows.of[k];
+        if (evaluator.is_greatest(of))
+            add(of, rows.values[j] - evaluator.scaled_constraint_upper()[of], -rows.jacobian.row(j).transpose());
+        else
+            add(of, evaluator.scaled_constraint_lower()[of] - rows.values[j], rows.jacobian.row(j).transpose());
     }
     Eigen::Index first = 0;
     for (size_t k = 0; k < terms.of.size(); ++k) {
@@ -48,6 +52,20 @@ Cuts cuts_of(const Evaluator& evaluator, const Evaluation& e) {
     cuts.rows.conservativeResize(cuts.of.size(), Eigen::NoChange);
     cuts.lower.conservativeResize(cuts.rows.rows());
     return cuts;
+}
+
+// The rows whose cuts are of their upper side change their sign. @return which
+std::vector<bool> turn_greatest(const Evaluator& evaluator, QuadraticProgram& program) {
+    std::vector<bool> is_turned(static_cast<std::size_t>(program.lower.size()), false);
+    for (const int of : program.cuts.of) {
+        if (of < 0 || !evaluator.is_greatest(of) || is_turned[of]) continue;
+        is_turned[of] = true;
+        program.rows.row(of) *= -1;
+        std::swap(program.lower[of], program.upper[of]);
+        program.lower[of] *= -1;
+        program.upper[of] *= -1;
+    }
+    return is_turned;
 }
 
 // The nearest evaluations to a point, it excepted.
@@ -134,7 +152,7 @@ VectorX smooth_multipliers(const QuadraticSolution& solution) {
     VectorX y = solution.multipliers;
     const double size = y.size() > 0 ? y.lpNorm<Eigen::Infinity>() : 0;
     for (size_t j = 0; j < solution.cut_of.size(); ++j)
-        if (solution.cut_of[j] >= 0 && solution.cut_multipliers[j] > 1e-6 * size) y[solution.cut_of[j]] = 0;
+        if (solution.cut_of[j] >= 0 && std::abs(solution.cut_multipliers[j]) > 1e-6 * size) y[solution.cut_of[j]] = 0;
     return y;
 }
 
@@ -159,7 +177,15 @@ QuadraticSolution best_step(const Evaluator& evaluator, const VectorX& point, co
     program.box_upper = std::move(box.upper);
     program.penalty = penalty;
     program.cuts = cuts_of(evaluator, e);
-    return solve(program);
+    // Cuts are of a row's lower side: rows of values that are the greatest are turned round, and what holds them is turned back.
+    const std::vector<bool> is_turned = turn_greatest(evaluator, program);
+    QuadraticSolution found = solve(program);
+    if (!found.solved) return found;
+    for (std::size_t i = 0; i < is_turned.size(); ++i)
+        if (is_turned[i]) found.multipliers[static_cast<Eigen::Index>(i)] *= -1;
+    for (std::size_t j = 0; j < found.cut_of.size(); ++j)
+        if (found.cut_of[j] >= 0 && is_turned[found.cut_of[j]]) found.cut_multipliers[static_cast<Eigen::Index>(j)] *= -1;
+    return found;
 }
 
 QuadraticSolution restoring_step(const Evaluator& evaluator, const VectorX& point, const Evaluation& e, double radius, double penalty) {

@@ -37,7 +37,8 @@ VectorX smooth_multipliers(const QuadraticSolution& solution);
 VectorX whole_multipliers(const QuadraticSolution& solution);
 
 /// The best step from a scaled point within |d_k| <= radius and the bounds, by what the evaluation there says: branches are cuts, in the
-/// order of constraint_branches, then of objective_branches but each term's first.
+/// order of constraint_branches, then of objective_branches but each term's first. The multipliers of cuts have the sign of their
+/// constraint's: >= 0 of a lower bound, <= 0 of an upper one of values that are the greatest.
 /// @param rest  Curvature beside the residuals'; null: none.
 QuadraticSolution best_step(const Evaluator& evaluator, const VectorX& point, const Evaluation& e, const MatrixX* rest, double radius,
                             double penalty);

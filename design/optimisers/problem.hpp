@@ -36,8 +36,9 @@ struct Evaluation {
     /// f's squared deviations r_i^2 are part of it (each with its weight's root in it): r and dr/dx. Empty where f has none.
     VectorX residuals;
     MatrixX residual_jacobian;
-    /// Branches of constraints that are the least of several (clearances, by their witnesses), c_i <= values(k) for k of i: the other
-    /// branches, c_i and its gradient being the first. Only of those that have a lower bound.
+    /// Branches of constraints that are the least of several (clearances, by their witnesses), c_i <= values(k) for k of i, or the greatest
+    /// (Problem::is_greatest), c_i >= values(k): the other branches, c_i and its gradient being the first. Only of those that have a lower
+    /// bound, or, of the greatest, an upper one.
     Branches constraint_branches;
     /// Branches of the terms of f that are the greatest of several (a clearance to be made large), by their numbers: all branches, first
     /// the one whose value and gradient are part of f and `gradient`.
@@ -65,6 +66,7 @@ struct Problem {
     /// n: whether all is the same at `lower` and `upper` of a variable, an angle's, so that neither is a wall; empty: none are so.
     std::vector<bool> periodic = {};
     VectorX constraint_lower, constraint_upper;  ///< m; what the optimiser aims at; infinite where there is none
+    std::vector<bool> is_greatest = {};          ///< m: a constraint's branches are those of a value that is the greatest; empty: of none
     VectorX relation_lower, relation_upper;      ///< k; what the optimiser aims at; infinite where there is none
     VectorX constraint_margin, relation_margin;  ///< m, k: by how much these lie inside of what is required; empty: they are that
     std::function<Evaluation(const VectorX&)> evaluate;

@@ -113,8 +113,11 @@ private:
     QuadraticSolution corrected_step(const QuadraticSolution& step, const Evaluation& trial) const {
         VectorX predicted = telling_.constraints + telling_.jacobian * step.step;
         const Branches& branches = telling_.constraint_branches;
-        for (int k = 0; k < count_of(branches.of); ++k)
-            predicted[branches.of[k]] = std::min(predicted[branches.of[k]], branches.values[k] + branches.jacobian.row(k).dot(step.step));
+        for (int k = 0; k < count_of(branches.of); ++k) {
+            double& whole = predicted[branches.of[k]];
+            const double branch = branches.values[k] + branches.jacobian.row(k).dot(step.step);
+            whole = evaluator_.is_greatest(branches.of[k]) ? std::max(whole, branch) : std::min(whole, branch);
+        }
         const VectorX miss = trial.constraints - predicted;
         Evaluation shifted = telling_;
         shifted.constraints += miss;

@@ -374,7 +374,7 @@ void DesignProblem::measure(DesignEvaluation& evaluation) const {
     const auto look_at = [&](const auto& of, const description::Measurement& measured) {
         if (std::isfinite(measured.value) && !std::isnan(measured.lower) && !std::isnan(measured.upper)) return;
         if (!evaluation.reason.empty()) return;
-        const std::string why = of.quantity->explanation(measured);
+        const std::string why = measured.fault.empty() ? of.quantity->explanation(measured) : measured.fault;
         evaluation.reason = name_of(of) + ": its value is not a finite number" + (why.empty() ? "" : " (" + why + ")");
     };
     evaluation.objective = evaluation.violation = 0;

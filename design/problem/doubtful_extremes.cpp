@@ -32,23 +32,31 @@ struct Asked {
 
 class Search {
 public:
-    Search(const description::Design& design, const DesignEvaluation& evaluation) : design_(design), simulated_(design, evaluation) {}
+    Search(const description::Design& design, const DesignEvaluation& evaluation)
+        : design_(design), evaluation_(evaluation), simulated_(design, evaluation) {}
 
     std::vector<std::string> run() {
-        for (const description::ObjectiveTerm& term : design_.objective)
-            look_at(*term.quantity, "objective `" + term.name + "`", term.unit);
-        for (const description::Constraint& constraint : design_.constraints) {
+        for (std::size_t k = 0; k < design_.objective.size(); ++k) {
+            const description::ObjectiveTerm& term = design_.objective[k];
+            look_at(*term.quantity, evaluation_.terms[k], "objective `" + term.name + "`", term.unit);
+        }
+        for (std::size_t i = 0; i < design_.constraints.size(); ++i) {
+            const description::Constraint& constraint = design_.constraints[i];
             const StepSeries* series = quantities::series_of(*constraint.quantity);
             const bool is_to_be_negative = series != nullptr && series->over() == Over::largest && constraint.bounds.upper < 0;
-            look_at(*constraint.quantity, "constraint `" + constraint.name + "`", constraint.bounds.unit, is_to_be_negative);
+            look_at(*constraint.quantity, evaluation_.constraints[i], "constraint `" + constraint.name + "`", constraint.bounds.unit,
+                    is_to_be_negative);
         }
         return std::move(sentences_);
     }
 
 private:
-    void look_at(const Quantity& quantity, const std::string& name, double unit, bool is_sign_meant = false) {
+    void look_at(const Quantity& quantity, const description::Measurement& measured, const std::string& name, double unit,
+                 bool is_sign_meant = false) {
+        const Simulated& simulated = simulated_.in(0);
+        if (const std::string doubt = quantity.doubt(simulated, measured); !doubt.empty()) sentences_.push_back(name + ": " + doubt);
         std::vector<Asked> asked;
-        collect(quantity, simulated_.in(0), false, asked);
+        collect(quantity, simulated, false, asked);
         for (const Asked& one : asked) {
             if (told_.count(one.series) > 0) continue;
             const bool may_be_other_sign = one.series->over() != Over::peak && one.series->has_direction() && !one.both_extremes;
@@ -118,6 +126,7 @@ private:
     }
 
     const description::Design& design_;
+    const DesignEvaluation& evaluation_;
     const SimulatedDesign simulated_;
     std::set<const StepSeries*> told_;
     std::vector<std::string> sentences_;

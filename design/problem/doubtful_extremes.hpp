@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The numbers of a design's objective and constraints that are not as meant, or not well known, because they are extremes over the steps:
+/// The numbers of a design's objective and constraints that are not as meant, or not well known: those that say so themselves
+/// (Quantity::doubt), such as the time of an event that is about to vanish, and extremes over the steps:
 /// - the "largest" of a force, torque or velocity with a direction, or the "least", where a step has a larger absolute value of the other
 ///   sign. The "largest" effort of a motor that drives backwards is its least one; "peak" counts both directions
 ///   (quantities/step_series.hpp);

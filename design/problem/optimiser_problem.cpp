@@ -53,6 +53,7 @@ optimisers::Problem optimiser_problem(const DesignProblem& design_problem, const
         problem.constraint_lower[i] = description::target_lower(design.constraints[i].bounds);
         problem.constraint_upper[i] = description::target_upper(design.constraints[i].bounds);
         problem.constraint_margin[i] = design.constraints[i].bounds.margin;
+        problem.is_greatest.push_back(design.constraints[i].quantity->is_greatest_branch());
     }
     if (!design_problem.rest_constraints().empty()) problem.prepared = prepared(design_problem, problem);
     const auto k = static_cast<Eigen::Index>(design.relations.size());

@@ -43,6 +43,12 @@ optimisers::Branches joined(const std::vector<Row>& rows, Eigen::Index parameter
     return branches;
 }
 
+bool is_about_one_scenario(const Design& design, const description::Quantity& quantity) {
+    int about = 0;
+    for (int s = 0; s < description::scenario_count(design); ++s) about += quantity.is_about(s) ? 1 : 0;
+    return about == 1;
+}
+
 // What a branch may be to be asked for; nothing where none is.
 std::optional<double> limit_of(const Design& design, const QuantityBranches& quantity, const description::Quantity& of, double value,
                                BranchReach reach) {
@@ -54,8 +60,12 @@ std::optional<double> limit_of(const Design& design, const QuantityBranches& qua
         if (of.is_greatest_branch()) return weight > 0 ? std::optional(std::numeric_limits<double>::infinity()) : std::nullopt;
         return weight < 0 ? std::optional(value + std::abs(value)) : std::nullopt;
     }
-    const double limit = 2 * design.constraints[index].bounds.lower;
-    return std::isfinite(limit) && value <= limit ? std::optional(limit) : std::nullopt;
+    const description::Bounds& bounds = design.constraints[index].bounds;
+    const double bound = of.is_greatest_branch() ? bounds.upper : bounds.lower;
+    if (!std::isfinite(bound)) return std::nullopt;
+    const double beyond = of.is_greatest_branch() ? value - bound : bound - value;  // by as much the bound is missed
+    const double behind = beyond + (bound != 0 ? std::abs(bound) : std::abs(value));
+    return behind >= 0 ? std::optional(value + behind) : std::nullopt;
 }
 
 }  // namespace
@@ -71,14 +81,17 @@ std::vector<QuantityBranches> branches_of(const Design& design, const descriptio
         if (quantity.branches.size() >= least) all.push_back(std::move(quantity));
     };
     for (size_t k = 0; k < design.objective.size(); ++k)
-        add({true, static_cast<int>(k), {}, {}}, *design.objective[k].quantity, measured.terms[k], 1);
-    for (size_t i = 0; i < design.constraints.size(); ++i)
-        add({false, static_cast<int>(i), {}, {}}, *design.constraints[i].quantity, measured.constraints[i], 2);
+        add({true, static_cast<int>(k), false, {}, {}}, *design.objective[k].quantity, measured.terms[k], 1);
+    for (size_t i = 0; i < design.constraints.size(); ++i) {
+        const description::Quantity& of = *design.constraints[i].quantity;
+        const bool is_in_one_row = is_about_one_scenario(design, of);
+        add({false, static_cast<int>(i), is_in_one_row, {}, {}}, of, measured.constraints[i], is_in_one_row ? 2 : 1);
+    }
     return all;
 }
 
 void add_seeds(const QuantityBranches& quantity, const description::Simulated& simulated, std::vector<adjoint::Seeds>& seeds) {
-    for (size_t k = quantity.of_objective ? 0 : 1; k < quantity.branches.size(); ++k) {
+    for (size_t k = quantity.is_in_one_row ? 1 : 0; k < quantity.branches.size(); ++k) {
         seeds.push_back(adjoint::zero_seeds(simulated.model, count_of(simulated.trajectory.steps)));
         quantity.branches[k].add_seeds(1, seeds.back());
     }
@@ -88,9 +101,9 @@ void take_jacobians(const MatrixX& rows, const MatrixX& constraint_jacobian, std
     Eigen::Index next = 0;
     for (QuantityBranches& quantity : all) {
         const auto count = static_cast<Eigen::Index>(quantity.branches.size());
-        const Eigen::Index own = quantity.of_objective ? count : count - 1;
+        const Eigen::Index own = quantity.is_in_one_row ? count - 1 : count;
         quantity.jacobian.resize(count, rows.cols());
-        if (!quantity.of_objective) quantity.jacobian.row(0) = constraint_jacobian.row(quantity.index);
+        if (quantity.is_in_one_row) quantity.jacobian.row(0) = constraint_jacobian.row(quantity.index);
         quantity.jacobian.bottomRows(own) = rows.middleRows(next, own);
         next += own;
     }
@@ -118,7 +131,8 @@ optimisers::Branches constraint_rows(const Design& design, const std::vector<Qua
     for (const QuantityBranches& quantity : all) {
         if (quantity.of_objective) continue;
         const VectorX values = values_of(quantity);
-        for (const int j : telling_branches(values, quantity.jacobian, ranges))
+        const double sign = design.constraints[quantity.index].quantity->is_greatest_branch() ? -1 : 1;
+        for (const int j : telling_branches(sign * values, sign * quantity.jacobian, ranges))
             rows.push_back({quantity.index, values[j], quantity.jacobian.row(j).transpose()});
     }
     return joined(rows, ranges.size());

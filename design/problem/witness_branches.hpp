@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What a design's clearances have beside the witness that is differentiated: their other branches (description/quantity.hpp), as rows
-/// that optimisers take, or as ties that are reported.
+/// The branches (description/quantity.hpp) of a design's clearances, extremes over the steps and worst of several, beside the one that is
+/// differentiated: as rows that optimisers take, or as ties that are reported.
 #pragma once
 
 #include <vector>
@@ -22,6 +22,7 @@ struct Tie {
 struct QuantityBranches {
     bool of_objective = false;
     int index = 0;
+    bool is_in_one_row = false;                 ///< the first one's derivative is the constraint's own, which has a row already
     std::vector<description::Branch> branches;  ///< the first is the one that the value's own derivative is of
     MatrixX jacobian;                           ///< a row each, per parameter; take_jacobians
 };
@@ -33,17 +34,18 @@ struct Measurements {
 
 enum class BranchReach {
     none,  ///< they are not asked for
-    /// What a step can run into: of constraints with a lower bound those below twice the bound, of terms of the objective with a negative
-    /// weight (which want the value large) those up to twice the value, and all of a value that is the greatest and is wanted small.
+    /// What a step can run into: of constraints with a lower bound those below twice the bound, of a greatest value with an upper bound
+    /// those as far above 0, of terms of the objective with a negative weight (which want the value large) those up to twice the value, and
+    /// all of a value that is the greatest and is wanted small.
     near,
     tied  ///< of all constraints and terms, those that attain the value to within the tolerance of certified distances
 };
 
-/// Left out are quantities without branches, and constraints that have only one.
+/// Left out are quantities without branches, and constraints of one scenario that have only one.
 std::vector<QuantityBranches> branches_of(const description::Design& design, const description::Simulated& simulated,
                                           const Measurements& measured, BranchReach reach);
 
-/// Appends the seeds of the branches: of a constraint without the first, whose derivative is the constraint's own.
+/// Appends the seeds of the branches: without the first where its derivative is the constraint's own.
 void add_seeds(const QuantityBranches& quantity, const description::Simulated& simulated, std::vector<adjoint::Seeds>& seeds);
 
 /// Fills in the Jacobians of all from the rows that belong to those seeds, in their order, and from the constraints' own.

@@ -13,8 +13,10 @@
 #include "design/quantities/clearance.hpp"
 #include "design/quantities/contact_force.hpp"
 #include "design/quantities/energy.hpp"
+#include "design/quantities/event_time.hpp"
 #include "design/quantities/expression.hpp"
 #include "design/quantities/free_range_end.hpp"
+#include "design/quantities/gap.hpp"
 #include "design/quantities/in_scenario.hpp"
 #include "design/quantities/joint_load.hpp"
 #include "design/quantities/joint_position.hpp"
@@ -25,9 +27,12 @@
 #include "design/quantities/mass.hpp"
 #include "design/quantities/step_expression.hpp"
 #include "design/quantities/stroke.hpp"
+#include "design/quantities/time_share.hpp"
+#include "design/quantities/value_at.hpp"
 #include "design/quantities/worst.hpp"
 
 FETTLE_WORDS(fettle::design::quantities::Over, "end", "sum", "mean", "largest", "least", "peak", "rms", "integral")
+FETTLE_WORDS(fettle::design::quantities::Direction, "either", "rising", "falling")
 FETTLE_WORDS(fettle::design::quantities::EnergyKind, "kinetic", "potential", "spring", "total")
 FETTLE_WORDS(fettle::design::quantities::JointLoadKind, "force", "torque", "effort")
 
@@ -232,7 +237,76 @@ std::shared_ptr<const Quantity> in_scenario_from(const Members& q) {
 
 py::object in_scenario_to(const InScenario& q) { return record_class("InScenario")(quantity_to_python(q.quantity()), q.scenario()); }
 
+// In quantities over the steps an expression stands for what it is at each of them.
+
+std::shared_ptr<const StepSeries> series_from(const Members& q, const char* name) {
+    const auto quantity = quantity_from_python(q.object.attr(name));
+    auto series = quantity ? series_of(over_steps(quantity)) : nullptr;
+    if (!series) refuse(ErrorCode::unsupported, q.type + "/" + name, "a quantity that each step has a number of is wanted");
+    return series;
+}
+
+core::expression::Formula threshold_from(const Members& q, const StepSeries& series) {
+    const py::object threshold = q.object.attr("threshold");
+    if (is_followed(threshold)) return formula_from(threshold);
+    return core::expression::constant_formula(q.get<double>("threshold"), core::expression::powers_of(series.numbers_dimension()));
+}
+
+py::object threshold_to(const core::expression::Formula& threshold) {
+    return threshold.is_constant() ? py::float_(core::expression::value_of<double>(threshold, {})) : py::cast(threshold);
+}
+
+std::shared_ptr<const Quantity> event_time_from(const Members& q) {
+    EventTime::Of of;
+    of.series = series_from(q, "of");
+    of.threshold = threshold_from(q, *of.series);
+    of.direction = q.get<Direction>("direction");
+    of.occurrence = q.get<int>("occurrence");
+    of.from = q.get<std::optional<double>>("from_time");
+    of.to = q.get<std::optional<double>>("to_time");
+    return std::make_shared<EventTime>(std::move(of));
+}
+
+py::object event_time_to(const EventTime& q) {
+    const EventTime::Of& of = q.of();
+    return record_class("EventTime")(quantity_to_python(of.series), threshold_to(of.threshold), of.direction, of.occurrence, of.from,
+                                     of.to);
+}
+
+std::shared_ptr<const Quantity> value_at_from(const Members& q) {
+    ValueAt::Of of{series_from(q, "of"), quantity_from_python(q.object.attr("time"))};
+    if (!of.time) refuse(ErrorCode::unsupported, "ValueAt/time", "the time of an event is wanted, or an expression of such times");
+    return std::make_shared<ValueAt>(std::move(of));
+}
+
+py::object value_at_to(const ValueAt& q) {
+    return record_class("ValueAt")(quantity_to_python(q.of().series), quantity_to_python(q.of().time));
+}
+
+std::shared_ptr<const Quantity> time_share_from(const Members& q) {
+    TimeShare::Of of;
+    of.series = series_from(q, "of");
+    of.threshold = threshold_from(q, *of.series);
+    of.is_above = q.get<bool>("above");
+    if (!q.object.attr("along").is_none()) of.along = series_from(q, "along");
+    of.from = q.get<std::optional<double>>("from_time");
+    of.to = q.get<std::optional<double>>("to_time");
+    return std::make_shared<TimeShare>(std::move(of));
+}
+
+py::object time_share_to(const TimeShare& q) {
+    const TimeShare::Of& of = q.of();
+    return record_class("TimeShare")(quantity_to_python(of.series), threshold_to(of.threshold), of.is_above, quantity_to_python(of.along),
+                                     of.from, of.to);
+}
+
 // Series, whose reductions the table reads and writes.
+
+std::shared_ptr<const Quantity> gap_from(const Members& q, const Reduction& reduction) {
+    return std::make_shared<Gap>(Gap::Of{q.get<int>("a"), q.get<int>("b")}, reduction);
+}
+
+py::object gap_to(const Gap& q) { return record_class("Gap")(q.of().a, q.of().b, q.over()); }
 
 std::shared_ptr<const Quantity> marker_position_from(const Members& q, const Reduction& reduction) {
     const MarkerPosition::Of of{q.get<int>("body"), point_from(q, "point"), q.get<Vector3>("axis"), point_from(q, "origin")};
@@ -382,8 +456,12 @@ const std::vector<Row>& table() {
         row<JointLoad, joint_load_from, joint_load_to>("JointLoad"),
         row<BodyTurn, body_turn_from, body_turn_to>("BodyTurn"),
         row<ContactForce, contact_force_from, contact_force_to>("ContactLoad"),
+        row<Gap, gap_from, gap_to>("Gap"),
         row<Energy, energy_from, energy_to>("Energy"),
         row<Law, law_from, law_to>("Law"),
+        row<EventTime, event_time_from, event_time_to>("EventTime"),
+        row<ValueAt, value_at_from, value_at_to>("ValueAt"),
+        row<TimeShare, time_share_from, time_share_to>("TimeShare"),
         row<Expression, expression_from, expression_to>("Expression"),
         row<StepExpression, step_expression_from, step_expression_to>("StepExpression"),
         row<InScenario, in_scenario_from, in_scenario_to>("InScenario"),

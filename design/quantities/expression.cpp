@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/contract.hpp"
 #include "core/base/text.hpp"
@@ -83,8 +84,10 @@ description::QuantityFacts Expression::facts() const {
 Measurement Expression::value(const Simulated& simulated) const {
     Measurement out;
     bool single = true;  // a number each, and no bounds
+    bool is_number = true;
     for (const NamedQuantity& part : parts_) {
         Measurement measured = part.quantity->value(simulated);
+        is_number = is_number && !std::isnan(measured.value);
         single = single && !measured.is_proven && measured.lower == measured.value && measured.upper == measured.value;
         if (out.fault.empty()) out.fault = measured.fault;
         out.parts.push_back(std::move(measured));
@@ -92,7 +95,8 @@ Measurement Expression::value(const Simulated& simulated) const {
     const auto at = [&](int part) -> const Measurement& { return out.parts[part]; };
     const std::vector<double> values = inputs<double>(simulated, [&](int part) { return at(part).value; });
     out.value = out.lower = out.upper = core::expression::value_of<double>(formula_, values);
-    if (single) return out;
+    if (!is_number) out.value = out.lower = out.upper = std::numeric_limits<double>::quiet_NaN();  // nor is a formula of `if` one
+    if (single || !is_number) return out;
     const auto bounds =
         inputs<core::geometry::Range>(simulated, [&](int part) { return core::geometry::Range(at(part).lower, at(part).upper); });
     const core::geometry::Range found = core::expression::value_of<core::geometry::Range>(formula_, bounds);
@@ -143,6 +147,12 @@ std::vector<std::string> Expression::parameters() const {
         out.insert(out.end(), own.begin(), own.end());
     }
     return out;
+}
+
+std::string Expression::doubt(const Simulated& simulated, const Measurement& measured) const {
+    for (size_t k = 0; k < parts_.size(); ++k)
+        if (std::string found = parts_[k].quantity->doubt(simulated, measured.parts[k]); !found.empty()) return found;
+    return {};
 }
 
 std::string Expression::explanation(const Measurement& measured) const {

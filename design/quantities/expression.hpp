@@ -43,6 +43,8 @@ public:
     bool is_about(int scenario) const override;
     std::vector<std::string> parameters() const override;
     std::string explanation(const description::Measurement& measured) const override;
+    /// That of the first of its parts that has one.
+    std::string doubt(const description::Simulated& simulated, const description::Measurement& measured) const override;
     Errors check(const core::model::Model& model, int steps) const override;
 
 private:

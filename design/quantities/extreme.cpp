@@ -41,11 +41,9 @@ struct Cliff {
     Scalar lift() const { return height * belief; }
 };
 
-}  // namespace
-
-Extreme smooth_maximum(const std::vector<double>& y) {
-    FETTLE_ASSERT(!y.empty(), "the extreme of nothing");
-    const int at = static_cast<int>(std::max_element(y.begin(), y.end()) - y.begin()), last = count_of(y) - 1;
+// That of a number that none beside it is above.
+Extreme maximum_at(int at, const std::vector<double>& y) {
+    const int last = count_of(y) - 1;
     const Extreme itself{y[at], at - 2, {0, 0, 1, 0, 0}, 0};
     if (at == 0 || at == last) return itself;
     const auto number = [&](int k) { return Scalar(y[at + k], 5, k + 2); };
@@ -69,5 +67,23 @@ Extreme smooth_maximum(const std::vector<double>& y) {
     out.doubt = (1 - is_bent.value()) * (1 - cliff.belief.value()) * std::min(above_before.value(), above_after.value());
     return out;
 }
+
+}  // namespace
+
+std::vector<Extreme> smooth_maxima(const std::vector<double>& y) {
+    FETTLE_ASSERT(!y.empty(), "the extreme of nothing");
+    std::vector<Extreme> out;
+    for (int k = 0; k < count_of(y);) {
+        int next = k + 1;  // the first number that is another one
+        while (next < count_of(y) && y[next] == y[k]) ++next;
+        const bool is_above_before = k == 0 || y[k] > y[k - 1], is_above_after = next == count_of(y) || y[k] > y[next];
+        if (is_above_before && is_above_after) out.push_back(maximum_at(k, y));
+        k = next;
+    }
+    std::stable_sort(out.begin(), out.end(), [](const Extreme& a, const Extreme& b) { return a.value > b.value; });
+    return out;
+}
+
+Extreme smooth_maximum(const std::vector<double>& y) { return smooth_maxima(y).front(); }
 
 }  // namespace fettle::design::quantities

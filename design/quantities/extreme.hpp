@@ -30,8 +30,10 @@ struct Extreme {
     std::array<double, 5> weights{0, 0, 0, 0, 0};  ///< d value / d y[first + k]; sum 1
     double doubt = 0;                              ///< how much larger it may be between the numbers, which do not show it
 };
-/// Largest value of the sequence in the sense above; at its first or last number, the number itself. Contract: not empty. The earliest of
-/// equal ones.
+/// The largest values of the sequence in the sense above, one for each number that those beside it are below (the first of equal ones); at
+/// the first or last number, the number itself. The largest comes first, of equal ones the earliest. Contract: not empty.
+std::vector<Extreme> smooth_maxima(const std::vector<double>& y);
+/// The first of them. It has a kink where another one becomes larger.
 Extreme smooth_maximum(const std::vector<double>& y);
 
 }  // namespace fettle::design::quantities

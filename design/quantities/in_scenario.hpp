@@ -29,6 +29,10 @@ public:
     void add_deviation_seeds(const description::Simulated& simulated, int i, double scale, description::Seeds& seeds) const override;
     std::vector<description::Branch> branches(const description::Simulated& simulated, const description::Measurement& measured,
                                               double limit) const override;
+    bool is_greatest_branch() const override { return quantity_->is_greatest_branch(); }
+    std::string doubt(const description::Simulated& simulated, const description::Measurement& measured) const override {
+        return quantity_->doubt(simulated.in(scenario_), measured);
+    }
     std::optional<description::Continuation> continuation(const description::Simulated& simulated, const description::Measurement& measured,
                                                           const description::Bounds& bounds) const override {
         return quantity_->continuation(simulated.in(scenario_), measured, bounds);
@@ -44,7 +48,7 @@ private:
     int scenario_;
 };
 
-/// The quantity in that scenario. An expression has those of its parts in it that are of no scenario yet.
+/// The quantity in that scenario. An expression, and the worst of several, have those of their parts in it that are of no scenario yet.
 std::shared_ptr<const description::Quantity> in_scenario(const std::shared_ptr<const description::Quantity>& quantity, int scenario);
 
 /// What is measured, in whichever scenario: the quantity itself where it is of none.
@@ -55,7 +59,7 @@ int scenario_of(const description::Quantity& quantity);
 /// What a clearance is over, in whichever scenario; null: it is none.
 const description::ClearanceRange* clearance_of(const description::Quantity& quantity);
 
-/// Is it of a scenario already, and an expression's parts each?
+/// Is it of a scenario already, and each part of an expression, or of the worst of several?
 bool has_scenario(const description::Quantity& quantity);
 
 }  // namespace fettle::design::quantities

@@ -34,9 +34,8 @@ double number_of_window(Over over, const std::vector<double>& y) {
             return std::accumulate(y.begin(), y.end(), 0.0) / static_cast<double>(y.size());
         case Over::largest:
         case Over::peak:
-            return extreme_of(over, y).extreme.value;
         case Over::least:
-            return -extreme_of(over, y).extreme.value;
+            return value_of(over, extreme_of(over, y));
         case Over::rms:
             return std::sqrt(mean_square(y));
         case Over::end:
@@ -60,10 +59,7 @@ std::vector<double> weights_of_window(Over over, const std::vector<double>& y) {
         out.back() = 1;
         return out;
     }
-    const auto [extreme, sign] = extreme_of(over, y);
-    for (int k = 0; k < count_of(extreme.weights); ++k)
-        if (extreme.weights[k] != 0) out[extreme.first + k] = over == Over::peak ? sign * extreme.weights[k] : extreme.weights[k];
-    return out;
+    return weights_of(over, extreme_of(over, y), y.size());
 }
 
 // y at a time, counted in steps from the first instant.
@@ -154,10 +150,27 @@ Errors check(const Reduction& reduction, Dimension of_instants, const Instants& 
     return errors;
 }
 
-SignedExtreme extreme_of(Over over, const std::vector<double>& y) {
-    const Extreme up = over == Over::least ? Extreme{} : smooth_maximum(y),
-                  down = over == Over::largest ? Extreme{} : smooth_maximum(negated(y));
-    return over == Over::largest || (over == Over::peak && up.value >= down.value) ? SignedExtreme{up, 1} : SignedExtreme{down, -1};
+std::vector<SignedExtreme> extremes_of(Over over, const std::vector<double>& y) {
+    std::vector<SignedExtreme> out;
+    if (over != Over::least)
+        for (const Extreme& extreme : smooth_maxima(y)) out.push_back({extreme, 1});
+    if (over != Over::largest)
+        for (const Extreme& extreme : smooth_maxima(negated(y))) out.push_back({extreme, -1});
+    std::stable_sort(out.begin(), out.end(),
+                     [](const SignedExtreme& a, const SignedExtreme& b) { return a.extreme.value > b.extreme.value; });
+    return out;
+}
+
+SignedExtreme extreme_of(Over over, const std::vector<double>& y) { return extremes_of(over, y).front(); }
+
+double value_of(Over over, const SignedExtreme& extreme) { return over == Over::least ? -extreme.extreme.value : extreme.extreme.value; }
+
+std::vector<double> weights_of(Over over, const SignedExtreme& extreme, std::size_t count) {
+    std::vector<double> out(count, 0.0);
+    const auto& weights = extreme.extreme.weights;
+    for (int k = 0; k < count_of(weights); ++k)
+        if (weights[k] != 0) out[extreme.extreme.first + k] = over == Over::peak ? extreme.sign * weights[k] : weights[k];
+    return out;
 }
 
 std::pair<int, int> window_of(const Reduction& reduction, const Instants& instants, int count) {

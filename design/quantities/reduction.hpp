@@ -68,8 +68,12 @@ struct SignedExtreme {
     Extreme extreme;
     double sign = 1;
 };
-/// Contract: one of these three; there is a number, and all are finite.
+/// All of the window's, that one first. Contract: one of these three; there is a number, and all are finite.
+std::vector<SignedExtreme> extremes_of(Over over, const std::vector<double>& y);
 SignedExtreme extreme_of(Over over, const std::vector<double>& y);
+/// What it comes to, and its derivative in the window's numbers.
+double value_of(Over over, const SignedExtreme& extreme);
+std::vector<double> weights_of(Over over, const SignedExtreme& extreme, std::size_t count);
 /// Is it one of these three?
 inline bool is_extreme(Over over) { return over == Over::largest || over == Over::least || over == Over::peak; }
 

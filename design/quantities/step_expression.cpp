@@ -25,11 +25,19 @@ const StepSeries* stepwise(const Quantity& quantity) {
 
 }  // namespace
 
+std::shared_ptr<const Quantity> over_steps(const std::shared_ptr<const Quantity>& quantity) {
+    const description::QuantityFacts facts = quantity->facts();
+    if (facts.kind != description::QuantityFacts::Kind::formula) return quantity;
+    const auto made = StepExpression::create(*facts.formula, facts.parts, Over::end);
+    return made ? *made : quantity;
+}
+
 std::vector<core::expression::Scope::Name> step_names_of(const std::vector<NamedQuantity>& parts) {
     std::vector<core::expression::Scope::Name> names;
     bool has_time = false;
     for (const NamedQuantity& part : parts) {
-        const StepSeries* series = stepwise(*part.quantity);
+        const auto quantity = over_steps(part.quantity);
+        const StepSeries* series = stepwise(*quantity);
         names.push_back({part.name, powers_of(series != nullptr ? series->numbers_dimension() : part.quantity->dimension())});
         has_time = has_time || part.name == StepExpression::time;
     }
@@ -47,12 +55,13 @@ Result<std::shared_ptr<const StepExpression>> StepExpression::create(Formula for
     std::vector<NamedQuantity> used;
     for (const NamedQuantity& part : parts) {
         if (std::find(formula.inputs.begin(), formula.inputs.end(), part.name) == formula.inputs.end()) continue;
-        if (!part.quantity->facts().is_number)
+        const auto quantity = over_steps(part.quantity);
+        if (!quantity->facts().is_number)
             return Error{ErrorCode::unsupported, "",
                          "`" + part.name +
                              "` cannot stand in an expression over the steps: these name what each instant has a number of, strokes and "
                              "masses, without a `scenario` of their own"};
-        used.push_back(part);
+        used.push_back({part.name, quantity});
     }
     return std::shared_ptr<const StepExpression>(new StepExpression(std::move(formula), std::move(used), *dimension, reduction));
 }

@@ -3,8 +3,8 @@
 ///   y_t = f(u_t, .., time_t, p),   dy_t = sum df/du du_t + df/dp dp
 /// A deviation from a law (lift - 3 mm * sin(turn)), a transmission error (turn_b - 2 * turn_a), power (torque * speed / 1 rad), an angle
 /// between links are each one formula. Parts that say nothing but a derivative (Reduction::is_plain) stand for their numbers, others, such
-/// as a peak or a mass, for the one that they come to, the same at each instant. It has a number at the start if all that it names have
-/// one.
+/// as a peak or a mass, for the one that they come to, the same at each instant; an expression stands for what it is of its parts at each
+/// instant (over_steps). It has a number at the start if all that it names have one.
 ///
 ///     const auto error = StepExpression::parse("output - 2 * input", {{"output", output}, {"input", input}}, Over::peak);
 #pragma once
@@ -56,6 +56,10 @@ private:
     std::vector<NamedQuantity> parts_;
     Dimension instant_dimension_;
 };
+
+/// A quantity as it stands in an expression over the steps: an expression of numbers is the formula of its parts at each instant, which at
+/// the end is that expression. Others are themselves.
+std::shared_ptr<const description::Quantity> over_steps(const std::shared_ptr<const description::Quantity>& quantity);
 
 /// The names that an expression over the steps may use besides parameters, as parse_formula wants them.
 std::vector<core::expression::Scope::Name> step_names_of(const std::vector<NamedQuantity>& parts);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "design/quantities/step_series.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace fettle::design::quantities {
 
 using description::Measurement;
@@ -58,6 +61,31 @@ void StepSeries::add_seeds(const Simulated& simulated, const Measurement&, doubl
     std::vector<double> weights = weights_of(reduction_, numbers(simulated), instants(simulated.trajectory.timestep));
     for (double& weight : weights) weight *= scale;
     add_number_seeds(simulated, weights, seeds);
+}
+
+std::vector<description::Branch> StepSeries::branches(const Simulated& simulated, const Measurement& measured, double limit) const {
+    constexpr double near = 0.25;  // of the range
+    if (reduction_.at || !is_extreme(over()) || std::isnan(measured.value)) return {};
+    const std::vector<double> all = numbers(simulated);
+    const auto [first, past] = window_of(reduction_, instants(simulated.trajectory.timestep), count_of(all));
+    const std::vector<double> inside(all.begin() + first, all.begin() + past);
+    const auto [least, largest] = std::minmax_element(inside.begin(), inside.end());
+    const double reach = std::min(limit - measured.value, near * (*largest - *least));
+    std::vector<description::Branch> out;
+    for (const SignedExtreme& extreme : extremes_of(over(), inside)) {
+        const double value = value_of(over(), extreme);
+        if (std::abs(value - measured.value) > reach || count_of(out) == most_branches) break;
+        std::vector<double> weights = weights_of(over(), extreme, inside.size());
+        weights.insert(weights.begin(), static_cast<std::size_t>(first), 0.0);
+        weights.resize(all.size(), 0.0);
+        out.push_back({value, [this, &simulated, weights = std::move(weights)](double scale, Seeds& seeds) {
+                           std::vector<double> scaled = weights;
+                           for (double& weight : scaled) weight *= scale;
+                           add_number_seeds(simulated, scaled, seeds);
+                       }});
+    }
+    if (out.size() == 1) out.clear();  // it is smooth
+    return out;
 }
 
 Errors StepSeries::check(const core::model::Model& model, int steps) const {

@@ -47,6 +47,12 @@ public:
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
+    /// An extreme has one for each place where the numbers have an extreme that is behind by a quarter of their range at most: the first
+    /// few, the largest first.
+    static constexpr int most_branches = 6;
+    std::vector<description::Branch> branches(const description::Simulated& simulated, const description::Measurement& measured,
+                                              double limit) const override;
+    bool is_greatest_branch() const override { return over() == Over::largest || over() == Over::peak; }
     /// Faults of a reduction that cannot be taken; the derivative of a magnitude, which is not that of its vector.
     Errors check(const core::model::Model& model, int steps) const override;
 

@@ -2,6 +2,8 @@
 #include "design/quantities/worst.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "core/base/contract.hpp"
@@ -27,7 +29,10 @@ Measurement Worst::value(const Simulated& simulated) const {
     for (const auto& part : parts_) out.parts.push_back(part->value(simulated));
     const auto extreme = [&](double Measurement::*side) {
         double found = out.parts.front().*side;
-        for (const Measurement& part : out.parts) found = greatest_ ? std::max(found, part.*side) : std::min(found, part.*side);
+        for (const Measurement& part : out.parts) {
+            if (std::isnan(part.*side)) return part.*side;
+            found = greatest_ ? std::max(found, part.*side) : std::min(found, part.*side);
+        }
         return found;
     };
     out.value = extreme(&Measurement::value);
@@ -55,14 +60,30 @@ void Worst::add_seeds(const Simulated& simulated, const Measurement& measured, d
 std::vector<description::Branch> Worst::branches(const Simulated& simulated, const Measurement& measured, double limit) const {
     const double reach = limit - measured.value;
     std::vector<description::Branch> out;
-    for (int i = 0; i < count_of(parts_); ++i) {
-        const double value = measured.parts[i].value, behind = greatest_ ? measured.value - value : value - measured.value;
-        if (!parts_[i]->is_about(simulated.scenario) || behind > reach) continue;
-        out.push_back({value, [&part = *parts_[i], &simulated, &measured, i](double scale, Seeds& seeds) {
-                           part.add_seeds(simulated, measured.parts[i], scale, seeds);
-                       }});
-    }
+    const auto add = [&](int i) {
+        const description::Quantity& part = *parts_[i];
+        const Measurement& of_part = measured.parts[i];
+        const double behind = std::abs(measured.value - of_part.value);
+        if (!part.is_about(simulated.scenario) || behind > reach) return;
+        std::vector<description::Branch> own;
+        if (part.is_greatest_branch() == greatest_) own = part.branches(simulated, of_part, of_part.value + reach - behind);
+        if (own.empty())
+            own.push_back({of_part.value, [&part, &simulated, &of_part](double scale, Seeds& seeds) {
+                               part.add_seeds(simulated, of_part, scale, seeds);
+                           }});
+        std::move(own.begin(), own.end(), std::back_inserter(out));
+    };
+    const int first = worst(measured);
+    add(first);
+    for (int i = 0; i < count_of(parts_); ++i)
+        if (i != first) add(i);
     return out;
+}
+
+std::string Worst::doubt(const Simulated& simulated, const Measurement& measured) const {
+    for (int i = 0; i < count_of(parts_); ++i)
+        if (std::string found = parts_[i]->doubt(simulated, measured.parts[i]); !found.empty()) return found;
+    return {};
 }
 
 bool Worst::is_at_rest() const {
@@ -82,6 +103,14 @@ std::vector<std::string> Worst::parameters() const {
     return out;
 }
 
-Errors Worst::check(const core::model::Model& model, int steps) const { return parts_.front()->check(model, steps); }
+Errors Worst::check(const core::model::Model& model, int steps) const {
+    Errors errors;
+    for (const auto& part : parts_)
+        for (Error& error : part->check(model, steps)) {
+            const auto same = [&](const Error& known) { return known.message == error.message; };  // one quantity in several scenarios
+            if (std::none_of(errors.begin(), errors.end(), same)) errors.push_back(std::move(error));
+        }
+    return errors;
+}
 
 }  // namespace fettle::design::quantities

@@ -24,9 +24,12 @@ public:
     description::Measurement value(const description::Simulated& simulated) const override;
     void add_seeds(const description::Simulated& simulated, const description::Measurement& measured, double scale,
                    description::Seeds& seeds) const override;
+    /// Those of its parts, each with branches of its own where these are of the same kind; the one that the value is comes first.
     std::vector<description::Branch> branches(const description::Simulated& simulated, const description::Measurement& measured,
                                               double limit) const override;
     bool is_greatest_branch() const override { return greatest_; }
+    /// That of the first of its parts that has one.
+    std::string doubt(const description::Simulated& simulated, const description::Measurement& measured) const override;
     bool is_at_rest() const override;
     bool is_about(int scenario) const override;
     std::vector<std::string> parameters() const override;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 
+#include "core/expression/parse_formula.hpp"
 #include "core/files/nearest_word.hpp"
 #include "core/geometry/named_faces.hpp"
 #include "core/scene/mass_kind.hpp"
@@ -12,6 +14,7 @@
 #include "design/quantities/energy.hpp"
 #include "design/quantities/expression.hpp"
 #include "design/quantities/free_range_end.hpp"
+#include "design/quantities/gap.hpp"
 #include "design/quantities/joint_load.hpp"
 #include "design/quantities/joint_position.hpp"
 #include "design/quantities/law.hpp"
@@ -22,6 +25,8 @@
 #include "design/quantities/own_formula.hpp"
 #include "design/quantities/step_expression.hpp"
 #include "design/quantities/stroke.hpp"
+#include "design/reading/event_reader.hpp"
+#include "design/reading/named_formula.hpp"
 
 namespace fettle::design::reading {
 
@@ -322,13 +327,12 @@ bool read_law_places(const JsonNode& node, const ReadContext& context, quantitie
     std::vector<std::string_view> known;
     for (const quantities::NamedQuantity& each : context.quantities) {
         known.push_back(each.name);
-        if (each.name == *name) of.along = quantities::series_of(each.quantity);
+        if (each.name == *name) of.along = quantities::series_of(quantities::over_steps(each.quantity));
     }
     if (!of.along) {
         const bool is_there = std::find(known.begin(), known.end(), *name) != known.end();
         node["along"].fail(ErrorCode::out_of_range, is_there ? node["along"].shown() + " is no quantity that each instant has a number of"
-                                                             : "there is no quantity " + node["along"].shown() +
-                                                                   " above this one in `quantities`" +
+                                                             : "there is no quantity " + node["along"].shown() + " in `quantities`" +
                                                                    (known.empty() ? "" : "; " + core::files::did_you_mean(*name, known)));
         return false;
     }
@@ -371,41 +375,20 @@ std::shared_ptr<const Quantity> read_law(const JsonNode& node, const ReadContext
 
 // With a word of a reduction it is over the steps.
 std::shared_ptr<const Quantity> read_expression(const JsonNode& node, const ReadContext& context) {
-    const bool is_over_steps = has_reduction(node);
-    const auto text = node.require("expression").string();
-    if (!text) return nullptr;
-    core::expression::Scope scope = context.formulas.scope();
-    scope.what = "quantity, parameter or variable";
-    const auto names = is_over_steps ? quantities::step_names_of(context.quantities) : quantities::names_of(context.quantities);
-    const std::vector<std::string> used = core::expression::names_in(*text);
-    for (const core::expression::Scope::Name& name : names) {
-        if (is_over_steps && scope.find(name.name) != nullptr) {  // the step's `time`; a quantity has no name of a parameter's
-            if (std::find(used.begin(), used.end(), name.name) == used.end()) continue;
-            node["expression"].fail(ErrorCode::inconsistent, "a parameter or variable is called `" + name.name +
-                                                                 "`, which in an expression over the steps is the step's; rename it");
-            return nullptr;
-        }
-        scope.names.push_back(name);
-    }
-    Result<core::expression::Formula> formula = core::expression::parse_formula(*text, scope);
-    for (const Error& error : formula.errors()) node["expression"].fail(error.code, error.message);
-    if (!formula) return nullptr;
-    if (const std::string refused = context.formulas.refusal(*text); !refused.empty()) {
-        node["expression"].fail(ErrorCode::inconsistent, refused);
+    const JsonNode text = node.require("expression");
+    if (!has_reduction(node)) return read_formula(text, context);
+    return read_step_formula(text, context, [&](Dimension of_instants) { return read_reduction(node, of_instants); });
+}
+
+std::shared_ptr<const Quantity> read_gap(const JsonNode& node, const ReadContext& context) {
+    const auto a = context.body(node.require("a")), b = context.body(node.require("b"));
+    const quantities::Reduction reduction = read_reduction(node, Dimension::length);
+    if (!a || !b) return nullptr;
+    if (*a == *b) {
+        node.fail(ErrorCode::inconsistent, "a gap is between two bodies; `a` and `b` are the same");
         return nullptr;
     }
-    if (formula->is_constant()) {
-        node["expression"].fail(ErrorCode::inconsistent, "this names no quantity and no parameter, so no design could change it");
-        return nullptr;
-    }
-    const auto told = [&](const auto& made) -> std::shared_ptr<const Quantity> {
-        for (const Error& error : made.errors()) node["expression"].fail(error.code, error.message);
-        return made ? *made : nullptr;
-    };
-    if (!is_over_steps) return told(quantities::Expression::create(std::move(formula).value(), context.quantities));
-    const auto dimension = named_dimension(formula->dimension);  // without one it is refused
-    const quantities::Reduction reduction = read_reduction(node, dimension.value_or(Dimension::number));
-    return told(quantities::StepExpression::create(std::move(formula).value(), context.quantities, reduction));
+    return std::make_shared<quantities::Gap>(quantities::Gap::Of{*a, *b}, reduction);
 }
 
 // "wheel", or "wheel slot+arc" of faces.
@@ -508,13 +491,54 @@ const std::vector<QuantityType>& quantity_table() {
          "resultant force of contact on a body, `of` another or of all, at the steps' ends: along an `axis`, else its magnitude"},
         {"contact_torque", read_contact_torque, with_reduction({"body", "of", "point", "axis"}), contact_name, "N m",
          "its torque about a point of the body (what a motor that holds a massless one there has to give, with the other sign)"},
+        {"gap", read_gap, with_reduction({"a", "b"}), named_by("a", "b"), "m",
+         "gap between two bodies as contact measures it, at the start and the steps' ends: computed, for events"},
         {"energy", read_energy, with_reduction({"of"}), named_by("of"), "J",
          "kinetic, potential, spring or total energy at the steps' ends"},
-        {"law", read_law, with_reduction({"of", "times", "along", "positions", "values", "profile"}), named_by(), "by its dimension",
-         "a table over the time, or along another quantity, for expressions over the steps: what a motion is to follow"},
-        {"expression", read_expression, with_reduction({"expression"}), expression_name, "by its dimension",
+        {"law",
+         read_law,
+         with_reduction({"of", "times", "along", "positions", "values", "profile"}),
+         named_by(),
+         "by its dimension",
+         "a table over the time, or along another quantity, for expressions over the steps: what a motion is to follow",
+         {"along"}},
+        {"event_time",
+         read_event_time,
+         {"of", "derivative", "threshold", "direction", "occurrence", "from", "to"},
+         named_by("of"),
+         "s",
+         "when a named quantity crosses a threshold, the first time or the k-th; with `derivative` 1, when it turns round",
+         {"of"}},
+        {"value_at",
+         read_value_at,
+         {"of", "derivative", "time"},
+         named_by("of", "time"),
+         "by its dimension",
+         "what a named quantity is at the time of an event",
+         {"of", "time"}},
+        {"time_share",
+         read_time_share,
+         {"of", "derivative", "above", "below", "along", "from", "to"},
+         named_by("of"),
+         "1",
+         "share of the time, or `along` a drive of its travel, during which a named quantity is `above` or `below` a threshold",
+         {"of", "along"}},
+        {"largest",
+         read_largest,
+         {"of"},
+         named_by("of"),
+         "by its dimension",
+         "the largest of several named quantities, of which a search sees each",
+         {"of"}},
+        {"least", read_least, {"of"}, named_by("of"), "by its dimension", "the least of several named quantities, likewise", {"of"}},
+        {"expression",
+         read_expression,
+         with_reduction({"expression"}),
+         expression_name,
+         "by its dimension",
          "a formula of the design's named `quantities` and parameters, such as `max_force / mass`; with `over`, of what they are at each "
-         "step"}};
+         "step",
+         {"expression"}}};
     return table;
 }
 
@@ -531,30 +555,108 @@ const QuantityType* find_quantity_type(std::string_view name) {
     return nullptr;
 }
 
-std::vector<quantities::NamedQuantity> read_named_quantities(const JsonNode& node, const ReadContext& context) {
-    std::vector<quantities::NamedQuantity> out;
-    const ReadContext so_far{context.scene, context.length_unit, context.end_time, context.formulas, out, context.scenarios};
-    std::vector<std::string_view> types = quantity_names();
-    std::erase(types, expression_type);          // it is written where it is used
-    for (const bool is_along : {false, true}) {  // what is along another one is read after it
-        for (const auto& [name, entry] : node.members()) {
-            if (entry["along"].exists() != is_along) continue;
-            if (name.starts_with('#')) continue;
-            if (!core::expression::is_possible_name(name))
-                entry.fail(ErrorCode::out_of_range, "a quantity's name must not be empty or contain a single quote");
-            if (context.formulas.scope().find(name) != nullptr)
-                entry.fail(ErrorCode::inconsistent, "a parameter or variable is called `" + name + "` already");
-            const auto type_name = entry.require("type").choice(types);
-            if (!type_name) continue;
-            const QuantityType& type = *find_quantity_type(*type_name);
-            std::vector<std::string_view> keys{"type", "scenario"};
-            keys.insert(keys.end(), type.keys.begin(), type.keys.end());
-            entry.allow_keys(keys);
-            if (const auto quantity = read_quantity(type, entry, so_far))
-                out.push_back({name, in_named_scenario(entry, quantity, context.scenarios)});
-        }
+namespace {
+
+/// Reads the entries of `quantities`, each after those that it names, in whichever order the file has them; first those that name none, so
+/// that a word which is no quantity's is told with all of these.
+class NamedReader {
+public:
+    NamedReader(const JsonNode& node, const ReadContext& context)
+        : so_far_{context.scene, context.length_unit, context.end_time, context.formulas, out_, context.scenarios} {
+        for (const auto& [name, entry] : node.members())
+            if (!name.starts_with('#')) waiting_.push_back({name, entry, {}});
+        for (Entry& entry : waiting_) entry.needs = named_in(entry.node);
+        std::stable_partition(waiting_.begin(), waiting_.end(), [](const Entry& entry) { return entry.needs.empty(); });
     }
-    return out;
+
+    std::vector<quantities::NamedQuantity> read() {
+        while (!waiting_.empty()) {
+            auto next = std::find_if(waiting_.begin(), waiting_.end(), [this](const Entry& entry) { return first_needed(entry).empty(); });
+            if (next == waiting_.end()) {
+                tell_circle();
+                break;
+            }
+            const Entry entry = *next;
+            waiting_.erase(next);
+            if (!read_entry(entry)) failed_.insert(entry.name);
+        }
+        return std::move(out_);
+    }
+
+private:
+    struct Entry {
+        std::string name;
+        JsonNode node;
+        std::set<std::string> needs;
+    };
+
+    // Names that its texts may mean: all of them, of which those of quantities are looked for.
+    static std::set<std::string> named_in(const JsonNode& entry) {
+        std::set<std::string> out;
+        const QuantityType* type = entry["type"].is_string() ? find_quantity_type(*entry["type"].string()) : nullptr;
+        if (type == nullptr) return out;
+        const auto add = [&](const JsonNode& text) {
+            if (!text.is_string()) return;
+            out.insert(*text.string());
+            for (std::string& name : core::expression::names_in(*text.string())) out.insert(std::move(name));
+        };
+        for (const std::string_view key : type->names_in) {
+            add(entry[key]);
+            if (entry[key].is_array())
+                for (const JsonNode& text : entry[key].elements()) add(text);
+        }
+        return out;
+    }
+
+    // A quantity that it names and that is still to be read.
+    std::string first_needed(const Entry& entry) const {
+        for (const Entry& other : waiting_)
+            if (entry.needs.count(other.name) > 0) return other.name;
+        return {};
+    }
+
+    void tell_circle() const {
+        std::vector<std::string> way{waiting_.front().name};
+        while (std::count(way.begin(), way.end(), way.back()) < 2) {
+            const auto at = std::find_if(waiting_.begin(), waiting_.end(), [&](const Entry& entry) { return entry.name == way.back(); });
+            way.push_back(first_needed(*at));
+        }
+        way.erase(way.begin(), std::find(way.begin(), way.end(), way.back()));
+        const auto at = std::find_if(waiting_.begin(), waiting_.end(), [&](const Entry& entry) { return entry.name == way.front(); });
+        std::string circle = "`" + way.front() + "`";
+        for (std::size_t k = 1; k < way.size(); ++k) circle += " follows from `" + way[k] + "`" + (k + 1 < way.size() ? ", which" : "");
+        at->node.fail(ErrorCode::inconsistent, circle + ": a quantity cannot follow from itself");
+    }
+
+    bool read_entry(const Entry& entry) {
+        const JsonNode& node = entry.node;
+        if (!core::expression::is_possible_name(entry.name))
+            node.fail(ErrorCode::out_of_range, "a quantity's name must not be empty or contain a single quote");
+        if (so_far_.formulas.scope().find(entry.name) != nullptr)
+            node.fail(ErrorCode::inconsistent, "a parameter or variable is called `" + entry.name + "` already");
+        const auto type_name = node.require("type").choice(quantity_names());
+        if (!type_name) return false;
+        const QuantityType& type = *find_quantity_type(*type_name);
+        std::vector<std::string_view> keys{"type", "scenario"};
+        keys.insert(keys.end(), type.keys.begin(), type.keys.end());
+        node.allow_keys(keys);
+        if (std::any_of(entry.needs.begin(), entry.needs.end(), [this](const std::string& name) { return failed_.count(name) > 0; }))
+            return false;  // what is wrong is told of that one
+        const auto quantity = read_quantity(type, node, so_far_);
+        if (quantity) out_.push_back({entry.name, in_named_scenario(node, quantity, so_far_.scenarios)});
+        return quantity != nullptr;
+    }
+
+    std::vector<quantities::NamedQuantity> out_;
+    ReadContext so_far_;
+    std::vector<Entry> waiting_;
+    std::set<std::string> failed_;
+};
+
+}  // namespace
+
+std::vector<quantities::NamedQuantity> read_named_quantities(const JsonNode& node, const ReadContext& context) {
+    return NamedReader(node, context).read();
 }
 
 }  // namespace fettle::design::reading

@@ -26,6 +26,7 @@ struct QuantityType {
     std::function<std::string(const core::files::JsonNode& node)> default_name;  ///< "stroke piston"
     std::string_view unit;                                                       ///< of its value
     std::string_view meaning;                                                    ///< for people: one line
+    std::vector<std::string_view> names_in{};                                    ///< keys whose texts name other quantities
 };
 const std::vector<QuantityType>& quantity_table();
 std::vector<std::string_view> quantity_names();
@@ -40,7 +41,7 @@ inline constexpr std::string_view expression_type = "expression";
 /// The bodies that a clearance is between, and what it is over: all keys of the quantity.
 std::optional<quantities::ClearanceRange> read_clearance_range(const core::files::JsonNode& node, const ReadContext& context);
 
-/// The `quantities` of a design file, which expressions name:
+/// The `quantities` of a design file, which expressions and others of them name; each may name any that does not follow from it:
 ///     "quantities": { "force": { "type": "joint_force", "joint": "pin", "over": "largest" }, "arm": { "type": "mass", "bodies": ["arm"] }
 ///     }, "objective": [ { "type": "expression", "expression": "force / arm" } ]
 std::vector<quantities::NamedQuantity> read_named_quantities(const core::files::JsonNode& node, const ReadContext& context);

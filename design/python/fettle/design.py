@@ -339,6 +339,54 @@ class Energy(Series):
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)
+class Gap(Series):
+    """The gap between two bodies as contact measures it, at the start and the steps' ends [m]: computed, for events."""
+
+    a: Which
+    b: Which
+    over: str = "end"
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class EventTime(Record, Measured):
+    """When a quantity of the steps crosses a threshold [s]: one that says nothing but a derivative, such as a StepExpression or
+    JointPosition("slide", derivative=1), whose crossing of 0 is a reversal.
+
+        first, second = (fettle.EventTime(fettle.JointPosition("slide", derivative=1), occurrence=k) for k in (1, 2))
+        duration = second - first
+
+    Where the event does not happen the design cannot be evaluated, and the reason says how near it came."""
+
+    of: Any = None
+    threshold: Number = number("any", 0.0)  #: in the unit of what crosses it; may be a formula of parameters
+    direction: str = "either"  #: or "rising", "falling"
+    occurrence: int = 1  #: 1: the first crossing in this direction, 2: the second, -1: the last
+    from_time: Optional[Number] = number("time", None)  #: only crossings from here on
+    to_time: Optional[Number] = number("time", None)
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class ValueAt(Record, Measured):
+    """What a quantity of the steps is at a time that another quantity says: an EventTime, or an expression of such."""
+
+    of: Any = None
+    time: Any = None
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
+class TimeShare(Record, Measured):
+    """The share of the time, 0 to 1, during which a quantity of the steps is above a threshold (above=False: below it); `along` another
+    one, of what that travels."""
+
+    of: Any = None
+    threshold: Number = number("any", 0.0)  #: as of an EventTime
+    above: bool = True
+    along: Any = None  #: the drive, in place of the time
+    from_time: Optional[Number] = number("time", None)
+    to_time: Optional[Number] = number("time", None)
+
+
+@dataclasses.dataclass(eq=False, repr=False, slots=True)
 class Law(Series):
     """A table over the time that a motion is to follow, for a StepExpression: `lift - Law("length", [0, 1], [0, "3 mm"], "cubic")`. Its values
     (SI, or with units of what it is of) may be formulas of parameters; outside its times it is constant. With `along`, another quantity of
@@ -654,6 +702,12 @@ def _numbered(record: Any, names: Sequence[str], faults: List[Fault], parameters
     if kind is Law:
         faults.extend(faults_of(record.values, record.of, "Law/values"))
         return record if record.along is None else dataclasses.replace(record, along=_numbered(record.along, names, faults, parameters))
+    if kind in (EventTime, TimeShare, ValueAt):
+        quantities = {name: getattr(record, name) for name in ("of", "along", "time") if name in kind.__dataclass_fields__}
+        numbered = {name: _numbered(of, names, faults, parameters) for name, of in quantities.items() if of is not None}
+        if isinstance(getattr(record, "threshold", None), Given):
+            faults.extend(faults_of(record.threshold, _dimension(record.of), f"{kind.__name__}/threshold"))
+        return dataclasses.replace(record, **numbered)
     if kind is Worst:
         return Worst([_numbered(part, names, faults, parameters) for part in record.parts], record.greatest)
     if kind is InScenario:

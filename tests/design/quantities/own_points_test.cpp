@@ -55,7 +55,14 @@ std::vector<Number> numbers() {
         {"free_range", "reach", R"("joint": "hinge", "end": "above")", R"("= L")", "L"},
         {"law", "times", R"("of": "length", "values": [1, 2])", R"([0, "= T"])", "T"},
         {"law", "positions", R"("of": "length", "along": "angle", "values": [1, 2])", R"([0, "= far * 1 rad"])", "far"},
-        {"law", "values", R"("of": "length", "times": [0, 0.1])", R"([1, "= L"])", "L", true}};
+        {"law", "values", R"("of": "length", "times": [0, 0.1])", R"([1, "= L"])", "L", true},
+        {"event_time", "threshold", R"("of": "angle")", R"("= L / 1 mm * 1 deg")", "L", true},
+        {"event_time", "from", R"("of": "angle", "threshold": 20)", time, "T"},
+        {"event_time", "to", R"("of": "angle", "threshold": 20)", time, "T"},
+        {"time_share", "above", R"("of": "angle")", R"("= L / 1 mm * 1 deg")", "L", true},
+        {"time_share", "below", R"("of": "angle")", R"("= L / 1 mm * 1 deg")", "L", true},
+        {"time_share", "from", R"("of": "angle", "above": 20)", time, "T"},
+        {"time_share", "to", R"("of": "angle", "above": 20)", time, "T"}};
     const std::map<std::string, std::string> steps{{"marker_position", tip},
                                                    {"marker_speed", tip},
                                                    {"joint_force", R"("joint": "hinge")"},
@@ -66,13 +73,14 @@ std::vector<Number> numbers() {
                                                    {"contact_force", R"("body": "box")"},
                                                    {"contact_torque", R"("body": "box", "point": [0, 0, 0])"},
                                                    {"energy", R"("of": "kinetic")"},
+                                                   {"gap", walls},
                                                    {"law", law}};
     for (const auto& [type, rest] : steps) {
         const std::string turned = type == "turn" ? R"(, "axis": [0, 0, 1])" : "";
         out.push_back({type, "from", rest + turned, time, "T"});
         out.push_back({type, "to", rest + turned, time, "T"});
         out.push_back({type, "at", rest + turned, time, "T"});
-        const bool has_axis = type != "joint_position" && type != "motor_effort" && type != "energy" && type != "law";
+        const bool has_axis = type != "joint_position" && type != "motor_effort" && type != "energy" && type != "law" && type != "gap";
         if (has_axis) out.push_back({type, "axis", rest, axis, "N"});
     }
     return out;
@@ -80,9 +88,9 @@ std::vector<Number> numbers() {
 
 // Words, choices and names; of an expression its formula follows, and its windows are those of the others.
 bool is_no_number(const std::string& type, const std::string& key) {
-    static const std::set<std::string> words{"body",   "a",       "b",          "faces_a", "faces_b", "motion",
-                                             "ranges", "bodies",  "joint",      "motor",   "over",    "derivative",
-                                             "along",  "profile", "expression", "end",     "anywhere"};
+    static const std::set<std::string> words{"body",       "a",     "b",        "faces_a",   "faces_b",    "motion", "ranges",
+                                             "bodies",     "joint", "motor",    "over",      "derivative", "along",  "profile",
+                                             "expression", "end",   "anywhere", "direction", "occurrence", "time"};
     const bool is_name = key == "of" && type != "energy";
     return words.count(key) > 0 || is_name || (type == "energy" && key == "of") || type == "expression";
 }
