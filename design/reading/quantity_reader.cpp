@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <set>
 
 #include "core/expression/parse_formula.hpp"
@@ -642,12 +643,27 @@ private:
         node.allow_keys(keys);
         if (std::any_of(entry.needs.begin(), entry.needs.end(), [this](const std::string& name) { return failed_.count(name) > 0; }))
             return false;  // what is wrong is told of that one
+        if (!counts_as_measured(entry)) return false;
         const auto quantity = read_quantity(type, node, so_far_);
         if (quantity) out_.push_back({entry.name, in_named_scenario(node, quantity, so_far_.scenarios)});
         return quantity != nullptr;
     }
 
+    // Each that names others measures them anew: one that names two, of which each names two, and so on, would never come to an end.
+    bool counts_as_measured(const Entry& entry) {
+        constexpr int most = 10000;
+        int count = 1;
+        for (const std::string& name : entry.needs)
+            if (const auto found = measured_.find(name); found != measured_.end()) count += found->second;
+        if (count > most)
+            entry.node.fail(ErrorCode::out_of_range, "it names others that name others, in all " + std::to_string(count) +
+                                                         " times over; at most " + std::to_string(most) + " are measured");
+        measured_[entry.name] = std::min(count, most);
+        return count <= most;
+    }
+
     std::vector<quantities::NamedQuantity> out_;
+    std::map<std::string, int> measured_;  // how many quantities are measured for each
     ReadContext so_far_;
     std::vector<Entry> waiting_;
     std::set<std::string> failed_;

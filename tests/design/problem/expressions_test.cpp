@@ -233,9 +233,11 @@ TEST_CASE("faults of expressions are told with their place and a remedy") {
     Errors errors = named(R"("height": { "type": "mass", "bodies": ["cube"] })");
     REQUIRE_FALSE(errors.empty());
     CHECK(errors[0].where.find("#/quantities/height") != std::string::npos);
-    errors = named(R"("other": { "type": "expression", "expression": "rise" })");
+    CHECK(named(R"("other": { "type": "expression", "expression": "rise / height" })").empty());
+    errors = named(R"("other": { "type": "expression", "expression": "rise * other / 1 mm" })");
     REQUIRE_FALSE(errors.empty());
-    CHECK(errors[0].where.find("#/quantities/other/type") != std::string::npos);
+    CHECK(errors[0].where.find("#/quantities/other") != std::string::npos);
+    CHECK(errors[0].message.find("`other` follows from `other`: a quantity cannot follow from itself") != std::string::npos);
 }
 
 TEST_CASE("an expression that is no number, or has no derivative, is a failed evaluation that says why") {

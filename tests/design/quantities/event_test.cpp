@@ -325,4 +325,17 @@ TEST_CASE("events: what cannot be is refused by name", "[event_test]") {
     CHECK(messages(R"("type": "event_time", "of": "slide", "threshold": 100)").empty());
 }
 
+TEST_CASE("events: named expressions that name each other without end are refused at once", "[event_test]") {
+    std::string quantities = std::string(slide_and_crank) + R"(, "q0": {"type": "expression", "expression": "slide"},
+        "q1": {"type": "expression", "expression": "2 * slide"})";
+    for (int k = 2; k < 60; ++k)
+        quantities += ", \"q" + std::to_string(k) + R"(": {"type": "expression", "expression": "q)" + std::to_string(k - 1) + " + q" +
+                      std::to_string(k - 2) + "\"}";
+    const tests::support::TemporaryFolder folder;
+    folder.write("small.scene.json", quick_return(0.01));
+    const auto file = reading::parse_design(design_of(quantities, bound("ratio", "ratio")), folder.file("small.design.json"));
+    REQUIRE_FALSE(file);
+    CHECK(file.errors().front().message.find("times over") != std::string::npos);
+}
+
 }  // namespace fettle::design::quantities::event_test
