@@ -96,7 +96,10 @@ int run_sided(const Run& run, const std::vector<StartResult>& rows, Starts start
     const auto answer = [&](const OptimiseOutcome& outcome) {
         Json json = answers::outcome_json(run.problem, outcome, run.facts);
         if (was_stopped) add_interruption(json, rows, best_start(rows));
-        if (!rows.empty()) json["starts"] = starts_json(rows);
+        if (!rows.empty()) {
+            json["starts"] = starts_json(rows);
+            json["best_reached"] = best_reached_json(rows);
+        }
         return json;
     };
     Json json;

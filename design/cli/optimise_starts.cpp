@@ -14,6 +14,7 @@
 #include "design/answers/run_folder.hpp"
 #include "design/cli/answers.hpp"
 #include "design/cli/child_process.hpp"
+#include "design/tolerances/yield.hpp"
 
 namespace fettle::design::cli {
 
@@ -71,6 +72,15 @@ void read_result(StartResult& start, int exit_code) {
 double number(const Json& result, const char* key) {
     if (!result.is_object() || !result.contains(key) || !result[key].is_number()) return std::numeric_limits<double>::quiet_NaN();
     return result[key].get<double>();
+}
+
+using Rank = std::pair<double, double>;  // violation, then what is minimised
+
+// Nothing: no design was evaluated.
+std::optional<Rank> rank_of(const Json& result) {
+    const double violation = std::max(0.0, number(result, "constraint_violation")), objective = number(result, "objective");
+    if (!(violation >= 0) || !std::isfinite(objective)) return std::nullopt;
+    return Rank{violation, result.contains("repair") ? number(result["repair"], "distance") : objective};
 }
 
 std::string joined_names(const Json& list) {
@@ -164,18 +174,39 @@ std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOp
 
 std::optional<size_t> best_start(const std::vector<StartResult>& starts) {
     std::optional<size_t> best;
-    std::pair<double, double> best_rank;  // violation, then what is minimised
+    std::optional<Rank> best_rank;
     for (size_t i = 0; i < starts.size(); ++i) {
-        const Json& result = starts[i].result;
-        const double violation = std::max(0.0, number(result, "constraint_violation")), objective = number(result, "objective");
-        if (!(violation >= 0) || !std::isfinite(objective)) continue;
-        const bool repair = result.contains("repair");
-        const std::pair<double, double> rank{violation, repair ? number(result["repair"], "distance") : objective};
-        if (best && !(rank < best_rank)) continue;
+        const std::optional<Rank> rank = rank_of(starts[i].result);
+        if (!rank || (best_rank && !(*rank < *best_rank))) continue;
         best = i;
         best_rank = rank;
     }
     return best;
+}
+
+std::optional<BestReached> best_reached(const std::vector<StartResult>& starts) {
+    constexpr double within = 1e-3, confidence = 0.95;
+    const std::optional<size_t> best = best_start(starts);
+    const std::optional<Rank> least = best ? rank_of(starts[*best].result) : std::nullopt;
+    if (!least || least->first > 0) return std::nullopt;
+    BestReached out;
+    for (const StartResult& start : starts) {
+        if (start.seed == 0 || start.status == "not run" || start.status == "interrupted") continue;
+        ++out.of;
+        const std::optional<Rank> rank = rank_of(start.result);
+        out.starts += rank && rank->first <= 0 && rank->second - least->second <= within * std::abs(least->second);
+    }
+    if (out.of == 0) return std::nullopt;
+    const tolerances::CountedYield share = tolerances::counted_yield(out.starts, out.of, confidence);
+    out.least = share.least.within;
+    out.most = share.most.within;
+    return out;
+}
+
+Json best_reached_json(const std::vector<StartResult>& starts) {
+    const std::optional<BestReached> reached = best_reached(starts);
+    if (!reached) return {};
+    return {{"starts", reached->starts}, {"of", reached->of}, {"share_least", reached->least}, {"share_most", reached->most}};
 }
 
 Json starts_json(const std::vector<StartResult>& starts) {
@@ -197,6 +228,9 @@ Json starts_json(const std::vector<StartResult>& starts) {
 std::string starts_text(const std::vector<StartResult>& starts) {
     std::string text;
     for (const StartResult& start : starts) text += "  " + line_of(start) + "\n";
+    if (const std::optional<BestReached> reached = best_reached(starts))
+        text += formatted("%d of %d random starts reach the best within 0.1%% (of all random starts %.0f to %.0f%%, at 95%% confidence)\n",
+                          reached->starts, reached->of, 100 * reached->least, 100 * reached->most);
     return text;
 }
 

@@ -36,7 +36,18 @@ std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOp
 /// with the least violation; the first of equals. None: no run could evaluate a design.
 std::optional<size_t> best_start(const std::vector<StartResult>& starts);
 
-/// The table, as JSON (`starts`: docs/interface.md) and for people.
+/// How many of the random starts that have ended reach the best design: every requirement met, what is minimised within a thousandth of the
+/// least.
+struct BestReached {
+    int starts = 0, of = 0;
+    double least = 0, most = 1;  ///< of the share of all random starts that do, at 95% (Clopper and Pearson)
+};
+/// Nothing: no start meets every requirement, or none is random.
+std::optional<BestReached> best_reached(const std::vector<StartResult>& starts);
+/// null: nothing.
+nlohmann::ordered_json best_reached_json(const std::vector<StartResult>& starts);
+
+/// The table, as JSON (`starts`: docs/interface.md) and for people, with how many reach the best.
 nlohmann::ordered_json starts_json(const std::vector<StartResult>& starts);
 std::string starts_text(const std::vector<StartResult>& starts);
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -65,6 +66,35 @@ TEST_CASE("the best start meets the requirements, then is lowest; the first of e
     near.result["repair"] = {{"distance", 0.1}};
     far.result["repair"] = {{"distance", 0.2}};
     CHECK(best_start({far, near}) == 1);
+}
+
+TEST_CASE("the share of random starts that reach the best is told with its interval") {
+    const auto random = [](std::uint64_t seed, double violation, double objective) {
+        StartResult start = ended(violation, objective);
+        start.seed = seed;
+        start.status = "optimal";
+        return start;
+    };
+    StartResult failed, waiting;
+    failed.seed = 1004;
+    failed.status = "failed";
+    waiting.seed = 1005;
+    waiting.status = "not run";
+    const std::vector<StartResult> starts{random(0, 0, 1),         random(1001, 0, 1.0009), random(1002, 0, 1.0011),
+                                          random(1003, 0.1, 0.9), failed,                  waiting};
+    const auto reached = best_reached(starts);
+    REQUIRE(reached);
+    CHECK(reached->starts == 1);
+    CHECK(reached->of == 4);
+    // 1 of 4: (1 - p)^4 = 0.975, and the p at which at most one of four has 0.025.
+    CHECK(reached->least == Approx(1 - std::pow(0.975, 0.25)));
+    const double p = reached->most;
+    CHECK(std::pow(1 - p, 4) + 4 * p * std::pow(1 - p, 3) == Approx(0.025));
+    CHECK(starts_text(starts).find("1 of 4 random starts reach the best within 0.1%") != std::string::npos);
+    CHECK(best_reached_json(starts).at("of") == 4);
+    CHECK(!best_reached({random(1001, 0.1, 1)}));  // none meets every requirement
+    CHECK(!best_reached({random(0, 0, 1)}));       // none is random
+    CHECK(best_reached_json({}).is_null());
 }
 
 TEST_CASE("a start's line tells what holds a design that meets its requirements, and by how much another fails") {
