@@ -11,7 +11,8 @@ namespace fettle::design::optimisers {
 
 namespace {
 
-constexpr double first_damping = 1e-6, least_damping = 1e-15, most_damping = 1e14;
+constexpr double bold = 1e-6, careful = 1e-3;  // first dampings
+constexpr double least_damping = 1e-15, most_damping = 1e14;
 constexpr double taken_share = 1e-3;  // of the predicted decrease
 constexpr int slow_steps = 2;
 
@@ -22,7 +23,8 @@ public:
           options_(options),
           point_(evaluator.best_scaled_point()),
           at_(&evaluator.at(point_)),
-          column_norms_(VectorX::Constant(point_.size(), 1e-12)) {}
+          column_norms_(VectorX::Constant(point_.size(), 1e-12)),
+          damping_(options.radius < OptimiserOptions().radius ? careful : bold) {}
 
     NativeOutcome minimise() {
         for (int iterations = 0, slow = 0;; ++iterations) {
@@ -98,7 +100,7 @@ private:
     VectorX point_;
     const Evaluation* at_;  // in the evaluator's records, which stay
     VectorX column_norms_;
-    double damping_ = first_damping, growth_ = 2;
+    double damping_, growth_ = 2;
 };
 
 }  // namespace

@@ -4,7 +4,8 @@
 /// F the variables that no bound holds. A box of equal shares of the ranges, as sequential_optimiser.hpp has it, fits a problem whose
 /// bounds say how far its variables reach; of the lengths of a linkage bounds say little (a path of 1 mm, bounds of 50), and the box is
 /// too narrow for one variable and too wide for another at the same time. lambda begins near nothing: from a far start the whole step of
-/// Gauss and Newton most often leads to the basin where the mechanism fits its task.
+/// Gauss and Newton most often leads to the basin where the mechanism fits its task. Where a first step shorter than the usual one is asked
+/// for (OptimiserOptions::radius), because the start is a good one already, it begins larger.
 /// Source: More 1978, The Levenberg-Marquardt algorithm (the scale D); Nielsen 1999, Damping parameter in Marquardt's method (lambda).
 #pragma once
 

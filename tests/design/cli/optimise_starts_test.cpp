@@ -73,6 +73,8 @@ TEST_CASE("the share of random starts that reach the best is told with its inter
         StartResult start = ended(violation, objective);
         start.seed = seed;
         start.status = "optimal";
+        start.result["evaluations"] = 3;
+        start.result["limited_by"] = Json::array();
         return start;
     };
     StartResult failed, waiting;
@@ -80,8 +82,8 @@ TEST_CASE("the share of random starts that reach the best is told with its inter
     failed.status = "failed";
     waiting.seed = 1005;
     waiting.status = "not run";
-    const std::vector<StartResult> starts{random(0, 0, 1),         random(1001, 0, 1.0009), random(1002, 0, 1.0011),
-                                          random(1003, 0.1, 0.9), failed,                  waiting};
+    const std::vector<StartResult> starts{random(0, 0, 1), random(1001, 0, 1.0009), random(1002, 0, 1.0011), random(1003, 0.1, 0.9), failed,
+                                          waiting};
     const auto reached = best_reached(starts);
     REQUIRE(reached);
     CHECK(reached->starts == 1);
