@@ -205,7 +205,8 @@ private:
             }
             if (!go_on(seen, optimiser, rough, std::max(1, left))) return;
             ends.push_back(last_end_);
-            if (outcome_.report.objective <= negligible() || std::count_if(ends.begin(), ends.end(), agrees) >= enough) break;
+            const bool vanishes = has_squares_alone_ && outcome_.report.feasible && outcome_.report.objective <= negligible();
+            if (vanishes || std::count_if(ends.begin(), ends.end(), agrees) >= enough) break;
         }
         if (!outcome_.report.best.usable) return;
         narrate("on from the best of these");
