@@ -101,10 +101,11 @@ ScrewedPair screwed_pair(const PieceTree& a, const PieceTree& b, const certifica
     return out;
 }
 
+Pose moved(const Screw& screw, double d, const Pose& pose) { return after(motion_of(screw, d), pose); }
+
 Pose pose_of(const ScrewedBody& body, const Coordinates& at) {
     Pose out = body.start;
-    for (std::size_t j = body.screws.size(); j-- > 0;)
-        out = after(motion_of(body.screws[j], at[body.screws[j].coordinate] - body.starts[j]), out);
+    for (std::size_t j = body.screws.size(); j-- > 0;) out = moved(body.screws[j], at[body.screws[j].coordinate] - body.starts[j], out);
     return out;
 }
 
@@ -120,7 +121,7 @@ BoxBound::View BoxBound::view_of(const ScrewedBody& body, const CoordinateBox& b
         const Screw& screw = body.screws[j];
         const auto k = static_cast<std::size_t>(screw.coordinate);
         out.inner[j] = out.middle;
-        out.middle = after(motion_of(screw, middle[k] - body.starts[j]), out.middle);
+        out.middle = moved(screw, middle[k] - body.starts[j], out.middle);
         const Pose low = motion_of(screw, box.low[k] - body.starts[j]), high = motion_of(screw, box.high[k] - body.starts[j]);
         for (std::size_t c = 0; c < out.corners.size(); ++c) out.corners[c] = after((c >> k & 1) != 0 ? high : low, out.corners[c]);
     }

@@ -62,6 +62,9 @@ struct ScrewedPair {
 ScrewedPair screwed_pair(const PieceTree& a, const PieceTree& b, const certificate::Linkage& linkage, const certificate::LinkedPair& linked,
                          const kinematics::Pose& start_a, const kinematics::Pose& start_b);
 
+/// What a screw takes a pose to, as its coordinate is d beyond its start.
+kinematics::Pose moved(const certificate::Screw& screw, double d, const kinematics::Pose& pose);
+
 /// Where a body is.
 kinematics::Pose pose_of(const ScrewedBody& body, const Coordinates& at);
 

@@ -206,6 +206,21 @@ std::vector<PairClearance> nearest_by_part(const model::Model& model, const Join
     return nearest;
 }
 
+std::vector<kinematics::Pose> poses_at(const model::Model& model, const JointRanges& ranges, const std::vector<double>& at) {
+    const certificate::Linkage& linkage = ranges.linkage;
+    std::vector<kinematics::Pose> poses;
+    for (std::size_t body = 0; body < model.bodies.size(); ++body) {
+        kinematics::Pose pose = model.bodies[body].pose_start;
+        for (int k = static_cast<int>(body); k >= 0; k = linkage.bodies[k].parent) {
+            const std::vector<certificate::Screw>& screws = linkage.bodies[k].screws;
+            for (auto screw = screws.rbegin(); screw != screws.rend(); ++screw)
+                pose = moved(*screw, at[screw->coordinate] - linkage.coordinates[screw->coordinate].start, pose);
+        }
+        poses.push_back(pose);
+    }
+    return poses;
+}
+
 kinematics::Pose pose_at_witness(const model::Model& model, const JointRanges& ranges, const PairClearance& pair, int body) {
     const certificate::Linkage& linkage = ranges.linkage;
     const auto parent = [&](int of) { return linkage.bodies[of].parent; };

@@ -59,6 +59,9 @@ ProvenClearances certify_with_proof(const model::Model& model, const JointRanges
 std::vector<PairClearance> nearest_by_part(const model::Model& model, const JointRanges& ranges, const PairRequest& pair, int parts,
                                            double reach, double tolerance);
 
+/// Poses of all bodies where the linkage's coordinates are `at`, within their ranges or not. Contract: a number for each coordinate.
+std::vector<kinematics::Pose> poses_at(const model::Model& model, const JointRanges& ranges, const std::vector<double>& at);
+
 /// Pose of a body, of any, at a pair's witness: what moves both of the pair stays where it is at the start.
 kinematics::Pose pose_at_witness(const model::Model& model, const JointRanges& ranges, const PairClearance& pair, int body);
 

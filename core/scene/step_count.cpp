@@ -21,4 +21,10 @@ base::Result<int> step_count(double duration, double timestep) {
                            " are more than " + std::to_string(most) + " steps: take a shorter time, or a larger time step"};
 }
 
+int step_count(const Scene& scene) {
+    if (!scene.end_time) return default_step_count;
+    const base::Result<int> steps = step_count(*scene.end_time, scene.timestep);
+    return steps ? *steps : default_step_count;
+}
+
 }  // namespace fettle::core::scene

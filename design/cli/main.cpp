@@ -205,8 +205,8 @@ std::vector<Command> add_commands(CommandLine& program, const CommonOptions& com
     add("Measure your printer", {add_coupon(program), add_process(program)});
     add("Simulate and tune",
         {add_simulate(program, common), add_optimise(program, common), add_explore(program, common), add_gradient(program, common)});
-    add("Show and export",
-        {add_report(program, common), add_draw(program, common), add_export(program, common), add_import(program, common)});
+    add("Show and export", {studio::add_studio(program, common), add_report(program, common), add_draw(program, common),
+                            add_export(program, common), add_import(program, common)});
     add("About the program", {mcp::add_mcp(program, common), add_completion(program), add_manual(program)});
     return all;
 }

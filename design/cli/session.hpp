@@ -49,6 +49,9 @@ Command add_manual(CommandLine& program);
 namespace mcp {
 Command add_mcp(CommandLine& program, const CommonOptions& common);
 }
+namespace studio {
+Command add_studio(CommandLine& program, const CommonOptions& common);
+}
 Command add_new(CommandLine& program);
 Command add_optimisers(CommandLine& program);
 Command add_process(CommandLine& program);

@@ -72,6 +72,7 @@ public:
 
     Optimality judge(bool& moved) {
         moved = false;
+        if (is_least_possible()) return nothing_to_gain();
         try {
             moved = gains();
             if (!moved) look_for_margin();
@@ -88,6 +89,22 @@ private:
         QuadraticSolution solution;
         double radius = 0, gain = 0;
     };
+
+    // A sum of squares is never below 0: where it is no more than a gain that counts, no design gains, near by or elsewhere.
+    bool is_least_possible() {
+        worth_ = least_gain(evaluator_, options_, at_.objective);
+        return is_sum_of_squares(evaluator_.start_evaluation()) && is_sum_of_squares(at_) && at_.objective <= worth_;
+    }
+
+    const Optimality& nothing_to_gain() {
+        const auto n = point_.size();
+        result_.judged = true;
+        result_.worth = worth_ / evaluator_.objective_scale();
+        result_.step = result_.residual = VectorX::Zero(n);
+        result_.multipliers = VectorX::Zero(evaluator_.constraints());
+        result_.held.assign(static_cast<std::size_t>(n), Held::stationary);
+        return result_;
+    }
 
     // With the margin that the search has kept, as long as it helps on the way; then within it.
     // @return whether a better point was found.

@@ -13,7 +13,8 @@
 /// evaluated has told of (unexplored.hpp): a saddle is left for what is found there. A step that promises a gain and leads to designs that
 /// cannot be evaluated, however short it is made, shows no optimum either: what stands in the way is no requirement that was asked for.
 /// Values that scatter by more than the tolerance (noise.hpp: the objective's own noise, and each constraint's times its multiplier) show
-/// no optimum, whatever the derivatives say.
+/// no optimum, whatever the derivatives say. A sum of squares that is itself no more than a gain that counts is optimal without a look:
+/// it is never below 0.
 #pragma once
 
 #include <string>

@@ -22,6 +22,8 @@ struct EvaluateOptions {
     bool gradients = true;
     std::function<void(const core::stepper::Progress&)> on_step;  ///< optional
     std::function<bool()> should_stop;                            ///< optional
+    /// Optional: gets the evaluation when its values are known and its derivatives are not; of a design over tolerances never.
+    std::function<void(const struct DesignEvaluation&)> on_values = {};
     bool balance = false;                      ///< fill in each run's Simulation::balance, for the warnings on energy: costs a few percent
     BranchReach branches = BranchReach::near;  ///< with gradients: `near` fills in the evaluation's branches, `tied` its ties
 };

@@ -262,6 +262,7 @@ DesignEvaluation DesignProblem::evaluate(const VectorX& p, const EvaluateOptions
     evaluation.usable = evaluation.reason.empty();
     evaluation.forward_seconds = forward.seconds();
     if (options.gradients && evaluation.usable) {
+        if (options.on_values) options.on_values(evaluation);
         const Stopwatch backward;
         differentiate(moved, options.branches, evaluation);
         evaluation.backward_seconds = backward.seconds();

@@ -311,9 +311,10 @@ private:
             entry["play"].fail(ErrorCode::unsupported, "the scene's gravity follows from parameters, so nothing can be added to it");
         setting->scene.gravity += press;
         const auto& end_time = setting->scene.end_time;
-        const int steps = entry["steps"].integer(1).value_or(
-            end_time == design_.scene.end_time && setting->scene.timestep == design_.scene.timestep ? design_.steps
-                                                                                                    : steps_of(setting->scene));
+        const int steps =
+            entry["steps"].integer(1).value_or(end_time == design_.scene.end_time && setting->scene.timestep == design_.scene.timestep
+                                                   ? design_.steps
+                                                   : core::scene::step_count(setting->scene));
         names.parts_differ = names.parts_differ || changes_parts(entry["set"], setting->scene);
         names.names.push_back(name);
         design_.scenarios.push_back({name, std::move(setting->scene), std::move(setting->shapes), std::move(setting->numbers), steps});
@@ -443,14 +444,8 @@ private:
                                      remark.text);
     }
 
-    static int steps_of(const core::scene::Scene& scene) {
-        if (!scene.end_time) return core::scene::default_step_count;
-        const Result<int> steps = core::scene::step_count(*scene.end_time, scene.timestep);
-        return steps ? *steps : core::scene::default_step_count;  // check_scene tells
-    }
-
     void read_simulation(const JsonNode& node) {
-        design_.steps = steps_of(design_.scene);
+        design_.steps = core::scene::step_count(design_.scene);
         if (!node.exists()) return;
         node.allow_keys({"steps", "clearance_tolerance"});
         design_.steps = node["steps"].integer(1).value_or(design_.steps);

@@ -51,32 +51,6 @@ std::vector<PairRequest> pairs_that_may_collide(const core::model::Model& model)
     return requests;
 }
 
-Json row_of(const PairClearance& pair, const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
-    const core::clearance::Witness& w = pair.witness;
-    const bool pushes = pair.status == core::clearance::PairStatus::contact;
-    return {{"a", model.bodies[pair.a].name},
-            {"b", model.bodies[pair.b].name},
-            {"body_a", pair.a},
-            {"body_b", pair.b},
-            {"motion", true},
-            {"steps", {0, trajectory.steps.size()}},
-            {"minimum", Json()},
-            {"lower", pair.lower / millimetre},
-            {"upper", std::isfinite(pair.upper) ? Json(pair.upper / millimetre) : Json()},
-            {"status", core::clearance::to_string(pair.status)},
-            {"finding", pair.is_clash()                                               ? Json("clash")
-                        : pushes                                                      ? Json("contact")
-                        : pair.lower > 0 && core::certificate::are_apart(pair.solids) ? Json("apart")
-                                                                                      : Json("undecided")},
-            {"time", core::stepper::time_at(trajectory, w.step, w.segment, w.s)},
-            {"point_a", millimetres(w.point_a)},
-            {"point_b", millimetres(w.point_b)},
-            {"depth", Json()},
-            {"volume", Json()},
-            {"touching", Json()},
-            {"note", Json()}};
-}
-
 core::clearance::ClearanceOptions options_over_motion(double tolerance, const std::function<bool()>& should_stop) {
     core::clearance::ClearanceOptions options;
     options.motion = true;
@@ -233,6 +207,42 @@ Json margin_curve(const Json& rows, std::size_t k, const std::vector<core::clear
 
 }  // namespace
 
+Json pair_row(const PairClearance& pair, const core::model::Model& model, const core::stepper::Trajectory& trajectory) {
+    const core::clearance::Witness& w = pair.witness;
+    const bool pushes = pair.status == core::clearance::PairStatus::contact;
+    Json depth, volume;
+    if (pair.overlap) {
+        const core::clearance::Overlap& o = *pair.overlap;
+        constexpr double cubic = millimetre * millimetre * millimetre;
+        depth = {{"lower", o.depth_lower / millimetre},
+                 {"upper", o.depth_upper / millimetre},
+                 {"time", o.time},
+                 {"point", o.depth_lower > 0 ? millimetres(o.center) : Json()}};
+        volume = {{"lower", o.volume_lower / cubic}, {"upper", o.volume_upper / cubic}};
+    }
+    return {{"a", model.bodies[pair.a].name},
+            {"b", model.bodies[pair.b].name},
+            {"body_a", pair.a},
+            {"body_b", pair.b},
+            {"motion", true},
+            {"steps", {0, trajectory.steps.size()}},
+            {"minimum", Json()},
+            {"lower", pair.lower / millimetre},
+            {"upper", std::isfinite(pair.upper) ? Json(pair.upper / millimetre) : Json()},
+            {"status", core::clearance::to_string(pair.status)},
+            {"finding", pair.is_clash()                                               ? Json("clash")
+                        : pushes                                                      ? Json("contact")
+                        : pair.lower > 0 && core::certificate::are_apart(pair.solids) ? Json("apart")
+                                                                                      : Json("undecided")},
+            {"time", core::stepper::time_at(trajectory, w.step, w.segment, w.s)},
+            {"point_a", millimetres(w.point_a)},
+            {"point_b", millimetres(w.point_b)},
+            {"depth", depth},
+            {"volume", volume},
+            {"touching", Json()},
+            {"note", Json()}};
+}
+
 Json told_pairs(const Json& pairs, const core::model::Model& model, const std::vector<StepRange>& steps) {
     Json rows = Json::array();
     for (std::size_t k = 0; k < pairs.size() && k < most_pairs; ++k) {
@@ -285,7 +295,7 @@ Json nearest_pairs(const core::model::Model& model, const core::stepper::Traject
         few ? searched_each(model, trajectory, requests, options)
             : nearest_of_pairs(core::clearance::certify_near(model, trajectory, wide_reach * least, options).windows);
     std::stable_sort(pairs.begin(), pairs.end(), [](const PairClearance& x, const PairClearance& y) { return x.upper < y.upper; });
-    for (std::size_t k = 0; k < pairs.size() && k < most_nearest; ++k) rows.push_back(row_of(pairs[k], model, trajectory));
+    for (std::size_t k = 0; k < pairs.size() && k < most_nearest; ++k) rows.push_back(pair_row(pairs[k], model, trajectory));
     return rows;
 }
 

@@ -30,6 +30,10 @@ struct StepRange {
 nlohmann::ordered_json told_pairs(const nlohmann::ordered_json& pairs, const core::model::Model& model,
                                   const std::vector<StepRange>& steps);
 
+/// Such a row of one pair as it was certified over the trajectory, of whose steps it is.
+nlohmann::ordered_json pair_row(const core::clearance::PairClearance& pair, const core::model::Model& model,
+                                const core::stepper::Trajectory& trajectory);
+
 /// For parts that share material, or touch, a distance of rounding's size says nothing: their `lower` and `upper` become null.
 /// @param rows  after margin_curves, which needs them.
 void leave_out_distances(nlohmann::ordered_json& rows);

@@ -4,7 +4,7 @@
 ///   program         version that made the results; made_by_other: this page's, if it is another
 ///   command         that made the results; null if not known
 ///   kind            "optimise", "simulate", "clearance"; of pages with data of their own "explore" (exploration_data.hpp), "tolerance"
-///                   (tolerance_data.hpp)
+///                   (tolerance_data.hpp), "studio" (docs/studio.md)
 ///   name, folder, description (null: the files have none), up: the direction against gravity
 ///   status, message
 ///   why_not_optimal, evaluations, failed, violation, optimality {worth}, repair, objective {start, end}: of an optimisation

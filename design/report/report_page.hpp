@@ -14,7 +14,7 @@ namespace fettle::design::report {
 std::string_view page_template();
 
 /// The page with `data` (report_data.hpp) in it. Whatever the data hold, texts of users' files too, is data: no '<' of theirs is one of the
-/// page's. Bytes that are no UTF-8 are replaced.
+/// page's. Bytes that are no UTF-8 are replaced. A page of the kind "studio" may ask the program that it comes from; no other asks anybody.
 std::string page_of(const nlohmann::ordered_json& data);
 
 }  // namespace fettle::design::report

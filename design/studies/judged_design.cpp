@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "design/studies/judged_design.hpp"
 
+#include <utility>
+
 #include "design/problem/smoother_models.hpp"
 
 namespace fettle::design::studies {
@@ -13,17 +15,25 @@ JudgedDesign judge_design(const problem::DesignProblem& problem, const VectorX& 
     once.gradients = false;
     once.balance = true;
     once.on_step = options.on_step;
+    return judge_design(problem, problem.evaluate(p, once), options);
+}
+
+JudgedDesign judge_design(const problem::DesignProblem& problem, DesignEvaluation evaluated, const JudgeOptions& options) {
     JudgedDesign judged;
-    judged.final = problem.evaluate(p, once);
+    judged.final = std::move(evaluated);
     if (!judged.final.usable) return judged;
     for (const description::Measurement& measured : judged.final.constraints)
         if (measured.clearance) judged.clearance.push_back(*measured.clearance);
     const problem::PlayTakenUp compared = problem::play_taken_up(problem, judged.final);
     judged.play_not_compared = compared.why_not;
     if (!compared.model) return judged;
+    problem::EvaluateOptions once;
+    once.gradients = false;
+    once.balance = true;
+    once.on_step = options.on_step;
     once.should_stop = options.should_stop;
     judged.play_taken_up_by = compared.model->name;
-    judged.play_taken_up = compared.model->problem.evaluate(p, once);
+    judged.play_taken_up = compared.model->problem.evaluate(judged.final.parameters, once);
     judged.in_doubt = requirements_in_doubt(problem.design(), judged.final, judged.play_taken_up);
     return judged;
 }

@@ -13,7 +13,7 @@
 namespace fettle::design::studies {
 
 struct JudgedDesign {
-    problem::DesignEvaluation final;  ///< without gradients
+    problem::DesignEvaluation final;
     /// The same design with the play of its fits taken up (problem::play_taken_up): where the two differ, the motion within the play
     /// matters. Not usable where there is no such model, or it cannot be simulated.
     problem::DesignEvaluation play_taken_up;
@@ -32,6 +32,9 @@ struct JudgeOptions {
 
 /// Without `finer`. @param p  The values of the parameters, SI.
 JudgedDesign judge_design(const problem::DesignProblem& problem, const VectorX& p, const JudgeOptions& options = {});
+
+/// The same of a design that has been evaluated already, with its gradients or without.
+JudgedDesign judge_design(const problem::DesignProblem& problem, problem::DesignEvaluation evaluated, const JudgeOptions& options = {});
 
 /// Which requirements a design meets, and not by the values of another model of the same motion: what a proof is worth there depends on
 /// which of the two a real mechanism is like. None where the other is not usable; of what no motion changes none.

@@ -240,6 +240,7 @@ private:
         settings.should_stop = options_.should_stop;
         settings.on_evaluation = [this](int number, const VectorX& p, const optimisers::Evaluation& e, bool best) {
             if (!e.usable) failures_.push_back({p, e.reason});
+            if (options_.on_evaluation) options_.on_evaluation(number, p, e, best);
             narrate(evaluation_line(design_, options_.repair ? std::string() : description::objective_unit(design_), number, p, e, best));
         };
         settings.narrate = [this](const std::string& line) { narrate(line); };

@@ -36,7 +36,9 @@ struct OptimiseOptions {
     std::function<bool()> should_stop;                            ///< optional
     std::function<void(const std::string&)> narrate;              ///< optional: a line per evaluation
     std::function<void(const core::stepper::Progress&)> on_step;  ///< optional
-    History* history = nullptr;                                   ///< optional: answers what it has, and keeps newly computed results
+    /// Optional: each design that was tried, by its number: values, what came of it, is it the best so far?
+    std::function<void(int, const VectorX&, const optimisers::Evaluation&, bool)> on_evaluation = {};
+    History* history = nullptr;  ///< optional: answers what it has, and keeps newly computed results
     /// Nothing is tried that the history does not have: the run ends there, interrupted, with the best design so far.
     bool replay_only = false;
 };

@@ -118,6 +118,23 @@ TEST_CASE("least squares: points that cannot be evaluated shorten the step, and 
     CHECK((report.point - Vector2(1, 1)).norm() < 1e-4);
 }
 
+TEST_CASE("least squares: a sum that vanishes is optimal, whatever stands around it") {
+    const VectorX one = VectorX::Ones(2);
+    Problem p = squares(Vector2(0.9, -0.7), -one, one, [](const VectorX& x) { return Rows{x, MatrixX::Identity(2, 2)}; });
+    p.evaluate = [inner = p.evaluate](const VectorX& x) {
+        Evaluation e = inner(x);
+        e.usable = x.norm() > 0.1 || x.norm() < 1e-5;  // nothing next to the least point: no noise can be measured there
+        return e;
+    };
+    const OptimiserReport report = run(p, "gauss_newton", tight(60));
+    CHECK(report.best.objective < 1e-16);
+    CHECK(report.status == OptimiserStatus::optimal);
+    CHECK(report.optimality.judged);
+    CHECK(report.optimality.held.size() == 2);
+    CHECK(report.optimality.residual.size() == 2);
+    CHECK(report.optimality.step.size() == 2);
+}
+
 TEST_CASE("least squares: is it one?") {
     Evaluation e = squares(Vector2(0, 0), {}, {}, valley).evaluate(Vector2(0.5, 0.5));
     CHECK(is_sum_of_squares(e));
