@@ -202,8 +202,10 @@ Result<AssemblyScene> assembly_scene(const clearance::MeshParts& parts, const As
     }
     name_the_others(model, *ground, scene);
     scene.text = scene_text(parts, question, scene);
-    find_limits(question, scene);
-    scene.text = scene_text(parts, question, scene);
+    if (question.limits) {
+        find_limits(question, scene);
+        scene.text = scene_text(parts, question, scene);
+    }
     scene.interrupted = question.should_stop();
     return scene;
 }

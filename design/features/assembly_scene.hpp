@@ -19,6 +19,7 @@ struct AssemblyQuestion {
     std::string to;              ///< where the scene will stand: paths of meshes are as seen from there
     reading::StepWishes step{};  ///< are written into the bodies
     bool joints = false;         ///< false: bodies alone, all static
+    bool limits = true;          ///< of the joints; false: they have none, which takes seconds where looking for them can take minutes
     std::string ground{};        ///< name of the body that stands; empty: the largest
     double density = 1240;       ///< of bodies that move [kg/m^3]
     std::vector<std::string> mesh_dirs{};

@@ -26,5 +26,6 @@ void bind_studies(pybind11::module_& module);      ///< audits, optimisation
 void bind_exploration(pybind11::module_& module);  ///< many designs, several at once
 void bind_tolerances(pybind11::module_& module);   ///< designs as made
 void bind_exports(pybind11::module_& module);      ///< models out, pictures, reports
+void bind_session(pybind11::module_& module);      ///< designs and scenes that are open
 
 }  // namespace fettle::design::python

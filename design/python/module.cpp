@@ -26,4 +26,5 @@ PYBIND11_MODULE(_fettle, module) {
     python::bind_exploration(module);
     python::bind_tolerances(module);
     python::bind_exports(module);
+    python::bind_session(module);
 }

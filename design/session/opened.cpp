@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/read_record.hpp"
+#include "core/base/stop.hpp"
 #include "core/files/json_document.hpp"
 #include "core/files/json_dump.hpp"
 #include "core/model/start_check.hpp"
@@ -76,9 +77,13 @@ Result<DesignFile> meshes_as_design(const std::string& path, const OpenOptions& 
     features::AssemblyQuestion question;
     question.to = (std::filesystem::path(path).parent_path() / std::filesystem::path(path).stem()).string() + ".scene.json";
     question.joints = true;
+    question.limits = false;
+    if (options.inputs.should_stop) question.should_stop = options.inputs.should_stop;
     question.mesh_dirs = options.inputs.mesh_dirs;
     const Result<features::AssemblyScene> made = features::assembly_scene(*parts, question);
     if (!made) return made.errors();
+    if (made->interrupted) throw core::base::Stopped();
+    const core::base::StopScope scope(options.inputs.should_stop);
     Result<core::scene::Scene> scene = core::scene_files::parse_scene(
         made->text, question.to, reading::scene_read_options(options.inputs.mesh_dirs, options.inputs.programs));
     if (!scene) return scene.errors();
@@ -126,6 +131,7 @@ Result<std::shared_ptr<const Opened>> open(const std::string& path, const OpenOp
                               : opened->is_scene ? scene_as_design(path, options.inputs)
                                                  : reading::open_design(path, options.inputs);
     if (!file) return file.errors();
+    const core::base::StopScope scope(options.inputs.should_stop);
     Result<problem::DesignProblem> problem = problem::DesignProblem::create(file->design);
     if (!problem) return problem.errors();
     opened->warnings = file->warnings;

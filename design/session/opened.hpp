@@ -37,8 +37,9 @@ struct OpenOptions {
 
 /// Opens a design, or a scene as a design that wants nothing: its variables that are plain numbers are the parameters, from half to twice
 /// their values (from -10 to 10 of the usual unit where that is 0). A mesh, a folder of them, a 3MF or a STEP file
-/// is the scene that `fettle import --joints` makes of it, as assembled: its bodies, with the joints that their fits propose; bodies that
-/// overlap there pass through each other, which a warning tells. Errors: as reading::open_design and DesignProblem::create have them.
+/// is the scene that `fettle import --joints` makes of it, as assembled: its bodies, with the joints that their fits propose, without
+/// limits; bodies that overlap there pass through each other, which a warning tells. Errors: as reading::open_design and
+/// DesignProblem::create have them. Throws core::base::Stopped if `inputs.should_stop` said so.
 Result<std::shared_ptr<const Opened>> open(const std::string& path, const OpenOptions& options);
 
 /// Files of which it is asked now and then whether someone has written to them.

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <filesystem>
 #include <utility>
 
 #include "core/base/text.hpp"
+#include "core/files/atomic_file.hpp"
 #include "core/files/nearest_word.hpp"
 #include "design/reading/design_text.hpp"
 #include "design/session/least_change.hpp"
@@ -232,6 +234,19 @@ Result<std::string> Session::text(const std::string& folder) const {
     return reading::design_text(opened_->file, values_, folder);
 }
 
+Result<Session::Saved> Session::save(const std::optional<std::string>& as, bool replace) const {
+    const std::shared_ptr<const Opened> opened = this->opened();
+    const std::string own = opened->is_scene ? opened->file.scene_path : opened->file.path;
+    const std::filesystem::path file = as.value_or(own);
+    std::error_code none;
+    const bool is_opened = std::filesystem::weakly_canonical(file, none) == std::filesystem::weakly_canonical(opened->file.path, none);
+    if (!is_opened && !replace && std::filesystem::exists(file, none)) return Saved{file.string(), true};
+    const Result<std::string> made = text(file.parent_path().string());
+    if (!made) return made.errors();
+    if (Errors errors = core::files::write_file_atomically(file, *made); !errors.empty()) return errors;
+    return Saved{file.string(), false};
+}
+
 // What all news have. Contract: the mutex is not held.
 News Session::news(NewsKind kind, std::uint64_t revision) const {
     const std::lock_guard lock(mutex_);
@@ -402,11 +417,20 @@ void Session::search() {
     tell();
 }
 
+// A stop that the caller asked for ends the reading alone.
+Result<std::shared_ptr<const Opened>> Session::reopened() const {
+    try {
+        return session::open(path_, options_.opens);
+    } catch (const std::exception& fault) {
+        return Error{ErrorCode::file_unreadable, path_, fault.what()};
+    }
+}
+
 void Session::reread() {
     if (Clock::now() - looked_at_ < looks_every) return;
     looked_at_ = Clock::now();
     if (!files_.have_changed()) return;
-    Result<std::shared_ptr<const Opened>> again = session::open(path_, options_.opens);
+    Result<std::shared_ptr<const Opened>> again = reopened();
     if (!again) {
         had_faults_ = true;
         News faults = news(NewsKind::faults, newest_);

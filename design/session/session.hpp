@@ -108,6 +108,14 @@ public:
     /// file is not written.
     Result<std::string> text(const std::string& folder) const;
 
+    struct Saved {
+        std::string file;
+        bool is_there = false;  ///< another file has the name, and nothing was written
+    };
+    /// Writes text() into the file that was opened, of meshes into X.scene.json beside them; or into `as`. Another file than the one that
+    /// was opened is replaced on request alone. Errors: of text(); the file cannot be written.
+    Result<Saved> save(const std::optional<std::string>& as = {}, bool replace = false) const;
+
     std::shared_ptr<const Opened> opened() const;
     VectorX values() const;  ///< SI
 
@@ -119,6 +127,7 @@ private:
     void evaluate(std::uint64_t revision);
     void search();
     void reread();
+    Result<std::shared_ptr<const Opened>> reopened() const;
     bool is_stale(std::uint64_t revision) const { return is_closing_ || newest_ != revision; }
     News news(NewsKind kind, std::uint64_t revision) const;
     std::uint64_t take(VectorX values);

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <optional>
 
-#include "core/files/atomic_file.hpp"
 #include "design/answers/answer_json.hpp"
 #include "design/exports/base64.hpp"
 #include "design/exports/export_files.hpp"
@@ -97,18 +96,11 @@ CallAnswer save(Session& session, const Json& call) {
     const std::shared_ptr<const session::Opened> opened = session.opened();
     const std::optional<fs::path> file = saved_file(*opened, given(call, "as").value_or(Json()));
     if (!file) return refusal(std::string("as: a file's name that ends in ") + ending_of(*opened) + " is expected, without a folder");
-    std::error_code none;
-    const bool is_own = *file == fs::path(opened->file.path);
-    if (!is_own && fs::exists(*file, none) && given(call, "replace").value_or(false) != true)
-        return {conflict, {{"error", file->filename().string() + " is there already"}, {"exists", true}}};
-    const Result<std::string> text = session.text(file->parent_path().string());
-    if (!text) return refusal(text.errors());
-    core::files::FilesTogether files;
-    Errors errors = files.add(*file, *text);
-    if (errors.empty()) errors = files.take_names();
-    if (!errors.empty()) return refusal(errors);
-    return done({{"file", file->string()},
-                 {"command", (opened->is_scene ? "fettle simulate " : "fettle check ") + answers::shell_word(file->string())}});
+    const Result<Session::Saved> saved = session.save(file->string(), given(call, "replace").value_or(false) == true);
+    if (!saved) return refusal(saved.errors());
+    if (saved->is_there) return {conflict, {{"error", file->filename().string() + " is there already"}, {"exists", true}}};
+    return done(
+        {{"file", saved->file}, {"command", (opened->is_scene ? "fettle simulate " : "fettle check ") + answers::shell_word(saved->file)}});
 }
 
 CallAnswer export_parts(Session& session, const Json& call, const std::shared_ptr<const problem::DesignEvaluation>& evaluation) {

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/files/json_dump.hpp"
@@ -38,8 +39,10 @@ class Studio {
 public:
     /// Errors: of the files, and of the port.
     Errors open(const StudioArguments& arguments, const CommonOptions& common) {
+        reading::InputOptions inputs = input_options(common);
+        inputs.should_stop = interrupted;
         Result<std::unique_ptr<Session>> session = Session::open(
-            arguments.path, {.opens = {input_options(common), arguments.unit, arguments.split}}, [this](const News& news) { tell(news); });
+            arguments.path, {.opens = {std::move(inputs), arguments.unit, arguments.split}}, [this](const News& news) { tell(news); });
         if (!session) return session.errors();
         session_ = std::move(session).value();
         ServerOptions options;

@@ -219,11 +219,20 @@ from .scene import (
     Variable as Variable,
     held as held,
 )
+from .session import (
+    JudgedDesign as JudgedDesign,
+    News as News,
+    Pulled as Pulled,
+    Session as Session,
+    SessionResult as SessionResult,
+    Tuning as Tuning,
+    open as open,
+)
 from .tolerances import tolerance as tolerance
 
 for _name, _function in list(globals().items()):
     if isinstance(_function, _types.BuiltinFunctionType):
         globals()[_name] = _in_plain_words(_function)
 
-_MODULES = ("design", "errors", "exploration", "notebook", "results", "scene", "tolerances")
+_MODULES = ("design", "errors", "exploration", "notebook", "results", "scene", "session", "tolerances")
 __all__ = [name for name in dir() if not name.startswith("_") and name not in _MODULES]

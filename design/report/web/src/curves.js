@@ -9,7 +9,10 @@ const most = (values) => values.reduce((a, b) => (b !== null && b > a ? b : a), 
 const asList = (values) => Array.from(values, (v) => (Number.isFinite(v) ? v : null));
 
 // Steps: of every stretch of the path its bounds, from its start; the last one's again at the end.
-export function marginPlot(parent, data, pick) {
+export const marginPlot = (parent, data, pick) => new Plot(parent, ...marginCurves(data, pick));
+
+// What such a plot is made of: its abscissas and options.
+export function marginCurves(data, pick) {
   const { margins, pairs } = data;
   const lines = [], bands = [];
   const told = (values) => asList(values).map((v) => (v !== null && v < 1e-7 ? 0 : v));  // of what touches, bounds are not quite 0
@@ -25,11 +28,11 @@ export function marginPlot(parent, data, pick) {
   const all = { name: "All", yRange: () => [0, top * 1.08] }, log = { name: "Log", log: true, floor, yRange: () => [floor * 0.9, top * 1.3] };
   const strictest = required[required.length - 1], near = { name: "Near the limit", yRange: () => [0, strictest * 3] };
   const zooms = required.length && top > 4 * strictest ? [near, all, log] : [all, log];
-  new Plot(parent, asList(margins.time), {
+  return [asList(margins.time), {
     title: "Clearance over the motion", note: "certified band: lower to upper bound", unit: "mm", quantity: "distance", x: { label: "time [s]", time: true },
     lines, bands, zooms, limits: required.map((minimum) => ({ value: minimum, name: `required ${withUnit(number(minimum), "mm")}` })), onPick: pick, height: 260,
     summary: margins.pairs.map((m) => `${pairs[m.pair].a} and ${pairs[m.pair].b}: at least ${withUnit(lowerBound(m.least), "mm")}`).join("; ") + ".",
-  });
+  }];
 }
 
 // The lowest value of a logarithmic axis: below what is required, and no lower than a ten thousandth of what there is; 0 is drawn there.
@@ -86,11 +89,13 @@ export function searchPlots(parent, data) {
 
 // Curves over the motion's time, of charts as the program gives them.
 export function motionPlots(parent, charts, pick) {
-  for (const chart of charts) {
-    const shown = chart.lines.map((line) => ({ name: line.name, values: asList(line.values) }));
-    new Plot(parent, asList(chart.time), {
-      title: chart.title, note: chart.note, unit: chart.unit, quantity: chart.quantity, x: { label: "time [s]", time: true }, lines: shown, onPick: pick,
-      summary: shown.map((line) => `${line.name}: from ${number(least(line.values))} to ${number(most(line.values))} ${chart.unit}`).join("; ") + ".",
-    });
-  }
+  for (const chart of charts) new Plot(parent, ...motionCurves(chart, pick));
+}
+
+export function motionCurves(chart, pick) {
+  const shown = chart.lines.map((line) => ({ name: line.name, values: asList(line.values) }));
+  return [asList(chart.time), {
+    title: chart.title, note: chart.note, unit: chart.unit, quantity: chart.quantity, x: { label: "time [s]", time: true }, lines: shown, onPick: pick,
+    summary: shown.map((line) => `${line.name}: from ${number(least(line.values))} to ${number(most(line.values))} ${chart.unit}`).join("; ") + ".",
+  }];
 }

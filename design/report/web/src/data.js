@@ -12,7 +12,7 @@ function bytesOf(text) {
 }
 
 // {"f32": "base64"} -> Float32Array, and so in everything below.
-function decoded(value) {
+export function decoded(value) {
   if (value === null || typeof value !== "object") return value;
   if (Array.isArray(value)) return value.map(decoded);
   const keys = Object.keys(value);

@@ -8,19 +8,20 @@ import { motionPlots, marginPlot, searchPlots } from "./curves.js";
 import { showExploration } from "./explore.js";
 import { startMotion } from "./motion.js";
 import { made as plots, repaintPlots, setPlotTime } from "./plots.js";
-import { costBars, interferenceTable, pairTable, parameterTable, requirementTable, resolutionTable, startTable } from "./tables.js";
+import { startStudio } from "./studio.js";
+import { costBars, factList, interferenceTable, pairTable, parameterTable, requirementTable, resolutionTable, startTable } from "./tables.js";
 import { showTolerances } from "./tolerance.js";
-import { startPrinting, startTheme } from "./theme.js";
+import { isDark, startPrinting, startTheme } from "./theme.js";
 import * as words from "./words.js";
 
 function fillVerdict(data) {
-  document.title = `${data.name} \u2013 fettle report`;
+  document.title = `${data.name} \u2013 fettle ${data.kind === "studio" ? "studio" : "report"}`;
   byId("name").textContent = data.name;
-  byId("kind").textContent = { optimise: "optimisation", simulate: "simulation", clearance: "clearance", explore: "exploration", tolerance: "tolerances" }[data.kind];
+  byId("kind").textContent = { optimise: "optimisation", simulate: "simulation", clearance: "clearance", explore: "exploration", tolerance: "tolerances", studio: "studio" }[data.kind];
   byId("asked").textContent = words.asked(data);
   const { tone, head, rest } = words.reached(data);
   byId("reached").append(element("strong", { class: `verdict-${tone}` }, head), ` ${rest}`);
-  byId("facts").append(...words.facts(data).map(([term, value, small, tone]) => element("div", { class: tone }, element("dt", {}, term), element("dd", {}, value, small ? element("small", {}, small) : null))));
+  byId("facts").append(...factList(words.facts(data)));
   byId("notices").append(...data.notices.map((text) => element("li", {}, text)));
   if (data.message && !["optimal", "ok", "shown"].includes(data.status)) byId("notices").prepend(element("li", { class: "warn" }, data.message));
 }
@@ -35,7 +36,7 @@ function section(title, intro, ...children) {
 function fillFooter(data) {
   const lines = [];
   if (data.command) lines.push(element("p", {}, "Command: ", element("code", {}, ...wholeWords(data.command))));
-  lines.push(element("p", {}, `fettle ${data.program}${data.made_by_other ? `; this page was made by fettle ${data.made_by_other}` : ""}. ${data.kind === "tolerance" ? "Design" : "Folder"}: `, element("code", {}, data.folder)));
+  lines.push(element("p", {}, `fettle ${data.program}${data.made_by_other ? `; this page was made by fettle ${data.made_by_other}` : ""}. ${data.kind === "tolerance" ? "Design" : "Folder"}: `, element("code", {}, data.folder || ".")));
   const files = data.files.flatMap((name, k) => [k ? ", " : "", element("a", { href: name, download: name }, name), words.fileWords[name] ? ` (${words.fileWords[name]})` : ""]);
   if (files.length) lines.push(element("p", { id: "files" }, "Beside this page: ", ...files, "."));
   lines.push(element("p", {}, words.provenWords(data)));
@@ -100,21 +101,31 @@ function scenarioSection(title, intro, data, motion, chartsOf, pick) {
   motion?.onScenario(show);
 }
 
-const data = { pairs: [], scenarios: [], ...readData() };
+const data = { pairs: [], scenarios: [], notices: [], files: [], ...readData() };
 fillVerdict(data);
 let motion = null;
-if (data.views.length) {
+function startPicture() {
+  byId("motion").hidden = !data.views.length;
+  byId("hero").classList.toggle("plain", !data.views.length);
+  if (!data.views.length) return;
   try {
     motion = startMotion(data, setPlotTime);
   } catch (error) {
     byId("viewport").replaceChildren(element("p", { class: "offscreen" }, "The picture needs WebGL, which this browser does not offer. Everything else is below."));
     console.warn(String(error));
   }
-} else {
-  byId("motion").hidden = true;
-  byId("hero").classList.add("plain");
 }
-const shown = { explore: () => ({ exploration: showExploration(data, section, motion) }), tolerance: () => ({ tolerances: showTolerances(data, section) }) }[data.kind] ?? (() => fillSections(data, motion));
+startPicture();
+// The motion, where there is a picture; a later picture.
+const picture = {
+  motion: () => motion,
+  start() {
+    startPicture();
+    motion?.paint(isDark());
+    motion?.open();
+  },
+};
+const shown = { explore: () => ({ exploration: showExploration(data, section, motion) }), tolerance: () => ({ tolerances: showTolerances(data, section) }), studio: () => ({ studio: startStudio(data, section, picture) }) }[data.kind] ?? (() => fillSections(data, motion));
 const parts = shown() ?? {};
 fillFooter(data);
 const repaint = () => {
@@ -125,8 +136,8 @@ startTheme((dark) => {
   motion?.paint(dark);
   repaint();
 });
-startPrinting(motion?.viewer, repaint);
+startPrinting(() => motion?.viewer, repaint);
 motion?.open();
 announce("");
 performance.mark("fettle-ready");
-window.fettleReport = { data, motion, plots, ...parts };
+window.fettleReport = { data, get motion() { return motion; }, plots, ...parts };

@@ -5,6 +5,7 @@ import * as THREE from "three";
 import { indexAt } from "./data.js";
 import { announce, byId, element, reducedMotion } from "./dom.js";
 import { seconds, spaced, upperBound, withUnit } from "./numbers.js";
+import { isDark } from "./theme.js";
 import { Viewer } from "./viewer.js";
 import { depthWords, isShared, isTouching, touchWords } from "./words.js";
 
@@ -23,24 +24,73 @@ class Motion {
     this.viewer = viewer;
     this.data = data;
     this.onTime = onTime;
-    const all = data.views.map((view) => view.times);
-    this.start = Math.min(...all.map((times) => times[0]));
-    this.end = Math.max(...all.map((times) => times[times.length - 1]));
-    this.times = (data.views.find((view) => view.name === this.viewer.mode) ?? data.views[0]).times;
+    this.takeTimes();
     this.scenario = 0;
     this.scenarioShown = [];
     this.time = this.start;
     this.speed = this.firstSpeed();
     this.chosen = null;
+    this.hand = null;  // what moves the parts by hand: leave() for the motion, show() it again
     this.fillTransport();
     this.fillCompare();
     this.fillScenarios();
     this.fillParts();
+    byId("parts-all").addEventListener("click", () => this.showAll());
     this.fillSection();
     this.openWhatHides();
     this.listen();
-    byId("overlap-key").hidden = !data.pairs.some(isShared);
-    byId("canvas").setAttribute("aria-label", `${data.name}: ${data.views[0].bodies.map((body) => body.name).slice(0, 12).join(", ")}`);
+  }
+
+  takeTimes() {
+    const { views } = this.data, all = views.map((view) => view.times);
+    this.start = Math.min(...all.map((times) => times[0]));
+    this.end = Math.max(...all.map((times) => times[times.length - 1]));
+    this.times = (views.find((view) => view.name === this.viewer.mode) ?? views[0]).times;
+  }
+
+  // Other parts or another motion, as `data` has them: of other values of a design, or of files that were written to. The instant, what is
+  // chosen, and whether it plays, stay; what is marked is not known of these yet.
+  replace() {
+    const { viewer, data } = this, moved = this.moves(), home = viewer.isAtHome(), names = viewer.bodies.map((body) => body.name);
+    viewer.replace(data.views, data.meshes);
+    viewer.marked = null;
+    viewer.pose(null);
+    this.takeTimes();
+    this.fitTransport();
+    if (names.join("\n") !== viewer.bodies.map((body) => body.name).join("\n")) {
+      this.chosen = null;
+      this.fillParts();
+      this.paint(isDark());
+    }
+    if (this.moves() && !this.hasMoved) {
+      this.speed = this.firstSpeed();
+      byId("speed").value = this.speed;
+      if (home) viewer.view("home", true);
+      if (!byId("section").checked) byId("section-axis").value = this.firstAxis();
+      this.openWhatHides();
+    }
+    if (moved && !this.moves()) this.resumes = this.playing;  // as soon as there is a motion again
+    if (!this.moves()) this.pause();
+    else if (!moved && (this.hasMoved ? this.resumes : !reducedMotion())) this.play();
+    this.hasMoved ||= this.moves();
+    if (this.moves()) this.go(this.time);
+  }
+
+  // What is marked, as the data's pairs have it: those of what is shown.
+  setPairs() {
+    const { viewer, data } = this, pair = this.chosen === null ? null : data.pairs[this.chosen];
+    viewer.setPairs(data);
+    this.fillTicks();
+    viewer.marked = viewer.held = null;
+    if (pair && this.canShow(this.chosen)) {
+      viewer.held = pair.poses ?? null;
+      viewer.marked = this.markOf(pair, this.nearInstant());
+    } else {
+      this.markWorst();
+    }
+    this.highlight();
+    viewer.draw();
+    this.hand?.show();
   }
 
   moves() {
@@ -56,9 +106,7 @@ class Motion {
 
   fillTransport() {
     const scrub = byId("scrub");
-    scrub.min = this.start;
-    scrub.max = this.end;
-    document.querySelector(".transport").hidden = !this.moves();
+    this.fitTransport();
     byId("speed").append(...speeds.map((s) => element("option", { value: s, selected: s === this.speed }, `${s}\u00d7`)));
     byId("speed").addEventListener("change", (event) => (this.speed = Number(event.target.value)));
     scrub.addEventListener("input", () => {
@@ -66,8 +114,20 @@ class Motion {
       this.seek(Number(scrub.value));
     });
     byId("play").addEventListener("click", () => (this.playing ? this.pause() : this.play()));
+    this.fillTicks();
+  }
+
+  fitTransport() {
+    const scrub = byId("scrub");
+    scrub.min = this.start;
+    scrub.max = this.end;
+    document.querySelector(".transport").hidden = !this.moves();
+  }
+
+  fillTicks() {
+    byId("overlap-key").hidden = !this.data.pairs.some(isShared);
     const marks = this.data.pairs.map((pair, k) => ({ pair, k })).filter(({ pair, k }) => pair.motion && this.canShow(k));
-    byId("ticks").append(...marks.map(({ pair, k }) => {
+    byId("ticks").replaceChildren(...marks.map(({ pair, k }) => {
       const mark = element("span", { "data-pair": k });
       mark.style.left = `${(100 * (this.instant(pair) - this.start)) / (this.end - this.start || 1)}%`;
       return mark;
@@ -84,6 +144,7 @@ class Motion {
 
   play() {
     if (!this.moves()) return;
+    this.hand?.leave();
     if (this.time >= this.end) this.seek(this.start);
     this.playing = true;
     this.setPlayButton();
@@ -121,6 +182,11 @@ class Motion {
   }
 
   seek(t) {
+    this.hand?.leave();
+    this.go(t);
+  }
+
+  go(t) {
     this.time = Math.min(this.end, Math.max(this.start, t));
     this.viewer.time = this.time;
     byId("scrub").value = this.time;
@@ -192,7 +258,9 @@ class Motion {
 
   fillParts() {
     this.swatches = [];
-    byId("parts").append(...this.data.views[0].bodies.map((body, i) => {
+    this.viewer.hidden.clear();
+    byId("canvas").setAttribute("aria-label", `${this.data.name}: ${this.data.views[0].bodies.map((body) => body.name).slice(0, 12).join(", ")}`);
+    byId("parts").replaceChildren(...this.data.views[0].bodies.map((body, i) => {
       const swatch = element("span", { class: "swatch", "aria-hidden": "true" }), box = element("input", { type: "checkbox", checked: true });
       box.addEventListener("change", () => {
         if (box.checked) this.viewer.hidden.delete(i);
@@ -202,11 +270,12 @@ class Motion {
       this.swatches.push(swatch);
       return element("li", {}, element("label", {}, box, swatch, element("span", {}, body.name)));
     }));
-    byId("parts-all").addEventListener("click", () => {
-      this.viewer.hidden.clear();
-      for (const box of byId("parts").querySelectorAll("input")) box.checked = true;
-      this.viewer.draw();
-    });
+  }
+
+  showAll() {
+    this.viewer.hidden.clear();
+    for (const box of byId("parts").querySelectorAll("input")) box.checked = true;
+    this.viewer.draw();
   }
 
   paint(dark) {
@@ -289,6 +358,11 @@ class Motion {
     return (isShared(pair) ? pair.depth?.time : null) ?? pair.time ?? this.time;
   }
 
+  // For how long round its instant a chosen pair is marked.
+  nearInstant() {
+    return Math.max(1e-9, 0.51 * (this.data.step || 0));
+  }
+
   // Its two points, or twice the middle of what both bodies share; and for how long round its instant.
   markOf(pair, near) {
     const shared = isShared(pair), middle = shared ? pair.depth?.point : null;
@@ -323,7 +397,7 @@ class Motion {
     if (viewer.mode !== "after" && this.data.views.length > 1) this.setMode("after");
     byId("explode").value = 0;
     viewer.explode(0);
-    const marked = this.markOf(pair, Math.max(1e-9, 0.51 * (this.data.step || 0))), { a, b } = marked, middle = a.clone().add(b).multiplyScalar(0.5);
+    const marked = this.markOf(pair, this.nearInstant()), { a, b } = marked, middle = a.clone().add(b).multiplyScalar(0.5);
     const along = b.clone().sub(a), gap = along.length();
     along.normalize();
     const home = viewer.homeDirection(), thin = new THREE.Vector3().setComponent("xyz".indexOf(this.firstAxis()), 1);
@@ -376,6 +450,7 @@ class Motion {
     }
     this.applySection();
     this.highlight();
+    this.hand?.show();
     this.viewer.view("home");
   }
 

@@ -33,15 +33,40 @@ export class Plot {
     this.options = options;
     this.on = options.lines.map(() => true);
     this.zoom = options.zooms?.[0] ?? options;
-    const note = options.note ? element("span", {}, options.note) : null;
-    this.holder = element("div", { class: "plot", role: "img", "aria-label": `${options.title}. ${options.summary ?? ""}` });
+    this.holder = element("div", { class: "plot", role: "img" });
+    this.caption = element("figcaption");
     this.legend = element("ul", { class: "legend", "aria-label": `Curves of: ${options.title}` });
-    this.figure = element("figure", {}, element("figcaption", {}, element("h3", {}, options.title), note, this.zoomButtons()), this.holder, this.legend);
+    this.figure = element("figure", {}, this.caption, this.holder, this.legend);
+    this.fillCaption();
     parent.append(this.figure);
     this.make();
     this.observer = new ResizeObserver(() => this.plot.setSize({ width: this.holder.clientWidth, height: this.height() }));
     this.observer.observe(this.holder);
     made.push(this);
+  }
+
+  fillCaption() {
+    const { title, note, summary } = this.options;
+    this.holder.setAttribute("aria-label", `${title}. ${summary ?? ""}`);
+    this.caption.replaceChildren(...[element("h3", {}, title), note ? element("span", {}, note) : null, this.zoomButtons()].filter(Boolean));
+  }
+
+  // Other curves of the same kind; what was chosen of them stays chosen.
+  replace(xs, options) {
+    const { name } = this.zoom;
+    if (options.lines.length !== this.on.length) this.on = options.lines.map(() => true);
+    this.xs = xs;
+    this.options = options;
+    this.zoom = options.zooms?.find((zoom) => zoom.name === name) ?? options.zooms?.[0] ?? options;
+    this.fillCaption();
+    this.make();
+  }
+
+  remove() {
+    this.observer.disconnect();
+    this.plot.destroy();
+    this.figure.remove();
+    made.splice(made.indexOf(this), 1);
   }
 
   zoomButtons() {

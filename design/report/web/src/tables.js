@@ -4,6 +4,9 @@ import { element } from "./dom.js";
 import { lowerBound, number, percent, plural, seconds, spaced, upperBound, withUnit } from "./numbers.js";
 import { capital, depthRange, finerName, heldWords, isShared, isTouching, spansMuch, startName, touchWords, volumeRange } from "./words.js";
 
+// [term, value, small print, tone]
+export const factList = (rows) => rows.map(([term, value, small, tone]) => element("div", { class: tone }, element("dt", {}, term), element("dd", {}, value, small ? element("small", {}, small) : null)));
+
 export function tableOf(label, headings, rows) {
   const head = headings.map(([text, type]) => element("th", { scope: "col", class: type }, text));
   const table = element("table", { class: "stacked" }, element("caption", { class: "visually-hidden" }, label), element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...rows));
@@ -83,7 +86,7 @@ export function resolutionTable({ runs, rows }) {
 
 export function requirementTable(data, show) {
   const rows = data.requirements.map((r) => {
-    const pair = r.pair === null ? null : data.pairs[r.pair], shared = pair !== null && isShared(pair);
+    const pair = data.pairs[r.pair] ?? null, shared = pair !== null && isShared(pair);
     return element("tr", r.pair === null ? {} : { "data-pair": r.pair },
       opener(r.name, r.fault, r.pair, show),
       cell("Required", "num", requiredWords(r)),

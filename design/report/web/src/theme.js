@@ -31,13 +31,15 @@ export function startTheme(paint) {
 }
 
 // A page on paper is light, and has a still picture in place of the moving one.
-export function startPrinting(viewer, repaintPlots) {
+// `viewerNow()`: the picture's, where there is one.
+export function startPrinting(viewerNow, repaintPlots) {
   const still = byId("still"), root = document.documentElement;
   byId("print").addEventListener("click", () => window.print());
   let before;
   window.addEventListener("beforeprint", () => {
     before = root.dataset.theme;
     root.dataset.theme = "light";
+    const viewer = viewerNow();
     if (viewer) {
       viewer.paint(false);
       still.src = viewer.picture();
@@ -49,7 +51,7 @@ export function startPrinting(viewer, repaintPlots) {
     if (before) root.dataset.theme = before;
     else delete root.dataset.theme;
     still.hidden = true;
-    viewer?.paint(isDark());
+    viewerNow()?.paint(isDark());
     repaintPlots();
   });
 }

@@ -12,6 +12,9 @@ import { solidOf } from "./solid.js";
 // Material that two parts share.
 const interfering = (data) => (data.pairs ?? []).filter((pair) => pair.finding === "clash" && pair.body_a >= 0 && pair.body_b >= 0).map((pair) => [pair.body_a, pair.body_b]);
 
+const isSame = (x, y) => x.length === y.length && x.every((v, i) => v === y[i]);
+const isSameMesh = (x, y) => isSame(x.vertices, y.vertices) && isSame(x.triangles, y.triangles) && isSame(x.edges ?? [], y.edges ?? []);
+
 export class Viewer {
   constructor(canvas, overlay, data) {
     this.canvas = canvas;
@@ -23,7 +26,8 @@ export class Viewer {
     this.hidden = new Set();
     this.section = null;
     this.marked = null;
-    this.held = null;  // poses of a pair's worst position among the joints'
+    this.held = null;  // poses of a pair's worst position among the joints', or those of `pose`
+    this.beyond = null;
     this.coarse = false;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false, alpha: true, stencil: true, powerPreference: "high-performance" });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
@@ -62,6 +66,44 @@ export class Viewer {
       this.scene.add(made.root);
     }
     return this.mechanisms.get(name);
+  }
+
+  // Other parts and another motion; camera, section, what is hidden and how far parts are apart stay. Parts that are the same stay drawn.
+  replace(views, meshes) {
+    for (const { root } of this.mechanisms.values()) this.scene.remove(root);
+    this.mechanisms.clear();
+    const former = this.solids, kept = meshes.map((mesh, k) => (this.meshes[k] && isSameMesh(this.meshes[k], mesh) ? former[k] : undefined));
+    for (const solid of former) if (solid && !kept.includes(solid)) [solid.solid, solid.lines, solid.points].forEach((geometry) => geometry?.dispose());
+    this.solids = kept;
+    this.meshes = meshes;
+    this.views = new Map(views.map((view) => [view.name, view]));
+    this.bodies = views[0].bodies;
+    for (let i = this.materials.length; i < this.bodies.length; ++i) this.materials.push(partMaterials(i));
+    this.look([this.mode]);
+    this.fitted = this.fit(this.camera.position.clone().sub(this.controls.target).normalize()).distance;
+    this.draw();
+  }
+
+  // All parts where someone puts them, which may be farther out than their motion takes them. null: where their motion has them.
+  pose(poses) {
+    this.held = poses;
+    this.beyond = null;
+    if (poses) {
+      const mechanism = this.mechanism(this.mode);
+      mechanism.setTime(this.time, 0, poses);
+      this.beyond = mechanism.parts.reduce((box, part) => box.union(part.solid.box.clone().applyMatrix4(part.group.matrix)), this.box.clone());
+    }
+    this.draw();
+  }
+
+  setPairs(data) {
+    this.overlaps.pairs = interfering(data);
+  }
+
+  // Does it show the whole as it did at first?
+  isAtHome() {
+    const direction = this.homeDirection(), { target, distance } = this.fit(direction);
+    return this.camera.position.distanceTo(target.addScaledVector(direction, distance)) < 1e-3 * distance;
   }
 
   // What the picture is to have room for: these over their whole motions.
@@ -133,8 +175,8 @@ export class Viewer {
     const size = this.renderer.getSize(new THREE.Vector2());
     const side = this.mode === "side";
     this.camera.aspect = (side ? size.x / 2 : size.x) / size.y;
-    const reach = this.box.getBoundingSphere(new THREE.Sphere()).radius + this.apart * this.exploded || 1;
-    const distance = this.camera.position.distanceTo(this.box.getCenter(new THREE.Vector3()));
+    const box = this.beyond ?? this.box, reach = box.getBoundingSphere(new THREE.Sphere()).radius + this.apart * this.exploded || 1;
+    const distance = this.camera.position.distanceTo(box.getCenter(new THREE.Vector3()));
     this.camera.near = Math.max(distance - reach * 1.6, this.camera.position.distanceTo(this.controls.target) * 0.05, reach * 1e-4);
     this.camera.far = distance + reach * 1.6;
     this.camera.updateProjectionMatrix();
@@ -237,7 +279,7 @@ export class Viewer {
     const p = this.project(this.marked.a, size), q = this.project(this.marked.b, size);
     if (!p.inside || !q.inside) return;
     this.overlay.toggleAttribute("hidden", false);
-    this.overlay.setAttribute("class", isShared ? "shared" : "");
+    this.overlay.classList.toggle("shared", !!isShared);
     let dx = q.x - p.x, dy = q.y - p.y;
     const long = Math.hypot(dx, dy);
     if (long > 1e-6) [dx, dy] = [dx / long, dy / long];
@@ -257,6 +299,9 @@ export class Viewer {
     const text = element("svg:text", { x: tx + (right ? 5 : -5), y: ty + 4, "text-anchor": right ? "start" : "end" });
     text.textContent = this.marked.label;
     this.overlay.append(text);
+    if (!this.marked.within) return;
+    const { x, width } = text.getBBox();  // of one that has names in it, and is to be read whole where there is room for it
+    text.setAttribute("x", Number(text.getAttribute("x")) + Math.max(4 - x, Math.min(0, size.x - 4 - x - width)));
   }
 
   setSection(normal, offset) {

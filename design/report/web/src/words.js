@@ -40,6 +40,7 @@ const somePairs = (names, most = 3) => (names.length <= most ? names.join("; ") 
 
 export function asked(data) {
   if (data.description) return data.description;
+  if (data.kind === "studio") return "";
   if (data.kind === "explore") return "An exploration of a design space.";
   if (data.kind === "tolerance") return "What becomes of the design when its parts are made.";
   if (data.kind === "optimise")
@@ -194,13 +195,14 @@ function madeFacts(data) {
 
 // {tone: "good" | "open" | "bad", head, rest}
 export function reached(data) {
-  return { optimise: optimised, simulate: simulated, clearance: cleared, explore: explored, tolerance: made }[data.kind](data);
+  return { optimise: optimised, simulate: simulated, clearance: cleared, explore: explored, tolerance: made, studio: () => ({ tone: "open", head: "Computing \u2026", rest: "" }) }[data.kind](data);
 }
 
 // [term, value, small print]
 export function facts(data) {
   if (data.kind === "explore") return exploredFacts(data);
   if (data.kind === "tolerance") return madeFacts(data);
+  if (data.kind === "studio") return [];
   const rows = [];
   if (data.kind === "optimise" && data.objective.end !== null) {
     rows.push(["Objective", number(data.objective.end), data.objective.start !== null ? `from ${number(data.objective.start)} at the start` : "the start could not be evaluated"]);
@@ -234,7 +236,7 @@ export function provenWords(data) {
   if (data.kind === "tolerance") return "Predictions and samples are computed; nothing here is proven, but the clearance of each sample by itself.";
   if (data.kind === "explore") return "Proven: that a design meets its requirements of clearance is judged by certified bounds; others are judged by computed values. Values in the curves are what was measured; the parts are shown at the start of their motion.";
   if (data.status === "shown") return "Nothing is proven here. Lengths in mm.";
-  const where = data.ranges ? "over all positions of the joints within their limits" : data.motion ? "over the whole continuous motion" : "for the parts as they lie";
+  const where = data.ranges ? "over all positions of the joints within their limits" : data.motion || data.kind === "studio" ? "over the whole continuous motion" : "for the parts as they lie";
   return `Proven: a bound that holds ${where}, of the meshes as stored, rounding included; not a figure from samples. Numbers called computed, pictures and curves of forces are not proofs: they have the error of the time step and of facets. Lengths in mm.`;
 }
 
