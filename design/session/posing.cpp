@@ -57,7 +57,7 @@ Posing::Posing(std::shared_ptr<const core::model::Model> model, JointRanges rang
     }
 }
 
-Result<Posed> Posing::at(const std::map<std::string, double>& joints) const {
+Result<Posed> Posing::at(const std::map<std::string, double>& joints, bool depths) const {
     std::vector<double> at;
     std::vector<std::string_view> names;
     for (const JointHandle& handle : handles_) {
@@ -89,6 +89,7 @@ Result<Posed> Posing::at(const std::map<std::string, double>& joints) const {
     core::clearance::ClearanceOptions options = core::clearance::usual_options(requests);
     options.max_evaluations = most_box_pairs;
     options.sample_nodes = false;
+    options.measure_overlap = depths;
     posed.pairs = core::clearance::certify(*model_, there, requests, options);
     std::stable_sort(posed.pairs.begin(), posed.pairs.end(), [](const PairClearance& x, const PairClearance& y) {
         const auto depth = [](const PairClearance& pair) { return pair.overlap ? pair.overlap->depth_upper : 0; };

@@ -41,7 +41,8 @@ public:
 
     const std::vector<JointHandle>& handles() const { return handles_; }
     /// Those left out are where they start. Errors: no such joint; a value that is no number, or outside its ends.
-    Result<Posed> at(const std::map<std::string, double>& joints) const;
+    /// @param depths  How deep clashes are, too, which takes a fraction of a second each; false: PairClearance::overlap is not filled in.
+    Result<Posed> at(const std::map<std::string, double>& joints, bool depths = true) const;
 
 private:
     Posing(std::shared_ptr<const core::model::Model> model, core::clearance::JointRanges ranges);

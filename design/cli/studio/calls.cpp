@@ -149,7 +149,7 @@ CallAnswer pose(const Json& call, const std::shared_ptr<const problem::DesignEva
         for (const session::JointHandle& handle : posing->handles())
             if (handle.name == name) at[name] *= session::unit_of(handle);
     }
-    const Result<session::Posed> posed = posing->at(at);
+    const Result<session::Posed> posed = posing->at(at, given(call, "depth").value_or(true) != false);
     if (!posed) return refusal(posed.errors());
     return done(session::posed_json(*posed, *evaluation->runs.front().model));
 }

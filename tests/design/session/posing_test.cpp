@@ -82,6 +82,10 @@ TEST_CASE("posing: the nearest pair comes first, and parts that meet are told wi
     REQUIRE(pair.overlap);
     CHECK(pair.overlap->depth_lower > 1e-3);
     for (std::size_t k = 1; k < posed->pairs.size(); ++k) CHECK(posed->pairs[k - 1].upper <= posed->pairs[k].upper);
+    const Result<Posed> quick = posing->at({{"shoulder", -M_PI / 2}}, false);
+    REQUIRE(quick);
+    CHECK(pair_of(*quick, *model, "fore", "post").is_clash());
+    CHECK_FALSE(pair_of(*quick, *model, "fore", "post").overlap);
     const Result<Posed> straight = posing->at({});
     REQUIRE(straight);
     CHECK(pair_of(*straight, *model, "upper", "post").lower == Approx(0.08 - 0.006).epsilon(1e-3));
