@@ -7,7 +7,7 @@
 #include <string>
 
 #include "design/clearance/report.hpp"
-#include "design/cli/session.hpp"
+#include "design/cli/command.hpp"
 
 namespace fettle::design::cli {
 

@@ -2,7 +2,7 @@
 /// fettle completion SHELL: what a shell needs to complete commands and options, made from the program's own options.
 #include <nlohmann/json.hpp>
 
-#include "design/cli/session.hpp"
+#include "design/cli/command.hpp"
 
 namespace fettle::design::cli {
 

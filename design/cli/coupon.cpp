@@ -10,7 +10,7 @@
 #include "core/files/atomic_file.hpp"
 #include "core/files/nearest_word.hpp"
 #include "core/mesh_files/mesh_writer.hpp"
-#include "design/cli/session.hpp"
+#include "design/cli/command.hpp"
 #include "design/coupons/coupon_form.hpp"
 #include "design/coupons/coupon_solid.hpp"
 #include "design/exports/profile_drawing.hpp"

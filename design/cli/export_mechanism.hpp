@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "design/cli/session.hpp"
+#include "design/cli/command.hpp"
 
 namespace fettle::design::cli {
 

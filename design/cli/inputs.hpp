@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/result.hpp"
-#include "design/cli/session.hpp"
+#include "design/cli/command.hpp"
 #include "design/reading/model_file.hpp"
 
 namespace fettle::design::cli {

@@ -13,7 +13,7 @@
 #include "core/scene/joint_kind.hpp"
 #include "core/setup/build_model.hpp"
 #include "design/cli/answers.hpp"
-#include "design/cli/session.hpp"
+#include "design/cli/command.hpp"
 #include "design/exports/picture.hpp"
 #include "design/exports/png_writer.hpp"
 #include "design/exports/svg_writer.hpp"

@@ -18,11 +18,11 @@
 #include "core/files/nearest_word.hpp"
 #include "design/answers/answer_json.hpp"
 #include "design/answers/output_folder.hpp"
+#include "design/cli/command.hpp"
 #include "design/cli/inputs.hpp"
 #include "design/cli/named_files.hpp"
 #include "design/cli/program_memory.hpp"
 #include "design/cli/read_files.hpp"
-#include "design/cli/session.hpp"
 
 namespace {
 

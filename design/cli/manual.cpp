@@ -5,7 +5,7 @@
 
 #include "core/base/version.hpp"
 #include "core/files/atomic_file.hpp"
-#include "design/cli/session.hpp"
+#include "design/cli/command.hpp"
 
 namespace fettle::design::cli {
 

@@ -5,7 +5,7 @@
 
 #include "core/files/atomic_file.hpp"
 #include "core/files/nearest_word.hpp"
-#include "design/cli/session.hpp"
+#include "design/cli/command.hpp"
 #include "design/cli/starters.hpp"
 
 namespace fettle::design::cli {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "design/cli/session.hpp"
+#include "design/cli/command.hpp"
 
 namespace fettle::design::cli {
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "design/answers/output_folder.hpp"
+#include "design/cli/command.hpp"
 #include "design/cli/inputs.hpp"
-#include "design/cli/session.hpp"
 #include "design/report/exploration_report.hpp"
 #include "design/report/report_folder.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/base/result.hpp"
-#include "design/cli/session.hpp"
+#include "design/cli/command.hpp"
 #include "design/report/report_folder.hpp"
 
 namespace fettle::design::cli {

@@ -7,7 +7,7 @@
 
 #include "core/base/result.hpp"
 #include "design/clearance/read_subject.hpp"
-#include "design/cli/session.hpp"
+#include "design/cli/command.hpp"
 #include "design/exports/assembly.hpp"
 #include "design/reading/step_wishes.hpp"
 

@@ -56,19 +56,13 @@ struct Told {
     NewsPointer last_search;  // that has ended
 };
 
-bool is_overtaken(NewsKind earlier, NewsKind by) {
-    if (earlier == by) return true;
-    if (by == NewsKind::opened) return earlier != NewsKind::faults;
-    return by == NewsKind::asked && earlier != NewsKind::opened && earlier != NewsKind::faults && earlier != NewsKind::tuning;
-}
-
 class Inbox {
 public:
     void put(const News& news) {
         auto kept = std::make_shared<const News>(news);
         {
             const std::lock_guard lock(mutex_);
-            std::erase_if(told_.entries, [&](const Told::Entry& entry) { return is_overtaken(entry.news->kind, news.kind); });
+            std::erase_if(told_.entries, [&](const Told::Entry& entry) { return session::is_overtaken(entry.news->kind, news.kind); });
             told_.entries.push_back({++count_, kept});
             if (news.kind == NewsKind::tuning && !news.tuning.runs) {
                 ++told_.searches_ended;

@@ -6,9 +6,7 @@
 
 #include "core/base/text.hpp"
 #include "core/base/units.hpp"
-#include "core/base/version.hpp"
 #include "core/clearance/clearance.hpp"
-#include "core/stepper/simulate.hpp"
 #include "design/answers/answer_json.hpp"
 #include "design/answers/judged_json.hpp"
 #include "design/answers/summary.hpp"
@@ -49,9 +47,6 @@ Json requirements_of(const Design& design, const JudgedDesign& judged) {
     return report::requirement_rows(design, answer_of(design, judged));
 }
 
-// Nothing has been measured.
-Json unknown_requirements(const Design& design) { return report::requirement_rows(design, Json::object()); }
-
 Json parameter_json(const Parameter& parameter) {
     const auto shown = [&](double si) { return description::from_si(si, parameter.unit); };
     return {{"name", parameter.name},
@@ -76,16 +71,16 @@ void add_place_in_history(const News& news, Json& json) {
     json["can_redo"] = news.can_redo;
 }
 
-void add_motion(const core::model::Model& model, const core::stepper::Trajectory& trajectory, Json& json) {
+void add_motion(const std::shared_ptr<const core::model::Model>& model, const core::stepper::Trajectory& trajectory, Json& json) {
     const auto steps = count_of(trajectory.steps);
     json["motion"] = steps > 0;
     json["steps"] = steps;
     json["step"] = steps > 0 ? trajectory.timestep : 0.0;
     json["duration"] = core::stepper::time_at(trajectory, steps) - core::stepper::time_at(trajectory, 0);
     json["meshes"] = json["views"] = Json::array();
-    report::add_view(json, "after", model, trajectory);
+    report::add_view(json, "after", *model, trajectory);
     json["joints"] = Json::array();
-    const Result<Posing> posing = Posing::of(std::make_shared<const core::model::Model>(model));
+    const Result<Posing> posing = Posing::of(model);
     if (posing) json["joints"] = handles_json(*posing);
 }
 
@@ -95,47 +90,32 @@ void add_start(const News& news, Json& json) {
     Result<core::model::Model> model =
         problem.obstacles(news.values).empty() ? problem.model_at(news.values) : problem.model_at(news.opened->values());
     if (!model) return;
-    core::stepper::SimulationOptions nothing;
-    nothing.steps = 0;
-    add_motion(*model, core::stepper::simulate(*model, nothing).trajectory, json);
+    const auto shared = std::make_shared<const core::model::Model>(std::move(model).value());
+    add_motion(shared, core::clearance::as_assembled(*shared), json);
 }
 
+// The head that every page has, then the studio's own keys.
 Json opened_json(const News& news) {
     const Opened& opened = *news.opened;
-    const Design& design = opened.design();
-    const Vector3 gravity = design.scene.gravity, up = gravity.norm() > 0 ? Vector3(-gravity.normalized()) : Vector3(Vector3::UnitZ());
-    const std::string words = opened.is_scene ? "" : report::description_of(opened.file.text);
-    Json parameters = Json::array();
-    for (const Parameter& parameter : design.parameters) parameters.push_back(parameter_json(parameter));
-    Json json{{"format", 1},
-              {"program", core::base::version()},
-              {"kind", "studio"},
-              {"name", name_of(opened.file.path)},
-              {"file", std::filesystem::path(opened.file.path).filename().string()},
-              {"folder", std::filesystem::path(opened.file.path).parent_path().string()},
-              {"command", "fettle studio " + answers::shell_word(opened.file.path)},
-              {"is_scene", opened.is_scene},
-              {"description", words.empty() ? Json() : Json(words)},
-              {"up", {up.x(), up.y(), up.z()}},
-              {"revision", news.revision},
-              {"status", "ok"},
-              {"message", Json()},
-              {"parameters", parameters},
-              {"objective", objective_json(design)},
-              {"requirements", unknown_requirements(design)},
-              {"motion", false},
-              {"steps", 0},
-              {"step", 0.0},
-              {"duration", 0.0},
-              {"meshes", Json::array()},
-              {"views", Json::array()},
-              {"pairs", Json::array()},
-              {"pair_count", 0},
-              {"margins", Json()},
-              {"scenarios", Json::array()},
-              {"joints", Json::array()},
-              {"notices", opened.warnings},
-              {"files", Json::array()}};
+    const std::filesystem::path path = opened.file.path;
+    report::ReportSource source;
+    source.kind = report::ReportKind::optimise;
+    source.folder = path.parent_path().string();
+    source.name = name_of(opened.file.path);
+    source.description = opened.is_scene ? "" : report::description_of(opened.file.text);
+    source.gravity = opened.design().scene.gravity;
+    source.result = {{"status", "ok"}, {"command", "fettle studio " + answers::shell_word(opened.file.path)}};
+    source.design = opened.design();
+    source.notices = opened.warnings;
+    Json json = report::report_data(source);
+    json["kind"] = "studio";
+    json["file"] = path.filename().string();
+    json["is_scene"] = opened.is_scene;
+    json["revision"] = news.revision;
+    json["parameters"] = Json::array();
+    for (const Parameter& parameter : opened.design().parameters) json["parameters"].push_back(parameter_json(parameter));
+    json["objective"] = objective_json(opened.design());
+    json["joints"] = Json::array();
     add_place_in_history(news, json);
     add_start(news, json);
     return json;
@@ -150,7 +130,7 @@ Json faults_json(const News& news) {
 Json motion_json(const News& news) {
     const problem::Run& run = news.evaluation->runs.front();
     Json json{{"revision", news.revision}};
-    add_motion(*run.model, run.simulation.trajectory, json);
+    add_motion(run.model, run.simulation.trajectory, json);
     return json;
 }
 

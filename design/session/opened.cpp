@@ -147,8 +147,13 @@ std::vector<std::string> paths_of(const Opened& opened) {
     return paths;
 }
 
-WatchedFiles::WatchedFiles(const std::vector<std::string>& paths) {
-    for (const std::string& path : paths) files_.emplace_back(path, stamp_of(path));
+WatchedFiles::WatchedFiles(const std::vector<std::string>& paths, std::filesystem::file_time_type begin) {
+    const auto now = std::filesystem::file_time_type::clock::now();
+    for (const std::string& path : paths) {
+        const Stamp stamp = stamp_of(path);
+        const bool is_newer = begin <= stamp.time && stamp.time <= now;  // times to come are of another machine's clock
+        files_.emplace_back(path, is_newer ? Stamp{} : stamp);
+    }
 }
 
 // One that is not there has a stamp too: editors take a file away before they write it anew.

@@ -46,9 +46,10 @@ Result<std::shared_ptr<const Opened>> open(const std::string& path, const OpenOp
 class WatchedFiles {
 public:
     WatchedFiles() = default;
-    explicit WatchedFiles(const std::vector<std::string>& paths);
+    /// @param begin  When they began to be read: what was written since counts as changed.
+    WatchedFiles(const std::vector<std::string>& paths, std::filesystem::file_time_type begin);
 
-    /// Since this was made, or since it was asked last.
+    /// Since they were read, or since it was asked last.
     bool have_changed();
 
 private:

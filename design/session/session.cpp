@@ -23,7 +23,8 @@ using problem::DesignEvaluation;
 using problem::DesignProblem;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto looks_every = std::chrono::milliseconds(300);      // at the files
+constexpr auto looks_every = std::chrono::milliseconds(300);  // at the files
+constexpr auto reads_faults_again_every = std::chrono::seconds(2);
 constexpr auto tells_every = std::chrono::milliseconds(100);      // of progress
 constexpr auto one_move_lasts = std::chrono::milliseconds(1000);  // of one slider: it is undone as one
 
@@ -61,6 +62,18 @@ std::optional<QuantityRow> row_of(const description::Design& design, const Desig
     return std::nullopt;
 }
 
+bool have_same_ranges(const Opened& a, const Opened& b) {
+    const std::vector<Parameter>&p = a.design().parameters, &q = b.design().parameters;
+    return std::equal(p.begin(), p.end(), q.begin(), q.end(), [](const Parameter& x, const Parameter& y) {
+        return x.name == y.name && x.lower == y.lower && x.upper == y.upper && x.unit.name == y.unit.name;
+    });
+}
+
+bool are_same(const Errors& a, const Errors& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const Error& x, const Error& y) { return x.where == y.where && x.message == y.message; });
+}
+
 // What is kept of the values when the files have been read again: a number that the file has changed is the file's, and so is one that no
 // longer fits.
 VectorX kept_values(const Opened& before, const VectorX& set, const Opened& now) {
@@ -78,13 +91,20 @@ VectorX kept_values(const Opened& before, const VectorX& set, const Opened& now)
 
 }  // namespace
 
+bool is_overtaken(NewsKind earlier, NewsKind by) {
+    if (earlier == by) return true;
+    if (by == NewsKind::opened) return earlier != NewsKind::faults;
+    return by == NewsKind::asked && earlier != NewsKind::opened && earlier != NewsKind::faults && earlier != NewsKind::tuning;
+}
+
 Result<std::unique_ptr<Session>> Session::open(const std::string& path, SessionOptions options, std::function<void(const News&)> tell) {
+    const std::filesystem::file_time_type begin = std::filesystem::file_time_type::clock::now();
     Result<std::shared_ptr<const Opened>> opened = session::open(path, options.opens);
     if (!opened) return opened.errors();
     std::unique_ptr<Session> session(new Session(path, std::move(options), std::move(tell)));
     session->opened_ = std::move(opened).value();
     session->values_ = session->opened_->values();
-    session->files_ = WatchedFiles(paths_of(*session->opened_));
+    session->files_ = WatchedFiles(paths_of(*session->opened_), begin);
     session->worker_ = std::thread([own = session.get()] { own->work(); });
     return session;
 }
@@ -427,29 +447,32 @@ Result<std::shared_ptr<const Opened>> Session::reopened() const {
 }
 
 void Session::reread() {
-    if (Clock::now() - looked_at_ < looks_every) return;
-    looked_at_ = Clock::now();
-    if (!files_.have_changed()) return;
+    const Clock::time_point now = Clock::now();
+    // Files with faults may name some that were not there, and have come.
+    const bool may_be_mended = !faults_.empty() && now - looked_at_ >= reads_faults_again_every;
+    if (!may_be_mended && !files_.have_changed()) return;
+    looked_at_ = now;
+    const std::filesystem::file_time_type begin = std::filesystem::file_time_type::clock::now();
     Result<std::shared_ptr<const Opened>> again = reopened();
     if (!again) {
-        had_faults_ = true;
+        if (are_same(faults_, again.errors())) return;
         News faults = news(NewsKind::faults, newest_);
-        faults.errors = again.errors();
+        faults.errors = faults_ = again.errors();
         tell_(faults);
         return;
     }
     {
         const std::lock_guard lock(mutex_);
         const VectorX values = kept_values(*opened_, values_, **again);
-        if (description::names_of(opened_->design().parameters) != description::names_of((*again)->design().parameters)) {
+        if (!have_same_ranges(*opened_, **again)) {  // what was set before may not fit any more
             past_.clear();
             future_.clear();
         }
         opened_ = std::move(again).value();
-        files_ = WatchedFiles(paths_of(*opened_));
+        files_ = WatchedFiles(paths_of(*opened_), begin);
         take(values);
     }
-    if (std::exchange(had_faults_, false)) tell_(news(NewsKind::faults, newest_));
+    if (!std::exchange(faults_, {}).empty()) tell_(news(NewsKind::faults, newest_));
     tell_(news(NewsKind::opened, newest_));
 }
 

@@ -40,6 +40,10 @@ enum class NewsKind {
     tuning           ///< of a search: what it has come to
 };
 
+/// Does news of one kind end what earlier news of another say? Each kind ends its own; `opened` ends all but faults; `asked` ends what was
+/// known of former values.
+bool is_overtaken(NewsKind earlier, NewsKind by);
+
 /// How a search stands.
 struct Tuning {
     bool runs = false;
@@ -149,7 +153,7 @@ private:
     std::optional<int> search_asked_;  // how many evaluations at most
     WatchedFiles files_;
     Clock::time_point looked_at_{};
-    bool had_faults_ = false;
+    Errors faults_;  // of the files, as they were told last
 
     std::atomic<std::uint64_t> newest_ = 1;
     std::atomic<bool> is_closing_ = false, is_searching_ = false, ends_search_ = false;

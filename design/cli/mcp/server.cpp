@@ -19,11 +19,11 @@
 #include "core/base/version.hpp"
 #include "core/files/atomic_file.hpp"
 #include "core/files/json_text.hpp"
+#include "design/cli/command.hpp"
 #include "design/cli/mcp/answer.hpp"
 #include "design/cli/mcp/call.hpp"
 #include "design/cli/mcp/roots.hpp"
 #include "design/cli/mcp/tools.hpp"
-#include "design/cli/session.hpp"
 #include "design/exports/base64.hpp"
 
 namespace fettle::design::cli::mcp {

@@ -51,7 +51,7 @@ CallAnswer set(Session& session, const Json& call) {
     return set ? done({{"revision", *set}}) : refusal(set.errors());
 }
 
-CallAnswer towards(Session& session, const Json& call) {
+CallAnswer pull(Session& session, const Json& call) {
     const auto name = given(call, "requirement"), value = given(call, "value");
     if (!name || !name->is_string()) return refusal("requirement: a name is expected");
     if (!value || !value->is_number()) return refusal("value: a number is expected");
@@ -163,7 +163,7 @@ CallAnswer answer_call(Session& session, const Json& call, const std::shared_ptr
     if (what == "undo") return revision(session.undo());
     if (what == "redo") return revision(session.redo());
     if (what == "reset") return revision(session.reset());
-    if (what == "towards") return towards(session, call);
+    if (what == "pull") return pull(session, call);
     if (what == "tune") return tune(session, call);
     if (what == "save") return save(session, call);
     if (what == "pose") return pose(call, evaluation);
@@ -172,7 +172,7 @@ CallAnswer answer_call(Session& session, const Json& call, const std::shared_ptr
         session.stop();
         return done();
     }
-    return refusal("do: set, undo, redo, reset, towards, tune, stop, save, export or pose is expected");
+    return refusal("do: set, undo, redo, reset, pull, tune, stop, save, export or pose is expected");
 }
 
 }  // namespace fettle::design::cli::studio

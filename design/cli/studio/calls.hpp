@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What a window can ask for, as JSON: set, undo, redo, reset, towards, tune, stop, save, export, pose. Keys: docs/studio.md.
+/// What a window can ask for, as JSON: set, undo, redo, reset, pull, tune, stop, save, export, pose. Keys: docs/studio.md.
 #pragma once
 
 #include <nlohmann/json.hpp>

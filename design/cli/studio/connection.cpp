@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
@@ -148,13 +149,24 @@ private:
     void answer() {
         const bool keeps_alive = parser_->keep_alive();
         Request request{std::string(parser_->get().method_string()), target_.path, target_.query, std::move(parser_->get().body())};
-        Answer answer;
+        Answer made = answer_of([&] { return shared_.answer(request); });
+        if (!made.later) return send(std::move(made), keeps_alive);
+        parser_.reset();
+        shared_.do_later([self = shared_from_this(), later = std::move(made.later), keeps_alive] {
+            Answer late = answer_of(later);
+            late.later = {};
+            net::post(self->stream_.get_executor(),
+                      [self, late = std::move(late), keeps_alive]() mutable { self->send(std::move(late), keeps_alive); });
+        });
+    }
+
+    template <class Make>
+    static Answer answer_of(const Make& make) {
         try {
-            answer = shared_.answer(request);
+            return make();
         } catch (...) {
-            answer = refused(500, "the program has a fault: this request could not be answered");
+            return refused(500, "the program has a fault: this request could not be answered");
         }
-        send(std::move(answer), keeps_alive);
     }
 
     void send(Answer answer, bool keeps_alive) {

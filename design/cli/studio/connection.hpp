@@ -6,14 +6,15 @@
 #include <atomic>
 #include <boost/asio/ip/tcp.hpp>
 #include <cstddef>
+#include <functional>
 #include <list>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "design/cli/studio/event_queue.hpp"
+#include "design/cli/studio/http_message.hpp"
 #include "design/cli/studio/request_guard.hpp"
-#include "design/cli/studio/server_options.hpp"
 
 namespace fettle::design::cli::studio {
 
@@ -36,6 +37,7 @@ struct Shared {
     GuardRules rules;
     AnswerRequest answer;
     OnListener on_listener;
+    std::function<void(std::function<void()>)> do_later;  ///< on another thread, one after the other
     std::size_t connections = 0;
     std::list<Connection*> unproven;     ///< have shown no token yet; the oldest first
     std::vector<Connection*> listeners;  ///< in the order in which they came

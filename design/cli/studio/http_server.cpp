@@ -10,6 +10,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -57,11 +58,14 @@ public:
         shared_.options = std::move(options);
         shared_.answer = std::move(answer);
         shared_.on_listener = std::move(on_listener);
+        shared_.do_later = [this](std::function<void()> work) { net::post(beside_, std::move(work)); };
     }
     ~Impl() {
         shared_.is_ending = true;
         io_.stop();
         if (thread_.joinable()) thread_.join();
+        beside_.stop();
+        beside_.join();
     }
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
@@ -172,6 +176,7 @@ private:
 
     Shared shared_;  // outlives the connections, which end with the handlers in io_
     net::io_context io_{1};
+    net::thread_pool beside_{1};  // for answers that take long; ends after io_'s thread, and before io_
     tcp::acceptor acceptor_{io_};
     net::steady_timer pause_{io_}, comments_{io_};
     std::thread thread_;

@@ -11,19 +11,19 @@
 #include <string>
 
 #include "core/base/result.hpp"
-#include "design/cli/studio/server_options.hpp"
+#include "design/cli/studio/http_message.hpp"
 
 namespace fettle::design::cli::studio {
 
 class HttpServer {
 public:
     /// Begins to serve. `answer` gets all requests but those for /events. Both are called on the server's thread, one call at a time; what
-    /// they take, all others wait. They may call `tell`. An exception of `answer` is answered 500, one of `on_listener` ends that listener.
-    /// Errors: a port that is taken or not allowed, a token of other characters, no random numbers, no thread.
+    /// they take, all others wait (Answer::later). They may call `tell`. An exception of `answer` is answered 500, one of `on_listener`
+    /// ends that listener. Errors: a port that is taken or not allowed, a token of other characters, no random numbers, no thread.
     static core::base::Result<std::unique_ptr<HttpServer>> listen(ServerOptions options, AnswerRequest answer, OnListener on_listener);
 
-    /// Ends all connections and the thread at once; waits for a call of `answer` or `on_listener` that is under way, and makes no other:
-    /// listeners that are still there are not reported as gone. Contract: not on the server's thread.
+    /// Ends all connections and the thread at once; waits for a call of `answer`, `later` or `on_listener` that is under way, and makes no
+    /// other: listeners that are still there are not reported as gone. Contract: not on the server's thread.
     ~HttpServer();
     HttpServer(const HttpServer&) = delete;
     HttpServer& operator=(const HttpServer&) = delete;

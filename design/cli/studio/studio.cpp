@@ -2,6 +2,7 @@
 /// fettle studio FILE: a page on this machine in which a design, or a scene, is changed and watched.
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -12,7 +13,6 @@
 #include "core/files/json_dump.hpp"
 #include "core/files/json_text.hpp"
 #include "design/cli/inputs.hpp"
-#include "design/cli/studio/board.hpp"
 #include "design/cli/studio/calls.hpp"
 #include "design/cli/studio/http_server.hpp"
 #include "design/report/report_page.hpp"
@@ -51,20 +51,21 @@ public:
             options, [this](const Request& request) { return answer(request); },
             [this](const std::string& client, bool connected) { connected ? welcome(client) : part(client); });
         if (!server) return server.errors();
-        const std::lock_guard lock(mutex_);
+        std::unique_lock lock(mutex_);
         server_ = std::move(server).value();
+        changed_.wait(lock, [this] { return !page_data_.is_null(); });
         return {};
     }
 
     /// Nothing calls back any more afterwards.
     void close() {
-        session_.reset();
         std::unique_ptr<HttpServer> ended;
         {
             const std::lock_guard lock(mutex_);
             ended = std::move(server_);
         }
-        // Ends here, without the mutex: it waits for a call that is under way.
+        ended.reset();  // without the mutex: it waits for a call that is under way, which may ask the session
+        session_.reset();
     }
 
     /// Contract: it is open.
@@ -75,6 +76,12 @@ public:
     bool has_unsaved_values() const { return session_->values() != session_->opened()->values(); }
 
 private:
+    // News that still hold: what a window is told that opens now.
+    struct Standing {
+        NewsKind kind;
+        std::string name, text;
+    };
+
     static Answer json_answer(int status, const Json& json) { return {status, "application/json", core::files::dumped(json)}; }
     static Answer fault(int status, const std::string& sentence) { return json_answer(status, {{"error", sentence}}); }
 
@@ -84,11 +91,12 @@ private:
         const std::lock_guard lock(mutex_);
         if (news.evaluation) evaluation_ = news.evaluation;
         if (news.kind == NewsKind::opened) page_data_ = all.front().data;
+        std::erase_if(standing_, [&](const Standing& earlier) { return session::is_overtaken(earlier.kind, news.kind); });
         for (const session::ToldNews& each : all) {
-            const std::string text = core::files::dumped(each.data);
-            board_.put(each.name, text);
-            if (server_) server_->tell(each.name, text);
+            standing_.push_back({news.kind, each.name, core::files::dumped(each.data)});
+            if (server_) server_->tell(each.name, standing_.back().text);
         }
+        changed_.notify_all();
     }
 
     // On the server's thread, as all that follows.
@@ -106,7 +114,6 @@ private:
 
     Answer page() {
         const std::lock_guard lock(mutex_);
-        if (page_data_.is_null()) return fault(503, "the file is being read; try again");
         return {200, "text/html; charset=utf-8", report::page_of(page_data_)};
     }
 
@@ -125,10 +132,15 @@ private:
                 return json_answer(200, {{"done", true}, {"writer", writer_ == client}});
             }
             const bool only_looks = asked.value("do", Json()) == "export" || asked.value("do", Json()) == "pose";
-            if (!only_looks && !writer_.empty() && client != writer_) return fault(403, "another window changes things: take over first");
+            if (only_looks) return {.later = [this, asked, evaluation] { return answered(asked, evaluation); }};
+            if (!writer_.empty() && client != writer_) return fault(403, "another window changes things: take over first");
         }
-        const CallAnswer answered = answer_call(*session_, asked, evaluation);
-        return json_answer(answered.status, answered.json);
+        return answered(asked, evaluation);
+    }
+
+    Answer answered(const Json& asked, const std::shared_ptr<const problem::DesignEvaluation>& evaluation) {
+        const CallAnswer answer = answer_call(*session_, asked, evaluation);
+        return json_answer(answer.status, answer.json);
     }
 
     void welcome(const std::string& client) {
@@ -136,7 +148,7 @@ private:
         if (!server_) return;  // it will be told all news
         clients_.push_back(client);
         if (writer_.empty()) writer_ = client;
-        for (const auto& [name, text] : board_.current()) server_->tell(name, text, client);
+        for (const Standing& each : standing_) server_->tell(each.name, each.text, client);
         tell_writers();
     }
 
@@ -156,7 +168,8 @@ private:
     }
 
     mutable std::mutex mutex_;
-    Board board_;
+    std::condition_variable changed_;
+    std::vector<Standing> standing_;  // as they came
     Json page_data_;
     std::shared_ptr<const problem::DesignEvaluation> evaluation_;  // the newest
     std::vector<std::string> clients_;                             // in the order in which they came

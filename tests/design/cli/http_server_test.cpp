@@ -160,6 +160,53 @@ TEST_CASE("HTTP server: a token that is wrong in one letter is wrong") {
     CHECK(first.substr(first.find("?token=")) != second.substr(second.find("?token=")));
 }
 
+TEST_CASE("HTTP server: an answer that takes long holds up no other, and is waited for at the end") {
+    std::atomic<bool> may_end = false, has_ended = false;
+    ServerOptions options;
+    options.token = token;
+    auto server = HttpServer::listen(
+                      options,
+                      [&](const Request& request) -> Answer {
+                          if (request.path == "/quick") return {200, "text/plain", "quick"};
+                          if (request.path == "/throws") return {.later = []() -> Answer { throw std::runtime_error("late"); }};
+                          return {.later = [&]() -> Answer {
+                              while (!may_end) std::this_thread::sleep_for(1ms);
+                              has_ended = true;
+                              return {200, "text/plain", "late"};
+                          }};
+                      },
+                      [](const std::string&, bool) {})
+                      .value();
+    const auto port = static_cast<unsigned short>(std::stoi(server->address().substr(17)));
+    const auto request = [&](const std::string& path) {
+        return "GET " + path + "?token=" + std::string(token) + " HTTP/1.1\r\nHost: localhost:" + std::to_string(port) + "\r\n\r\n";
+    };
+    Peer waits(port), quick(port), leaves(port);
+    waits.say(request("/late"));
+    leaves.say(request("/late"));
+    quick.say(request("/quick"));
+    CHECK(quick.until("quick").ends_with("quick"));
+    may_end = true;
+    waits.say(request("/quick"));  // answers keep their order
+    CHECK(waits.until("late").ends_with("late"));
+    CHECK(waits.until("quick").ends_with("quick"));
+    quick.say(request("/throws"));
+    CHECK(quick.until("answered").starts_with("HTTP/1.1 500"));
+    may_end = has_ended = false;
+    leaves.until("late");
+    leaves.say(request("/late"));
+    quick.say(request("/late"));
+    quick.say(request("/quick"));
+    std::thread ends([&] {
+        std::this_thread::sleep_for(30ms);
+        may_end = true;
+    });
+    std::this_thread::sleep_for(10ms);
+    server.reset();
+    CHECK(has_ended);
+    ends.join();
+}
+
 TEST_CASE("HTTP server: a port that is taken, and a token that would have to be encoded, are errors") {
     const Served served;
     ServerOptions taken;

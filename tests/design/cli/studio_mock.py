@@ -379,7 +379,7 @@ class StudioMock:
     def do_reset(self, *_):
         return {"revision": self.set(self.file_values), "command": self.command()}
 
-    def do_towards(self, body, _):
+    def do_pull(self, body, _):
         name, by = body["requirement"], self.slopes.get(body["requirement"])
         if by is None or "gradient" not in self.newest:
             raise Refused("The derivatives are not known yet.")

@@ -13,14 +13,14 @@ function download(name, base64) {
 
 export class Actions {
   // call(body) -> promise of the answer, in its turn; now(body): at once, whatever else is on its way.
-  constructor({ call, now, values, parameters, command }) {
+  constructor({ call, now, values, parameters, command, wants }) {
     Object.assign(this, { call, now, values, parameters });
     const button = (text, action, more = {}) => element("button", { type: "button", onclick: () => this.do(action), ...more }, text);
     this.undo = button("Undo", { do: "undo" }, { "aria-keyshortcuts": "Control+Z" });
     this.redo = button("Redo", { do: "redo" }, { "aria-keyshortcuts": "Control+Y Control+Shift+Z" });
     this.reset = button("Reset", { do: "reset" }, { title: "The file\u2019s values" });
     this.save = button("Save", { do: "save", as: null });
-    this.tune = button("Tune", null, { class: "main", onclick: () => (this.runs ? this.do({ do: "stop" }, this.now) : this.do({ do: "tune" })) });
+    this.tune = button("Tune", null, { class: "main", hidden: !wants || !parameters.length, onclick: () => (this.runs ? this.do({ do: "stop" }, this.now) : this.do({ do: "tune" })) });
     this.fileName = element("input", { type: "text", "aria-label": "Name of the file to save as", placeholder: "name.design.json", size: 16, oninput: () => this.offerReplacing(null) });
     this.saveOther = element("button", {}, "Save as");
     const saveAs = element("form", { onsubmit: (event) => this.saveAs(event) }, this.fileName, this.saveOther);

@@ -2,7 +2,7 @@
 // Calls, one after the other. Of values that are set while one is on its way only the last are sent, and no more often than every 100 ms.
 
 const leastApart = 100;  // ms
-const setting = ["set", "undo", "redo", "reset", "towards"];
+const setting = ["set", "undo", "redo", "reset", "pull"];
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
 export class Calls {

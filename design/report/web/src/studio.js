@@ -81,7 +81,7 @@ class Studio {
     show.can = (k) => !!this.openable[k];
     this.sliders = new Sliders(data.parameters, (name, value) => this.set(name, value));
     this.sliders.show(data.values);
-    this.actions = new Actions({ call: (body) => this.calls.push(body), now: (body) => this.connection.call(body), values: () => this.sliders.values, parameters: data.parameters, command: data.command });
+    this.actions = new Actions({ call: (body) => this.calls.push(body), now: (body) => this.connection.call(body), values: () => this.sliders.values, parameters: data.parameters, command: data.command, wants: data.requirements.length + data.objective.length > 0 });
     this.panel.replaceChildren(this.panel.firstElementChild, this.actions.bar, this.sliders.root, this.actions.tuning, this.actions.files);
     byId("told")?.remove();
     this.panel.after(this.joints.root, element("div", { id: "told" }, this.actions.told, this.actions.commandLine));
@@ -235,7 +235,7 @@ class Studio {
     const said = (x) => withUnit(number(x), row.unit);
     this.wanted = null;
     controls.told.textContent = `${said(value)} is looked for \u2026`;
-    const answer = await this.actions.do({ do: "towards", requirement: row.isObjective ? "objective" : row.name, value });
+    const answer = await this.actions.do({ do: "pull", requirement: row.isObjective ? "objective" : row.name, value });
     if (!answer) {
       controls.told.textContent = this.actions.told.textContent;
       this.requirements.update(null);

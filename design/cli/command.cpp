@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "design/cli/session.hpp"
+#include "design/cli/command.hpp"
 
 #include <atomic>
 #include <csignal>
