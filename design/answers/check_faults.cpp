@@ -37,12 +37,19 @@ struct Causes {
     Names faults, open;
 };
 
+// At a kink the differences are of no use; the slopes of both sides are.
+template <class Row>
+bool is_right_at_kink(const Row& row) {
+    return row.kink != 0 && row.lies_between;
+}
+
 // The causes that the table of differences shows.
 Causes causes_of_differences(const CheckReport& report, double limit) {
-    Names disagreeing, kinks, hidden, along;
+    Names disagreeing, beside, hidden, along;
     for (const CheckRow& row : report.rows) {
+        if (is_right_at_kink(row)) continue;
         if (row.kink != 0) {
-            kinks.push_back(name_of(row));
+            beside.push_back(name_of(row));
         } else if (disagrees(row, limit)) {
             disagreeing.push_back(name_of(row) + formatted(" by %.2g", row.relative_error));
         } else if (!row.resolved) {
@@ -50,12 +57,12 @@ Causes causes_of_differences(const CheckReport& report, double limit) {
         }
     }
     for (const LineRow& row : report.along)
-        if (disagrees(row, limit)) along.push_back(row.quantity + formatted(" by %.2g", row.relative_error));
+        if (!is_right_at_kink(row) && disagrees(row, limit)) along.push_back(row.quantity + formatted(" by %.2g", row.relative_error));
     Causes causes;
     if (!disagreeing.empty())
         causes.faults.push_back("gradients and differences disagree: " + few(disagreeing) + formatted(" (limit %.3g)", limit));
     if (!along.empty()) causes.faults.push_back("they disagree along the gradient: " + few(along) + formatted(" (limit %.3g)", limit));
-    if (!kinks.empty()) causes.faults.push_back("there is a kink, and so no derivative: " + few(kinks));
+    if (!beside.empty()) causes.faults.push_back("at a kink, the gradient lies outside the slopes of both sides: " + few(beside));
     if (!hidden.empty()) causes.open.push_back("noise hides more than the limit: " + few(hidden));
     return causes;
 }
@@ -77,6 +84,17 @@ Causes causes_of(const CheckReport& report, double limit) {
     causes.faults.insert(causes.faults.end(), of_differences.faults.begin(), of_differences.faults.end());
     causes.open.insert(causes.open.end(), of_differences.open.begin(), of_differences.open.end());
     return causes;
+}
+
+// What the check met that is no fault: "; there is a kink, ...".
+std::string kinks_text(const CheckReport& report) {
+    Names kinks;
+    for (const CheckRow& row : report.rows)
+        if (is_right_at_kink(row)) kinks.push_back(name_of(row));
+    for (const LineRow& row : report.along)
+        if (is_right_at_kink(row)) kinks.push_back(row.quantity + " along the gradient");
+    if (kinks.empty()) return "";
+    return "; at a kink, where the slopes of both sides differ and the gradient lies between them: " + few(kinks);
 }
 
 // The text about a check in which nothing disagrees.
@@ -101,15 +119,15 @@ std::vector<std::string> check_faults(const CheckReport& report, double limit) {
 
 std::string verdict_text(const CheckReport& report, double limit) {
     const CheckVerdict verdict = check_verdict(report, limit);
-    if (verdict == CheckVerdict::passed) return formatted("check passed (limit %.3g)\n", limit);
+    if (verdict == CheckVerdict::passed) return formatted("check passed (limit %.3g)", limit) + kinks_text(report) + "\n";
     std::string text = verdict == CheckVerdict::failed ? "check FAILED: " : "check undecided: ";
     const Names faults = check_faults(report, limit);
     for (std::size_t i = 0; i < faults.size(); ++i) text += (i == 0 ? "" : "; ") + faults[i];
-    if (verdict == CheckVerdict::undecided) return text + measured_text(report) + "\n";
+    if (verdict == CheckVerdict::undecided) return text + measured_text(report) + kinks_text(report) + "\n";
     const Causes of_differences = causes_of_differences(report, limit);
     const bool all_agree = !report.interrupted && report.failures.empty() && !report.rows.empty() && of_differences.faults.empty() &&
                            of_differences.open.empty();
-    return text + (all_agree ? "; all differences agree\n" : "\n");
+    return text + (all_agree ? "; all differences agree" : "") + kinks_text(report) + "\n";
 }
 
 }  // namespace fettle::design::answers

@@ -175,6 +175,7 @@ Json check_json(const Design& design, const CheckReport& report, double limit) {
                         {"relative_error", row.relative_error},
                         {"difference_error", finite_or_null(row.difference_error)},
                         {"kink", row.kink * factor},
+                        {"lies_between", row.lies_between},
                         {"resolved", row.resolved}});
     }
     json["check"] = rows;
@@ -186,6 +187,8 @@ Json check_json(const Design& design, const CheckReport& report, double limit) {
                          {"relative_error", row.relative_error},
                          {"difference_error", finite_or_null(row.difference_error)},
                          {"resolved", row.resolved},
+                         {"kink", row.kink},
+                         {"lies_between", row.lies_between},
                          {"remainder_slope", finite_or_null(row.slope)}});
     json["along_gradient"] = along;
     json["sweeps_disagreement"] = finite_or_null(report.sweeps.disagreement);

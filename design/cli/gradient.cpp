@@ -150,6 +150,15 @@ std::string contact_changes_text(const Design& design, const CheckReport& report
     return text;
 }
 
+// A line below the row, where there is one. The difference is the mean of both slopes.
+template <class Row>
+std::string kink_text(const Row& row, double factor) {
+    if (row.kink == 0) return "";
+    return formatted("  it has a kink there: slope %.7g below, %.7g above; the gradient lies %s\n",
+                     (row.difference - row.kink / 2) * factor, (row.difference + row.kink / 2) * factor,
+                     row.lies_between ? "between them" : "outside");
+}
+
 std::string along_text(const Design& design, const CheckReport& report) {
     if (report.along.empty()) return "along the gradient: not simulated\n";
     std::string text =
@@ -159,6 +168,7 @@ std::string along_text(const Design& design, const CheckReport& report) {
         const auto [unit, name] = counted_in(design, row.quantity);
         text += formatted("%-61s %14.7g %14.7g %10.2e %s%s\n", name.c_str(), row.adjoint / unit, row.difference / unit, row.relative_error,
                           slope.c_str(), row.resolved ? "" : "  hidden by noise");
+        text += kink_text(row, 1 / unit);
     }
     return text +
            "slope: the power of the step with which the error of the gradient's prediction falls: 2 of a right gradient of a smooth "
@@ -175,9 +185,7 @@ std::string check_text(const Design& design, const CheckReport& report) {
         const std::string parameter = row.parameter + " [" + unit_of(design, row.parameter) + "]";
         text += formatted("%-40s %-28s %14.7g %14.7g %10.2e %10.2e%s\n", name.c_str(), parameter.c_str(), row.adjoint * factor,
                           row.difference * factor, row.relative_error, row.difference_error, row.resolved ? "" : "  hidden by noise");
-        if (row.kink != 0)
-            text += formatted("  it has a kink there: slope %.7g below, %.7g above\n", (row.difference - row.kink / 2) * factor,
-                              (row.difference + row.kink / 2) * factor);
+        text += kink_text(row, factor);
     }
     for (const std::string& failure : report.failures) text += "not checked: " + failure + "\n";
     for (size_t k = 0; k < report.left_out.size(); ++k) text += (k == 0 ? "left out: " : ", ") + report.left_out[k];
@@ -298,7 +306,7 @@ Command add_gradient(CommandLine& program, const CommonOptions& common) {
         "Exit code 2: the design cannot be evaluated, or the check does not pass; the last line says why. \"check FAILED\":\n"
         "  - derivatives of the same simulation, taken backwards and forwards, differ by more than the limit;\n"
         "  - a gradient and its difference disagree by more than the limit, for a parameter or along the gradient;\n"
-        "  - a quantity has a kink (another slope above than below).\n"
+        "  - at a kink (another slope above than below), a gradient lies outside the slopes of both sides.\n"
         "\"check undecided\", where nothing that was measured disagrees:\n"
         "  - simulations beside the design fail, so that a parameter is not checked; noise hides more than the limit;\n"
         "  - derivatives backwards and forwards cannot be compared; it was interrupted.\n"

@@ -19,6 +19,19 @@ namespace {
 
 using core::base::infinity;
 
+// The differences of all quantities to either side of a design, by steps that shrink; per unit of the parameter's range.
+struct QuantitySlopes {
+    std::vector<double> steps;
+    std::vector<VectorX> below, above;
+
+    SideSlopes of(Eigen::Index q) const {
+        SideSlopes result{steps, {}, {}};
+        for (const VectorX& slopes : below) result.below.push_back(slopes[q]);
+        for (const VectorX& slopes : above) result.above.push_back(slopes[q]);
+        return result;
+    }
+};
+
 // What the roughness of the quantities says about differences; steps and derivatives in parameters scaled by their ranges.
 struct DifferenceSteps {
     double first = 0;   ///< step that differences begin with
@@ -29,6 +42,12 @@ struct DifferenceSteps {
 
     // The error of (q(s) - q(-s)) / 2s by noise: standard deviation noise / (sqrt(2) s), three of it.
     double noise_error(Eigen::Index q, double step) const { return 3 / std::sqrt(2.0) * noise[q] / step; }
+    // What a derivative is compared with at least, per unit of the range.
+    double floor(Eigen::Index q, const CheckOptions& options) const { return std::max(options.size_fraction * size[q], tolerance[q]); }
+    // One that the check would see: it makes a central difference wrong by half of it.
+    Kink kink(Eigen::Index q, const QuantitySlopes& slopes, double slope, const CheckOptions& options) const {
+        return kink_of(slopes.of(q), noise[q], options.limit * std::max(std::abs(slope), floor(q, options)));
+    }
 };
 
 // Differences begin where the gradients of all quantities hold, or at the usual step if they do so farther. But never below the step that
@@ -52,7 +71,7 @@ DifferenceSteps difference_steps(const RoughnessReport& roughness, const VectorX
 
 struct ParameterDifferences {
     std::vector<DifferenceEstimate> estimates;  ///< per quantity, per unit of the parameter's range
-    VectorX kinks;                              ///< per quantity: slope above minus slope below, where they differ however small the step
+    std::vector<Kink> kinks;                    ///< per quantity, likewise
     std::vector<ContactChange> contact_changes;
     Vector2 contacts_reach = Vector2::Zero();
     std::string failure;
@@ -90,7 +109,7 @@ public:
             result_.estimates = estimates(step);
             if (result_.interrupted || good_enough(step)) break;
         }
-        result_.kinks = kinks(step);
+        result_.kinks = kinks();
         result_.contacts_reach = {below_.front().reach(), above_.front().reach()};
         for (size_t s = 0; s < above_.size(); ++s) {
             const problem::Run& at = at_.evaluation.runs[s];
@@ -137,13 +156,15 @@ private:
             result_.failure = up.evaluation.usable ? down.evaluation.reason : up.evaluation.reason;
             if (differences_.size() >= enough) return false;
             differences_.clear();
-            bends_.clear();
+            slopes_ = {};
             return true;
         }
         result_.failure.clear();
         const VectorX above = quantities_of(up.evaluation), below = quantities_of(down.evaluation);
-        bends_.push_back((above - 2 * steps_.values + below) / step);
         differences_.push_back((above - below) * (range_ / (up.value - down.value)));  // their distance is exact, not 2 step
+        slopes_.steps.push_back(step);
+        slopes_.above.push_back((above - steps_.values) * (range_ / (up.value - p_[parameter_])));
+        slopes_.below.push_back((steps_.values - below) * (range_ / (p_[parameter_] - down.value)));
         return true;
     }
 
@@ -160,18 +181,10 @@ private:
         return result;
     }
 
-    // The slope above minus that below shrinks with the step where the quantity is smooth. Where it stays, it is a kink, if it is more than
-    // noise, and counts beside the slope.
-    // @param step  No more than the newest difference's.
-    VectorX kinks(double step) const {
-        VectorX found = VectorX::Zero(steps_.values.size());
-        if (bends_.size() < 2) return found;
-        const VectorX &last = bends_.back(), &before = bends_[bends_.size() - 2];
-        for (Eigen::Index q = 0; q < found.size(); ++q) {
-            const double slope = std::max({std::abs(differences_.back()[q]), options_.size_fraction * steps_.size[q], steps_.tolerance[q]});
-            const bool stays = std::abs(last[q]) > 0.6 * std::abs(before[q]) && last[q] * before[q] > 0;
-            if (stays && std::abs(last[q]) > std::max(1e-3 * slope, 4 * steps_.noise_error(q, step))) found[q] = last[q];
-        }
+    std::vector<Kink> kinks() const {
+        std::vector<Kink> found(static_cast<size_t>(steps_.values.size()));
+        for (Eigen::Index q = 0; q < steps_.values.size() && !differences_.empty(); ++q)
+            found[static_cast<size_t>(q)] = steps_.kink(q, slopes_, differences_.back()[q], options_);
         return found;
     }
 
@@ -181,7 +194,7 @@ private:
         for (size_t k = 0; k < result_.estimates.size(); ++k) {
             const DifferenceEstimate& estimate = result_.estimates[k];
             const Eigen::Index q = static_cast<Eigen::Index>(k);
-            const double scale = std::max({std::abs(estimate.value), options_.size_fraction * steps_.size[q], steps_.tolerance[q]});
+            const double scale = std::max(std::abs(estimate.value), steps_.floor(q, options_));
             const bool accurate = estimate.error <= 1e-2 * options_.limit * scale;
             const bool noisy = steps_.noise_error(q, step / options_.ratio) >= estimate.error;
             if (!accurate && !noisy) return false;
@@ -198,7 +211,8 @@ private:
     const CheckedDesign& at_;
     std::vector<ContactWatch> above_, below_;  // of each scenario
     std::function<void()> on_simulation_;
-    std::vector<VectorX> differences_, bends_;
+    std::vector<VectorX> differences_;
+    QuantitySlopes slopes_;
     ParameterDifferences result_;
 };
 
@@ -213,9 +227,11 @@ CheckRow compared(double a, const DifferenceEstimate& d, double floor, double li
     return row;
 }
 
-// What of a row's error cannot be the noise of its difference.
-double told_error(bool resolved, double relative_error, double difference_error) {
-    return resolved ? relative_error : std::max(0.0, relative_error - difference_error);
+// What of a row's error cannot be the noise of its difference, nor is that of a kink: there no difference is a derivative.
+template <class Row>
+double told_error(const Row& row) {
+    if (row.lies_between) return 0;
+    return row.resolved ? row.relative_error : std::max(0.0, row.relative_error - row.difference_error);
 }
 
 // Differences that ended early are taken only if they are as good as the limit. @return per parameter, whether some of it, or all, was not
@@ -227,7 +243,7 @@ std::vector<bool> compare(const problem::DesignProblem& problem, const MatrixX& 
     const VectorX ranges = parameter_ranges(problem.design());
     for (Eigen::Index q = 0; q < adjoint.rows(); ++q) {
         const double norm = adjoint.row(q).transpose().cwiseProduct(ranges).norm();
-        const double floor = std::max({options.scale_fraction * norm, options.size_fraction * steps.size[q], steps.tolerance[q]});
+        const double floor = std::max(options.scale_fraction * norm, steps.floor(q, options));
         for (Eigen::Index k = 0; k < adjoint.cols(); ++k) {
             const ParameterDifferences& differences = found[k];
             if (differences.estimates.empty()) {
@@ -244,9 +260,10 @@ std::vector<bool> compare(const problem::DesignProblem& problem, const MatrixX& 
             row.parameter = problem.design().parameters[k].name;
             row.adjoint = adjoint(q, k);
             row.difference = estimate.value / ranges[k];
-            row.kink = differences.kinks[q] / ranges[k];
-            report.largest_relative_error =
-                std::max(report.largest_relative_error, told_error(row.resolved, row.relative_error, row.difference_error));
+            const Kink& kink = differences.kinks[static_cast<size_t>(q)];
+            row.kink = kink.jump() / ranges[k];
+            row.lies_between = kink.jump() != 0 && kink.lies_between(adjoint(q, k) * ranges[k], options.limit * floor);
+            report.largest_relative_error = std::max(report.largest_relative_error, told_error(row));
             report.rows.push_back(std::move(row));
         }
     }
@@ -278,6 +295,11 @@ public:
         });
         for (size_t k = 0; k < t.size(); ++k)
             if (above[k].size() == 0 || below[k].size() == 0) return {};
+        QuantitySlopes sides{t, {}, {}};
+        for (size_t k = 0; k < t.size(); ++k) {
+            sides.above.push_back(above[k] / t[k]);
+            sides.below.push_back(-below[k] / t[k]);
+        }
         std::vector<LineRow> rows;
         for (Eigen::Index q = 0; q < slopes.size(); ++q) {
             std::vector<double> differences, up, down;
@@ -287,6 +309,9 @@ public:
                 down.push_back(below[k][q] + t[k] * slopes[q]);
             }
             rows.push_back(row(q, slopes[q], differences));
+            const Kink kink = steps_.kink(q, sides, slopes[q], options_);
+            rows.back().kink = kink.jump();
+            rows.back().lies_between = kink.jump() != 0 && kink.lies_between(slopes[q], options_.limit * steps_.floor(q, options_));
             const double a = slope_of(t, up, q), b = slope_of(t, down, q);
             rows.back().slope = std::isfinite(a) && !(std::abs(b - 2) > std::abs(a - 2)) ? a : b;
         }
@@ -304,8 +329,15 @@ private:
 
     LineRow row(Eigen::Index q, double slope, const std::vector<double>& differences) const {
         const DifferenceEstimate d = ridders_estimate(differences, ratio, steps_.noise_error(q, steps_.first));
-        const CheckRow c = compared(slope, d, std::max(options_.size_fraction * steps_.size[q], steps_.tolerance[q]), options_.limit);
-        return {names_[q], slope, d.value, c.difference_error, c.relative_error, c.resolved, 0};
+        const CheckRow c = compared(slope, d, steps_.floor(q, options_), options_.limit);
+        LineRow result;
+        result.quantity = names_[q];
+        result.adjoint = slope;
+        result.difference = d.value;
+        result.difference_error = c.difference_error;
+        result.relative_error = c.relative_error;
+        result.resolved = c.resolved;
+        return result;
     }
 
     // NaN: too few remainders stand clear of noise.
@@ -364,6 +396,29 @@ DifferenceEstimate ridders_estimate(const std::vector<double>& differences, doub
     return best;
 }
 
+bool Kink::lies_between(double slope, double accuracy) const {
+    const double open = error + accuracy;
+    return slope >= std::min(below, above) - open && slope <= std::max(below, above) + open;
+}
+
+Kink kink_of(const SideSlopes& slopes, double noise, double least) {
+    FETTLE_ASSERT(slopes.below.size() == slopes.steps.size() && slopes.above.size() == slopes.steps.size(), "a slope per step and side");
+    for (size_t k = slopes.steps.size(); k-- > 1;) {
+        const double noise_error = 3 * std::sqrt(2.0) * noise / slopes.steps[k];  // of a slope: three standard deviations
+        const double jump = slopes.above[k] - slopes.below[k], before = slopes.above[k - 1] - slopes.below[k - 1];
+        if (!(std::abs(jump) > 2 * noise_error)) {
+            if (2 * noise_error <= least) return {};  // one that counts would show
+            continue;
+        }
+        const bool stays = std::abs(jump) > 0.6 * std::abs(before) && jump * before > 0;
+        if (!stays || !(std::abs(jump) > least)) return {};
+        const double change = std::max(std::abs(slopes.above[k] - slopes.above[k - 1]), std::abs(slopes.below[k] - slopes.below[k - 1]));
+        if (change + noise_error > std::abs(jump)) return {};  // known too little to judge a gradient by
+        return {slopes.below[k], slopes.above[k], change + noise_error};
+    }
+    return {};
+}
+
 int check_cost(int parameters, const CheckOptions& options) {
     if (options.most_parameters > 0) parameters = std::min(parameters, options.most_parameters);
     return options.roughness.intervals * (options.roughness.fine_spacing > 0 ? 2 : 1) + options.roughness.distances +
@@ -395,9 +450,7 @@ CheckReport check_gradients(const problem::DesignProblem& problem, const VectorX
         const VectorX& direction = report.roughness.direction;
         report.along = LineCheck(problem, p, direction, steps, options)
                            .run(quantity_gradients(at) * direction.cwiseProduct(parameter_ranges(problem.design())), count);
-        for (const LineRow& row : report.along)
-            report.largest_relative_error =
-                std::max(report.largest_relative_error, told_error(row.resolved, row.relative_error, row.difference_error));
+        for (const LineRow& row : report.along) report.largest_relative_error = std::max(report.largest_relative_error, told_error(row));
     }
     const std::vector<int> chosen = parameters_to_check(problem, at.gradient, options.most_parameters);
     std::vector<ParameterDifferences> found(n);

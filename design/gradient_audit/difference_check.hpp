@@ -34,6 +34,24 @@ struct DifferenceEstimate {
 /// @param noise_error  Error that noise gives the first difference; it grows with r, as steps shrink.
 DifferenceEstimate ridders_estimate(const std::vector<double>& differences, double ratio, double noise_error = 0);
 
+/// The differences of a quantity to either side of a point, by steps that shrink.
+struct SideSlopes {
+    std::vector<double> steps, below, above;  ///< of one size
+};
+/// The slopes of both sides where they stay apart however small the step.
+struct Kink {
+    double below = 0, above = 0;
+    double error = 0;  ///< of either, estimated: the change by the last step, plus noise
+    double jump() const { return above - below; }
+    /// Contract: jump() != 0.
+    bool lies_between(double slope, double accuracy) const;
+};
+/// Finds a kink by the jump above - below, at the least step where the jump stands clear of noise. Where a quantity is smooth, the jump falls in
+/// proportion to the step. It is a kink if more than 0.6 of the jump at the step before remains, if it exceeds `least`, and if the slopes are
+/// known to less than it.
+/// @param noise  The standard deviation of the quantity's noise. @return a jump of 0: none
+Kink kink_of(const SideSlopes& slopes, double noise, double least);
+
 struct CheckOptions {
     /// Steps of a central difference, in shares of the parameter's range: the first where gradients hold farther, and the largest, where
     /// noise asks for more.
@@ -59,10 +77,11 @@ struct CheckRow {
     double adjoint = 0, difference = 0;  ///< SI
     double difference_error = 0;         ///< that the difference estimates of itself, relative like relative_error
     double relative_error = 0;
-    /// Slope above minus slope below [SI], where they differ however small the step: there is no derivative, and the adjoint is that of one
-    /// side (witnesses of a clearance that tie ...). 0: nothing of the kind was met.
+    /// Slope above minus slope below [SI], where they differ however small the step: there is no derivative, and a right adjoint is that of
+    /// one side, or lies between the two (witnesses of a clearance that tie, closest features that change ...). 0: none was met.
     double kink = 0;
-    bool resolved = true;  ///< false: noise leaves more open than `limit`: an error up to difference_error may be the difference's own
+    bool lies_between = false;  ///< at a kink, the adjoint, as well as the slopes of both sides are known
+    bool resolved = true;       ///< false: noise leaves more open than `limit`: an error up to difference_error may be the difference's own
 };
 
 /// The same along the direction of the roughness (the objective's gradient, within the bounds): per unit of t, in shares of the ranges.
@@ -70,6 +89,8 @@ struct LineRow {
     std::string quantity;
     double adjoint = 0, difference = 0, difference_error = 0, relative_error = 0;  ///< as CheckRow's
     bool resolved = true;
+    double kink = 0;            ///< these two as CheckRow's, per unit of t
+    bool lies_between = false;  ///< of the slopes of both sides
     /// Slope of ln |q(t) - q(0) - t q'(0)| over ln t, on the side where it is farther from 2, over the least steps (four or five) at which
     /// that stands clear of noise: 2 where q is smooth, 1 of a wrong gradient. NaN: noise hides it, the gradient predicts to that.
     double slope = 0;

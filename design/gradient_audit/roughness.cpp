@@ -48,10 +48,10 @@ public:
     }
 
     RoughnessReport run() {
-        const NoiseTable table = noise_table(options_.spacing);
+        const NoiseTable table = noise_table(options_.spacing, 0.5);
         report_.spacing = table.spacing;
         NoiseTable fine;
-        if (options_.fine_spacing > 0 && table.spacing > options_.fine_spacing) fine = noise_table(options_.fine_spacing);
+        if (options_.fine_spacing > 0 && table.spacing > options_.fine_spacing) fine = noise_table(options_.fine_spacing, 0);
         report_.fine_spacing = fine.spacing;
         report_.measured = table.spacing > 0 && !report_.interrupted;
         if (!report_.measured) {
@@ -90,13 +90,13 @@ private:
         }
     }
 
-    // Points k * spacing, one of which is t = 0, on both sides of it as far as the bounds allow. Where too many of them fail, a tenth of
-    // the spacing, twice at most.
-    NoiseTable noise_table(double spacing) {
+    // Points k * spacing, one of which is t = 0, of `share` of the intervals below it and the rest above, as far as the bounds allow. Where
+    // too many of them fail, a tenth of the spacing, twice at most.
+    NoiseTable noise_table(double spacing, double share) {
         for (int tries = 0; tries < 3 && !report_.interrupted; ++tries, spacing /= 10) {
             spacing = std::min(spacing, (line_.most() - line_.least()) / (options_.intervals + 1));
             if (!(spacing > 0)) return {};
-            const int below = static_cast<int>(std::min(std::floor(-line_.least() / spacing), 0.5 * options_.intervals));
+            const int below = static_cast<int>(std::min(std::floor(-line_.least() / spacing), share * options_.intervals));
             const int above =
                 static_cast<int>(std::min(std::floor(line_.most() / spacing), static_cast<double>(options_.intervals - below)));
             const int first = above - options_.intervals;  // more below where there is no room above

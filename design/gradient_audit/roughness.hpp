@@ -5,7 +5,9 @@
 ///
 /// Along p(t) = p + t * direction * ranges (gradient_audit/design_line.hpp) every quantity q has
 /// - its noise at moves of `spacing` (optimisers/noise.hpp): the scatter that moves of that size see, whatever makes it;
-/// - its rounding, the same at `fine_spacing`: what remains when the design hardly moves (differences take their steps from it);
+/// - its rounding, the same at `fine_spacing`: what remains when the design hardly moves (differences take their steps from it). It is
+/// looked
+///   for on one side of p alone: a kink at p, where the best designs often lie, is no rounding;
 /// - the length over which its gradient holds: |q(t) - q(0) - t q'(0)| <= max(share |t q'(0)|, tolerance, 4 rounding), q' by the adjoint.
 #pragma once
 
@@ -22,7 +24,7 @@ namespace fettle::design::gradient_audit {
 struct RoughnessOptions {
     VectorX direction = {};                                    ///< in shares of the parameters' ranges; empty: downhill_direction
     double spacing = 1e-3;                                     ///< of the points between which noise is looked for, in shares of the ranges
-    double fine_spacing = 0;                                   ///< of those for rounding; 0: not measured
+    double fine_spacing = 0;                                   ///< of those for rounding, all on one side; 0: not measured
     int intervals = 6;                                         ///< simulations for each of the two. Contract: >= 4
     int distances = 4;                                         ///< further simulations, for the lengths; even
     double share = 0.1;                                        ///< by which a prediction may be off

@@ -29,10 +29,11 @@ FETTLE_RECORD(fettle::design::studies::OptimiseOutcome, "OptimiseOutcome", field
 FETTLE_RECORD(fettle::design::gradient_audit::CheckRow, "CheckRow", field("quantity", &Type::quantity),
               field("parameter", &Type::parameter), field("adjoint", &Type::adjoint), field("difference", &Type::difference),
               field("difference_error", &Type::difference_error), field("relative_error", &Type::relative_error),
-              field("kink", &Type::kink), field("resolved", &Type::resolved))
+              field("kink", &Type::kink), field("lies_between", &Type::lies_between), field("resolved", &Type::resolved))
 FETTLE_RECORD(fettle::design::gradient_audit::LineRow, "LineRow", field("quantity", &Type::quantity), field("adjoint", &Type::adjoint),
               field("difference", &Type::difference), field("difference_error", &Type::difference_error),
-              field("relative_error", &Type::relative_error), field("resolved", &Type::resolved), field("slope", &Type::slope))
+              field("relative_error", &Type::relative_error), field("resolved", &Type::resolved), field("kink", &Type::kink),
+              field("lies_between", &Type::lies_between), field("slope", &Type::slope))
 FETTLE_RECORD(fettle::design::gradient_audit::SweepAgreement, "SweepAgreement", field("disagreement", &Type::disagreement),
               field("quantity", &Type::quantity), field("failure", &Type::failure))
 FETTLE_WORDS(fettle::design::optimisers::NoiseStatus, "detected", "spacing_too_small", "spacing_too_large")

@@ -538,7 +538,8 @@ class CheckRow(Record):
     difference: float = 0.0
     difference_error: float = 0.0
     relative_error: float = 0.0
-    kink: float = 0.0
+    kink: float = 0.0  #: slope above minus slope below, where they stay apart
+    lies_between: bool = False  #: at a kink: does the adjoint, of the slopes of both sides
     resolved: bool = True
 
 
@@ -552,6 +553,8 @@ class LineRow(Record):
     difference_error: float = 0.0
     relative_error: float = 0.0
     resolved: bool = True
+    kink: float = 0.0
+    lies_between: bool = False
     slope: float = 0.0
 
 

@@ -60,13 +60,33 @@ TEST_CASE("verdict on a check: differences, kinks, noise, the line, what was not
     CHECK(check_faults(report, 1e-5) ==
           std::vector<std::string>{"gradients and differences disagree: objective per wrong by 0.02 (limit 1e-05)",
                                    "they disagree along the gradient: objective by 0.003 (limit 1e-05)",
-                                   "there is a kink, and so no derivative: objective per kinked", "not all could be checked: angle: jams",
-                                   "noise hides more than the limit: objective per noisy"});
+                                   "at a kink, the gradient lies outside the slopes of both sides: objective per kinked",
+                                   "not all could be checked: angle: jams", "noise hides more than the limit: objective per noisy"});
     CHECK(check_verdict(report, 1e-5) == CheckVerdict::failed);
     report.interrupted = true;
     CHECK(verdict_text(report, 1e-5).find("check FAILED: gradients and differences disagree") == 0);
     CHECK(verdict_text(report, 1e-5).find("it was interrupted; not all could be checked") != std::string::npos);
     CHECK(verdict_text(report, 1e-5).find("all differences agree") == std::string::npos);
+}
+
+TEST_CASE("verdict on a check: a kink that the gradient lies within passes, and is named") {
+    CheckReport report = good_report();
+    report.rows.push_back(row("kinked", 0.5));
+    report.rows.back().kink = 1;
+    report.rows.back().lies_between = true;
+    report.rows.back().resolved = false;
+    LineRow line;
+    line.quantity = "stroke";
+    line.relative_error = 0.2;
+    line.kink = -1;
+    line.lies_between = true;
+    report.along = {line};
+    CHECK(check_faults(report, 1e-5).empty());
+    CHECK(verdict_text(report, 1e-5) ==
+          "check passed (limit 1e-05); at a kink, where the slopes of both sides differ and the gradient lies between them: objective per "
+          "kinked, stroke along the gradient\n");
+    report.along[0].lies_between = false;
+    CHECK(check_verdict(report, 1e-5) == CheckVerdict::failed);
 }
 
 TEST_CASE("verdict on a check: a simulation beside it that fails leaves it undecided, with what was measured") {

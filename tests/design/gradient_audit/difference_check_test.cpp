@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 
 #include "tests/design/gradient_audit/density_design.hpp"
 #include "tests/design/small_problem.hpp"
@@ -133,6 +134,56 @@ TEST_CASE("check: steps keep within the length over which a kinked quantity's gr
     CHECK(report.largest_relative_error < 1e-7);
 }
 
+TEST_CASE("kink: what stays as steps shrink, and is neither noise nor curvature") {
+    const auto slopes_of = [](const std::function<double(double)>& q, double noise = 0) {
+        SideSlopes result;
+        double sign = 1;
+        for (double s = 1e-2; s > 1e-5; s /= 4, sign = -sign) {
+            result.steps.push_back(s);
+            result.above.push_back((q(s) + sign * noise - q(0)) / s);
+            result.below.push_back((q(0) - q(-s) - sign * noise) / s);
+        }
+        return result;
+    };
+    const Kink found = kink_of(slopes_of([](double s) { return std::exp(s) + std::max(0.0, 1e-3 * s); }), 1e-16, 1e-5);
+    CHECK(found.jump() == Approx(1e-3).epsilon(0.1));
+    CHECK(found.lies_between(1, 0));
+    CHECK(found.lies_between(1.001, 0));
+    CHECK_FALSE(found.lies_between(1.0012, 0));
+    CHECK_FALSE(found.lies_between(0.9998, 0));
+    CHECK(kink_of(slopes_of([](double s) { return std::exp(s) + std::max(0.0, 1e-3 * s); }), 1e-16, 1e-2).jump() == 0);  // counts for less
+    CHECK(kink_of(slopes_of([](double s) { return std::exp(20 * s); }), 1e-16, 1e-5).jump() == 0);
+    CHECK(kink_of(slopes_of([](double) { return 1.0; }, 1e-7), 1e-7, 1e-5).jump() == 0);
+    CHECK(kink_of(slopes_of([](double s) { return std::max(0.0, s - 1e-3); }), 1e-16, 1e-5).jump() == 0);  // a thousandth beside it
+    CHECK(kink_of({}, 1e-16, 1e-5).jump() == 0);
+}
+
+TEST_CASE("check: a gradient that is that of neither side of a kink lies outside, along the gradient too") {
+    const auto report_for = [](double adjoint) {
+        const DesignProblem problem =
+            density_problem(1, {std::make_shared<OfDensities>([](const VectorX& u) { return 3 + std::max(2 * u[0], -u[0]); },
+                                                              [=](const VectorX&) { return VectorX(VectorX::Constant(1, adjoint)); })});
+        const VectorX p = values_of(problem.design().parameters);
+        return check_gradients(problem, p, problem.evaluate(p));
+    };
+    for (const double adjoint : {2.0, -1.0, 0.7}) {
+        const CheckReport right = report_for(adjoint);
+        REQUIRE(right.rows.size() == 1);
+        REQUIRE(right.along.size() == 1);
+        CHECK(right.rows[0].lies_between);
+        CHECK(right.along[0].lies_between);
+        CHECK(right.largest_relative_error == 0);
+    }
+    for (const double adjoint : {2.01, -1.01, 5.0}) {
+        const CheckReport wrong = report_for(adjoint);
+        REQUIRE(wrong.rows.size() == 1);
+        REQUIRE(wrong.along.size() == 1);
+        CHECK_FALSE(wrong.rows[0].lies_between);
+        CHECK_FALSE(wrong.along[0].lies_between);
+        CHECK(wrong.largest_relative_error > 1e-4);
+    }
+}
+
 TEST_CASE("check: a kink is named, with the slopes of both sides") {
     const DesignProblem problem =
         density_problem(2, {std::make_shared<OfDensities>([](const VectorX& u) { return 3 + std::max(2 * u[0], -u[0]) + std::exp(u[1]); },
@@ -142,7 +193,9 @@ TEST_CASE("check: a kink is named, with the slopes of both sides") {
     REQUIRE(report.rows.size() == 2);
     CHECK(report.rows[0].kink == Approx(3e-3));
     CHECK(report.rows[0].difference == Approx(0.5e-3));
+    CHECK(report.rows[0].lies_between);
     CHECK(report.rows[1].kink == 0);
+    CHECK(report.rows[1].resolved);  // the kink of the one parameter is no noise of the other
     CHECK(report.rows[1].relative_error < 1e-6);
 }
 
