@@ -227,7 +227,7 @@ CheckRow compared(double a, const DifferenceEstimate& d, double floor, double li
     return row;
 }
 
-// What of a row's error cannot be the noise of its difference, nor is that of a kink: there no difference is a derivative.
+// The part of a row's error that noise cannot make. At a kink no difference is a derivative: 0 where the gradient lies between the slopes.
 template <class Row>
 double told_error(const Row& row) {
     if (row.lies_between) return 0;

@@ -46,9 +46,9 @@ struct Kink {
     /// Contract: jump() != 0.
     bool lies_between(double slope, double accuracy) const;
 };
-/// Finds a kink by the jump above - below, at the least step where the jump stands clear of noise. Where a quantity is smooth, the jump falls in
-/// proportion to the step. It is a kink if more than 0.6 of the jump at the step before remains, if it exceeds `least`, and if the slopes are
-/// known to less than it.
+/// Finds a kink by the jump above - below, at the least step where the jump stands clear of noise. Where a quantity is smooth, the jump
+/// falls in proportion to the step. It is a kink if more than 0.6 of the jump at the step before remains, if it exceeds `least`, and if the
+/// slopes are known to less than it.
 /// @param noise  The standard deviation of the quantity's noise. @return a jump of 0: none
 Kink kink_of(const SideSlopes& slopes, double noise, double least);
 
