@@ -288,6 +288,7 @@ private:
     }
 
     int variable(const Formula& meaning) {
+        if (meaning.is_constant()) return constant(value_of<double>(meaning, {}));
         std::vector<int> moved;
         for (Node node : meaning.nodes) {
             if (node.operation == Operation::input) {

@@ -7,6 +7,7 @@
 
 #include "core/base/limits.hpp"
 #include "core/base/text.hpp"
+#include "core/parts/curve_geometry.hpp"
 #include "core/parts/helix.hpp"
 #include "core/parts/revolve.hpp"
 #include "core/parts/solid_booleans.hpp"
@@ -34,17 +35,16 @@ namespace {
 
 constexpr double most_turns = 1000;
 
-// Vertices that a profile becomes, at most, by the drawing's facets.
-double vertex_count(const Profile& profile, const parts::Facets& facets) {
+// Vertices that a profile becomes, at most: one more for each arc, whose flats may lie around it.
+double vertex_count(const Profile& profile, const parts::Facets& of_drawing) {
     double out = 0;
     for (const parts::Loop& loop : profile.loops) {
         for (const parts::Segment& segment : loop.segments) {
-            const auto* arc = std::get_if<parts::Arc>(&segment.curve);
-            constexpr int of_other_curves = 500;
-            if (std::holds_alternative<parts::Line>(segment.curve))
-                out += 1;
-            else
-                out += arc == nullptr ? of_other_curves : parts::segments_wanted(facets, arc->radius.value, 2 * std::numbers::pi);
+            const parts::Facets& facets = segment.facets ? *segment.facets : of_drawing;
+            if (const auto* arc = std::get_if<parts::Arc>(&segment.curve))
+                out += 1 + parts::segments_wanted(facets, arc->radius.value, parts::sweep_value(*arc));
+            else if (const int count = parts::facet_count(segment.curve, facets); count < parts::most_segments)
+                out += count;  // else it is refused by name as it is drawn
         }
     }
     return out;

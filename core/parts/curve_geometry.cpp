@@ -30,14 +30,6 @@ int whole_number(double count, int least) {
 
 double cross_of(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-double sweep_value(const Arc& arc) {
-    if (is_whole_circle(arc)) return arc.counter_clockwise ? full_turn : -full_turn;
-    const Vector2 a = value(arc.start) - value(arc.centre), b = value(arc.end) - value(arc.centre);
-    const double angle = std::atan2(cross_of(a, b), a.dot(b));
-    if (arc.counter_clockwise) return angle > 0 ? angle : angle + full_turn;
-    return angle < 0 ? angle : angle - full_turn;
-}
-
 Vector2 turned_by(const Vector2& a, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     return {c * a.x() - s * a.y(), s * a.x() + c * a.y()};
@@ -483,6 +475,14 @@ Curve placed(const Curve& curve, const Placement2& placement) {
         return Bezier{{at_place(b->points[0]), at_place(b->points[1]), at_place(b->points[2]), at_place(b->points[3])}};
     const auto& law_curve = std::get<LawCurve>(curve);
     return LawCurve{placed_law(law_curve.law, placement), law_curve.from, law_curve.to, at_place(law_curve.start), at_place(law_curve.end)};
+}
+
+double sweep_value(const Arc& arc) {
+    if (is_whole_circle(arc)) return arc.counter_clockwise ? full_turn : -full_turn;
+    const Vector2 a = value(arc.start) - value(arc.centre), b = value(arc.end) - value(arc.centre);
+    const double angle = std::atan2(cross_of(a, b), a.dot(b));
+    if (arc.counter_clockwise) return angle > 0 ? angle : angle + full_turn;
+    return angle < 0 ? angle : angle - full_turn;
 }
 
 int facet_count(const Curve& curve, const Facets& facets) {

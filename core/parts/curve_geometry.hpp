@@ -73,6 +73,9 @@ struct Placement2 {
 Point2 placed(const Point2& p, const Placement2& placement);
 Curve placed(const Curve& curve, const Placement2& placement);
 
+/// The angle by which an arc turns [rad], positive counter-clockwise; +-2 pi of a whole circle.
+double sweep_value(const Arc& arc);
+
 /// Number of straight pieces that a curve is drawn with.
 int facet_count(const Curve& curve, const Facets& facets);
 

@@ -49,7 +49,8 @@ Json optimality_json(const Design& design, const optimisers::Optimality& o) {
     Json of_relations = Json::object();
     const size_t m = design.constraints.size();
     for (size_t i = 0; i < design.relations.size() && m + i < static_cast<size_t>(o.multipliers.size()); ++i)
-        of_relations[design.relations[i].name] = o.multipliers[static_cast<Eigen::Index>(m + i)] * design.relations[i].bounds.unit;
+        if (!design.relations[i].by_choices)  // no parameter changes it
+            of_relations[design.relations[i].name] = o.multipliers[static_cast<Eigen::Index>(m + i)] * design.relations[i].bounds.unit;
     Json json{{"multipliers", multipliers},
               {"relation_multipliers", of_relations},
               {"predicted_gain", o.predicted_gain},

@@ -28,7 +28,8 @@ std::vector<Cost> costs_of(const Design& design, const optimisers::Optimality& o
     for (size_t i = 0; i < m; ++i)
         add(i, design.constraints[i].name, design.constraints[i].bounds, description::unit_name(design.constraints[i]));
     for (size_t i = 0; i < design.relations.size(); ++i)
-        add(m + i, design.relations[i].name, design.relations[i].bounds, description::unit_name(design.relations[i]));
+        if (!design.relations[i].by_choices)  // no parameter changes it
+            add(m + i, design.relations[i].name, design.relations[i].bounds, description::unit_name(design.relations[i]));
     std::stable_sort(costs.begin(), costs.end(), [](const Cost& a, const Cost& b) { return std::abs(a.per_unit) > std::abs(b.per_unit); });
     return costs;
 }

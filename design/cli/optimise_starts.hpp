@@ -1,40 +1,25 @@
 // SPDX-License-Identifier: MIT
-/// fettle optimise --starts: runs of the program from many starts, several at once, each in a folder of its own, OUT/start-SEED. A run
-/// is the same whatever runs beside it: it is `fettle optimise --seed SEED --out OUT/start-SEED` with one thread or more.
+/// fettle optimise --starts: runs from many starts, each in the folder OUT/start-SEED: it is `fettle optimise --seed SEED --out
+/// OUT/start-SEED`.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "design/cli/command.hpp"
+#include "design/cli/optimise_runs.hpp"
 
 namespace fettle::design::cli {
 
-struct StartsRequest {
-    std::string design, out, optimiser;  ///< as on the command line; `optimiser` empty: the design's
-    std::vector<std::uint64_t> seeds;
-    bool resume = false, repair = false;
-};
-
-/// One run's end.
-struct StartResult {
+struct StartResult : RunResult {
     std::uint64_t seed = 0;
-    std::string out;
-    std::string status;             ///< of the optimiser; "failed" where the run left no result, "not run" where it never began
-    std::string message;            ///< why it failed: the last line of its log
-    nlohmann::ordered_json result;  ///< result.json; null if there is none
-    int exit_code = 0;
 };
 
-/// Runs them all, or, once interrupted, as far as they have come. One whose folder cannot be made is failed; throws std::runtime_error if
-/// no process can be started.
-std::vector<StartResult> run_starts(const StartsRequest& request, const CommonOptions& common, Console& console);
-
-/// The best one: of those that meet all requirements the one with the least objective (with --repair: the least change), else the one
-/// with the least violation; the first of equals. None: no run could evaluate a design.
-std::optional<size_t> best_start(const std::vector<StartResult>& starts);
+/// In the order of the seeds; as run_together. @param design, out  as on the command line
+std::vector<StartResult> run_starts(const std::string& design, const std::string& out, const std::vector<std::uint64_t>& seeds,
+                                    const RunSettings& settings, const CommonOptions& common, Console& console);
 
 /// How many of the random starts that have ended reach the best design: every requirement met, what is minimised within a thousandth of the
 /// least.

@@ -13,6 +13,7 @@
 
 #include "core/base/types.hpp"
 #include "core/expression/formula.hpp"
+#include "design/description/choice.hpp"
 #include "design/description/constraint.hpp"
 #include "design/description/parameter.hpp"
 
@@ -31,6 +32,7 @@ struct Relation {
     /// at once. Where it is not defined: a value or a gradient that is not finite; such a design is not evaluated.
     std::function<RelationValue(const VectorX&)> at = {};
     std::optional<core::expression::Formula> formula = {};  ///< what `at` evaluates, of parameters; none: made by a program
+    std::optional<ChoiceFormula> by_choices = {};           ///< of a relation that no parameter changes, but choices of the design do
 };
 
 /// A formula of parameters as what a relation asks for. Contract: its inputs are among these parameters.

@@ -20,6 +20,7 @@
 #include "design/description/made_design.hpp"
 #include "design/optimisers/optimisation.hpp"
 #include "design/quantities/worst.hpp"
+#include "design/reading/choice_reader.hpp"
 #include "design/reading/constraint_reader.hpp"
 #include "design/reading/design_formulas.hpp"
 #include "design/reading/over_tolerances_reader.hpp"
@@ -49,9 +50,9 @@ public:
 
     Result<DesignFile> read() {
         const JsonNode root = document_.root();
-        root.allow_keys({"$schema", "fettle_design", "description", "scene", "units", "parameters", "variables", "set", "scenarios",
-                         "simulation", "quantities", "objective", "constraints", "tolerances", "process", "over_tolerances", "optimiser",
-                         "output"});
+        root.allow_keys({"$schema", "fettle_design", "description", "scene", "units", "parameters", "choices", "variables", "set",
+                         "scenarios", "simulation", "quantities", "objective", "constraints", "tolerances", "process", "over_tolerances",
+                         "optimiser", "output"});
         root["$schema"].string();
         root["description"].string();
         core::files::is_version(root.require("fettle_design"), 1);
@@ -61,6 +62,9 @@ public:
         file_.length_unit = *find_unit(*unit);
         std::optional<JsonDocument> scene = open_scene_file(root.require("scene"));
         if (!scene) return all_errors();
+        choices_.emplace(root["choices"], *scene);
+        choices_->apply(*scene);
+        file_.choices = choices_->choices();
         DesignFormulas formulas(document_, to_si(1, file_.length_unit), core::scene_files::variables_of(*scene));
         design_.parameters = read_parameters(root.require("parameters"), formulas.scene_variables(), file_.length_unit);
         std::vector<description::Parameter> as_made = design_.parameters;
@@ -100,8 +104,11 @@ public:
         read_objective(root["objective"], context);
         const double margin = read_optimiser(root["optimiser"]);
         design_.constraints = read_constraints(root["constraints"], context, margin);
-        design_.relations =
-            read_relations(root["constraints"], context, design_.parameters, design_.constraints, !options_.as_made && !entries.empty());
+        const std::optional<core::expression::Scope> by_choices = choice_scope();
+        design_.relations = read_relations(root["constraints"], context, design_.parameters, design_.constraints,
+                                           by_choices ? &*by_choices : nullptr, !options_.as_made && !entries.empty());
+        for (const description::Relation& relation : design_.relations)
+            if (relation.by_choices) file_.conditions.push_back({relation.name, relation.bounds, *relation.by_choices});
         take_over_tolerances(root, entries.empty());
         check_use(root["parameters"]);
         file_.quantities = named;
@@ -128,8 +135,18 @@ private:
         });
     }
 
+    // Nothing: there are no choices, or a document cannot be read a second time.
+    std::optional<core::expression::Scope> choice_scope() const {
+        if (file_.choices.empty()) return std::nullopt;
+        Result<JsonDocument> design = JsonDocument::parse(document_.root().text(), file_.path);
+        Result<JsonDocument> scene = JsonDocument::read(file_.scene_path);
+        if (!design || !scene) return std::nullopt;
+        return choices_->scope(*design, *scene, to_si(1, file_.length_unit), design_.parameters);
+    }
+
     // The process that makes the parts, unless the caller names it.
-    ProcessChoice read_processes(const JsonNode& node) {
+    ProcessChoice read_processes(const JsonNode& of_design) {
+        const JsonNode& node = choices_->process() ? *choices_->process() : of_design;
         ProcessChoice choice;
         choice.folder = fs::path(file_.path).parent_path().string();
         const auto name = node.string();
@@ -303,6 +320,7 @@ private:
             scene_errors_ = scene.errors();
             return false;
         }
+        choices_->apply(*scene);
         std::optional<Setting> setting = read_setting(*scene, {set, entry["set"]}, formulas);
         if (!setting) return false;
         check_same_things(setting->scene, entry);
@@ -529,6 +547,7 @@ private:
     const std::map<std::string, std::string>& fixed_;
     std::map<std::string, std::string> default_variables_;
     std::vector<std::string> unused_variables_;
+    std::optional<ChoiceReader> choices_;
     DesignFile file_;
     description::Design& design_ = file_.design;
     Errors scene_errors_;

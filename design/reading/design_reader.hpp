@@ -14,6 +14,7 @@
 #include "core/base/read_record.hpp"
 #include "core/base/result.hpp"
 #include "core/files/json_document.hpp"
+#include "design/description/choice.hpp"
 #include "design/description/design.hpp"
 #include "design/description/tolerance.hpp"
 #include "design/quantities/expression.hpp"
@@ -30,12 +31,14 @@ struct DesignFile {
     Unit length_unit;    ///< of the file
     std::string output;  ///< folder, absolute or relative to the working directory, below that of the file; empty: not said
     std::vector<std::string> warnings;
-    std::vector<quantities::NamedQuantity> quantities = {};  ///< of its `quantities`
-    std::vector<description::Tolerance> tolerances = {};     ///< of a design read as made
-    std::vector<Untoleranced> untoleranced = {};             ///< what "*" of its tolerances leaves out
-    std::string process = {};                                ///< that makes what entries say no other of; empty: none
-    core::base::ReadRecord::Files files = {};                ///< that it was read from, besides its own
-    std::string read_as = {};                                ///< what of the options its numbers depend on
+    std::vector<quantities::NamedQuantity> quantities = {};     ///< of its `quantities`
+    std::vector<description::Tolerance> tolerances = {};        ///< of a design read as made
+    std::vector<Untoleranced> untoleranced = {};                ///< what "*" of its tolerances leaves out
+    std::vector<description::Choice> choices = {};              ///< of the file, by name
+    std::vector<description::ChoiceCondition> conditions = {};  ///< relations that follow from them alone
+    std::string process = {};                                   ///< that makes what entries say no other of; empty: none
+    core::base::ReadRecord::Files files = {};                   ///< that it was read from, besides its own
+    std::string read_as = {};                                   ///< what of the options its numbers depend on
 };
 
 /// How many times as fine as the files say. Contract: both at least 1.

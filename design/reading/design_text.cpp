@@ -51,6 +51,10 @@ void move_processes(nlohmann::ordered_json& json, const std::string& folder, con
             holder["process"] = process_name_from(holder["process"].get<std::string>(), folder, other);
     };
     move(json);
+    if (json.contains("choices"))
+        for (auto& [name, choice] : json["choices"].items())
+            if (choice.is_object() && choice.contains("options"))
+                for (auto& option : choice["options"]) move(option);
     if (!json.contains("tolerances")) return;
     for (auto& entry : json["tolerances"]) move(entry);
 }
@@ -85,6 +89,21 @@ std::string design_text(const DesignFile& file, const VectorX& values, const std
     json["scene"] = scene ? *scene : fs::absolute(file.scene_path).string();
     move_processes(json, fs::path(file.path).parent_path().string(), directory);
     json.erase("output");  // it was relative to the first file's folder
+    return core::files::dumped(json, 2) + "\n";
+}
+
+std::string text_with_choices(const DesignFile& file, const description::Combination& combination, const VectorX& values) {
+    auto json = nlohmann::ordered_json::parse(file.text);
+    for (std::size_t k = 0; k < file.choices.size(); ++k) {
+        const description::Choice& choice = file.choices[k];
+        const std::string& option = choice.options[static_cast<std::size_t>(combination[k])];
+        json["choices"][choice.name]["value"] = choice.is_ordered ? nlohmann::ordered_json::parse(option) : nlohmann::ordered_json(option);
+    }
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+        auto& entry = json["parameters"][static_cast<std::size_t>(k)];
+        entry["value"] = description::from_si(values[k], file.design.parameters[static_cast<std::size_t>(k)].unit);
+        entry.erase("reference");
+    }
     return core::files::dumped(json, 2) + "\n";
 }
 

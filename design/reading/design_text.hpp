@@ -18,6 +18,10 @@ Result<std::string> scene_from(const DesignFile& file, const std::string& direct
 /// read back as the same bits.
 std::string design_text(const DesignFile& file, const VectorX& values, const std::string& directory);
 
+/// The design's file with other options, all else as it was. Contract: an option for each of its choices.
+/// @param values  The parameters' other values, SI; empty: they are as they were.
+std::string text_with_choices(const DesignFile& file, const description::Combination& combination, const VectorX& values = {});
+
 /// The text of the design file with closed linkages assembled on these sides, in its `set` and in no scenario's. Contract: the scene has
 /// these joints.
 std::string text_with_sides(const DesignFile& file, const std::vector<core::model::JointSide>& sides);

@@ -32,10 +32,11 @@ bool may_be_plain(const DimensionPowers& dimension) {
 
 class RelationReader {
 public:
-    RelationReader(const ReadContext& context, const std::vector<description::Parameter>& parameters, bool has_tolerances,
-                   std::set<std::string> names)
+    RelationReader(const ReadContext& context, const std::vector<description::Parameter>& parameters,
+                   const core::expression::Scope* choices, bool has_tolerances, std::set<std::string> names)
         : context_(context),
           parameters_(parameters),
+          choices_(choices),
           scope_(context.formulas.scope()),
           has_tolerances_(has_tolerances),
           names_(std::move(names)) {}
@@ -47,9 +48,9 @@ public:
         if (!node["lower"].exists() && !node["upper"].exists())
             node.fail(ErrorCode::missing_key, "a relation has `lower`, `upper` or both");
         if (!text) return std::nullopt;
-        const auto formula = read_formula(node["expression"], *text);
-        if (!formula) return std::nullopt;
         Relation relation;
+        const auto formula = read_formula(node["expression"], *text, relation);
+        if (!formula) return std::nullopt;
         relation.name = unique_name(name.value_or(*text), names_);
         relation.at = description::function_of(*formula, parameters_);
         relation.formula = formula;
@@ -60,7 +61,7 @@ public:
     }
 
 private:
-    std::optional<Formula> read_formula(const JsonNode& node, const std::string& text) const {
+    std::optional<Formula> read_formula(const JsonNode& node, const std::string& text, Relation& relation) const {
         Result<Formula> formula = core::expression::parse_formula(text, scope_);
         if (!formula) {
             for (const Error& error : formula.errors()) node.fail(error.code, error.message);
@@ -71,12 +72,29 @@ private:
             return std::nullopt;
         }
         if (!formula->is_constant()) return std::move(formula).value();
+        relation.by_choices = by_choices(text);
+        if (relation.by_choices) return std::move(formula).value();
         if (has_tolerances_ && !core::expression::names_in(text).empty())
             node.warn("no parameter changes this: `fettle tolerance` alone looks at it");
         else
             node.fail(ErrorCode::inconsistent,
                       "this names no parameter, and no variable that follows from one, so no design could change it");
         return std::nullopt;
+    }
+
+    // The text names no parameter. Nothing: no name in it follows from a choice, either.
+    std::optional<description::ChoiceFormula> by_choices(const std::string& text) const {
+        if (choices_ == nullptr) return std::nullopt;
+        description::ChoiceFormula out{text, *choices_};
+        const std::vector<std::string> names = core::expression::names_in(text);
+        std::erase_if(out.scope.names, [&](const auto& name) { return std::find(names.begin(), names.end(), name.name) == names.end(); });
+        const bool is_moved = std::any_of(out.scope.names.begin(), out.scope.names.end(),
+                                          [](const auto& name) { return !name.meaning || !name.meaning->is_constant(); });
+        if (!is_moved) return std::nullopt;
+        // What a meaning follows from is looked up by name, too.
+        for (const core::expression::Scope::Name& name : choices_->names)
+            if (!name.meaning && out.scope.find(name.name) == nullptr) out.scope.names.push_back(name);
+        return out;
     }
 
     RelationValue value_at_start(const JsonNode& node, const Relation& relation) const {
@@ -149,6 +167,7 @@ private:
 
     const ReadContext& context_;
     const std::vector<description::Parameter>& parameters_;
+    const core::expression::Scope* choices_;
     core::expression::Scope scope_;
     bool has_tolerances_;
     std::set<std::string> names_;
@@ -160,12 +179,13 @@ bool is_relation(const JsonNode& node) { return node.is_object() && node["type"]
 
 std::vector<Relation> read_relations(const JsonNode& node, const ReadContext& context,
                                      const std::vector<description::Parameter>& parameters,
-                                     const std::vector<description::Constraint>& others, bool has_tolerances) {
+                                     const std::vector<description::Constraint>& others, const core::expression::Scope* choices,
+                                     bool has_tolerances) {
     std::vector<Relation> result;
     if (!node.is_array()) return result;  // told where the other constraints are read
     std::set<std::string> names;
     for (const description::Constraint& other : others) names.insert(other.name);
-    RelationReader reader(context, parameters, has_tolerances, std::move(names));
+    RelationReader reader(context, parameters, choices, has_tolerances, std::move(names));
     for (const JsonNode& entry : node.elements()) {
         if (!is_relation(entry)) continue;
         if (auto relation = reader.read(entry)) result.push_back(std::move(*relation));

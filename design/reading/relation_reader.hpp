@@ -28,10 +28,13 @@ bool is_relation(const core::files::JsonNode& node);
 /// @param node        The list of all constraints; those of other types are passed over.
 /// @param parameters  As read.
 /// @param others      The other constraints: relations get names that none of them has.
+/// @param choices    The names of formulas where those of choices are no numbers (ChoiceReader::scope): a relation that no parameter
+/// changes, but choices do, is one too. Null: there are no choices.
 /// @param has_tolerances  What no parameter changes may be for `fettle tolerance`: it is left out with a warning, and is no fault.
 /// Faults go to the node's document.
 std::vector<description::Relation> read_relations(const core::files::JsonNode& node, const ReadContext& context,
                                                   const std::vector<description::Parameter>& parameters,
-                                                  const std::vector<description::Constraint>& others, bool has_tolerances);
+                                                  const std::vector<description::Constraint>& others,
+                                                  const core::expression::Scope* choices, bool has_tolerances);
 
 }  // namespace fettle::design::reading

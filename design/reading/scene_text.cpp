@@ -125,6 +125,13 @@ Result<std::string> scene_text(const DesignFile& file, const std::string& path, 
     if (!text) return text.errors();
     Json scene = Json::parse(*text);
     const Json design = Json::parse(file.text);
+    for (const description::Choice& choice : file.choices) {
+        const std::string& option = choice.options[static_cast<std::size_t>(choice.value)];
+        if (choice.is_ordered)
+            scene["variables"][choice.name] = Json::parse(option);
+        else
+            apply(design["choices"][choice.name]["options"][option], scene);
+    }
     apply(design, scene);
     if (!file.design.scenarios.empty()) {
         const Json& entry = entry_of(design["scenarios"], scenario);

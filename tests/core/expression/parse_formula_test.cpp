@@ -258,6 +258,20 @@ TEST_CASE("constant powers need no logarithm; what is not defined is not finite"
     CHECK(std::isnan(evaluate(parsed("sqrt(n - 1)"), p).value));
 }
 
+TEST_CASE("floor is of what no input changes, also through variables of variables") {
+    Scope scope;
+    const DimensionPowers number = powers_of(base::Dimension::number);
+    const base::Errors faults = define_variables({{"sun", "18"}, {"ring", "= sun + 2 * 17.5"}, {"third", "= floor((sun + ring) / 3)"}},
+                                                 scope, [&](const std::string& name, Formula formula) {
+                                                     return Scope::Name{name, number, std::move(formula)};
+                                                 });
+    CHECK(faults.empty());
+    const base::Result<Formula> formula = parse_formula("third + floor(ring / 2)", scope);
+    REQUIRE(formula);
+    CHECK(formula->is_constant());
+    CHECK(value_of<double>(*formula, {}) == 23 + 26);
+}
+
 TEST_CASE("every fault of a formula is reported with its place") {
     const Fault faults[] = {
         {"", ErrorCode::parse, "the formula ends"},

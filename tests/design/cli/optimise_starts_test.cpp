@@ -56,16 +56,16 @@ TEST_CASE("the best start meets the requirements, then is lowest; the first of e
     StartResult failed, unusable;
     failed.status = "failed";
     unusable.result = {{"constraint_violation", nullptr}, {"objective", nullptr}};
-    CHECK(!best_start({}));
-    CHECK(!best_start({failed, unusable}));
-    CHECK(best_start({failed, ended(0.5, 1), ended(0.2, 9), unusable}) == 2);
-    CHECK(best_start({ended(0.5, 1), ended(0, 9), ended(0, 8), ended(0, 8)}) == 2);
-    CHECK(best_start({ended(0, 3), ended(1e-9, 2)}) == 0);
+    CHECK(!best_run(std::vector<StartResult>{}));
+    CHECK(!best_run(std::vector<StartResult>{failed, unusable}));
+    CHECK(best_run(std::vector<StartResult>{failed, ended(0.5, 1), ended(0.2, 9), unusable}) == 2);
+    CHECK(best_run(std::vector<StartResult>{ended(0.5, 1), ended(0, 9), ended(0, 8), ended(0, 8)}) == 2);
+    CHECK(best_run(std::vector<StartResult>{ended(0, 3), ended(1e-9, 2)}) == 0);
     // With --repair the least change, not the least objective.
     StartResult near = ended(0, 9), far = ended(0, 1);
     near.result["repair"] = {{"distance", 0.1}};
     far.result["repair"] = {{"distance", 0.2}};
-    CHECK(best_start({far, near}) == 1);
+    CHECK(best_run(std::vector<StartResult>{far, near}) == 1);
 }
 
 TEST_CASE("the share of random starts that reach the best is told with its interval") {
