@@ -40,7 +40,11 @@ public:
                 continue;
             }
             const double worth = least_gain(evaluator_, options_, at_->objective);
-            if (step.decrease <= worth) return end("no change near by promises a gain above the tolerance");
+            if (step.decrease <= worth) {
+                if (!misses_what_it_could_meet(step)) return end("no change near by promises a gain above the tolerance");
+                penalty_ *= 10;
+                continue;
+            }
             if (step.step.lpNorm<Eigen::Infinity>() < least_radius())
                 return end("steps became so short that they change nothing that matters");
             take(step);
@@ -58,6 +62,22 @@ private:
         constexpr double nearly = 0.1, rounding = 1e-9;
         return options_.meets_requirements && at_->violation > 0 && step.step.lpNorm<Eigen::Infinity>() > rounding &&
                step.violation <= nearly * target_violation(evaluator_, *at_);
+    }
+
+    // The gain in the objective that the step trades for what is missed is below the tolerance, too: nothing speaks for it.
+    bool misses_what_it_could_meet(const QuadraticSolution& step) const {
+        if (!options_.meets_requirements || !(at_->violation > 0) || !(penalty_ < most_penalty)) return false;
+        const QuadraticSolution least = most_feasible_step();
+        return least.solved && restores(least) && least.violation < step.violation - 1e-9;
+    }
+
+    // The step by which the least is missed, whatever becomes of the objective.
+    QuadraticSolution most_feasible_step() const {
+        Evaluation feasibility = telling_;
+        feasibility.gradient.setZero();
+        feasibility.residual_jacobian.resize(0, point_.size());
+        feasibility.objective_branches = {};
+        return best_step(evaluator_, point_, feasibility, nullptr, radius_, 1);
     }
 
     double least_radius() const { return 0.03 * std::sqrt(options_.tolerance); }
@@ -82,11 +102,7 @@ private:
         const double now = target_violation(evaluator_, *at_);
         QuadraticSolution step = step_at_penalty(telling_);
         if (!step.solved || step.violation <= 1e-9) return step;
-        Evaluation feasibility = telling_;
-        feasibility.gradient.setZero();
-        feasibility.residual_jacobian.resize(0, point_.size());
-        feasibility.objective_branches = {};
-        const QuadraticSolution least = best_step(evaluator_, point_, feasibility, nullptr, radius_, 1);
+        const QuadraticSolution least = most_feasible_step();
         if (!least.solved) return step;
         while (now - step.violation < accepted_share * (now - least.violation) - 1e-9 && penalty_ < most_penalty) {
             penalty_ *= 10;

@@ -264,13 +264,14 @@ std::shared_ptr<const Quantity> event_time_from(const Members& q) {
     of.occurrence = q.get<int>("occurrence");
     of.from = q.get<std::optional<double>>("from_time");
     of.to = q.get<std::optional<double>>("to_time");
+    of.name = q.get<std::string>("name");
     return std::make_shared<EventTime>(std::move(of));
 }
 
 py::object event_time_to(const EventTime& q) {
     const EventTime::Of& of = q.of();
-    return record_class("EventTime")(quantity_to_python(of.series), threshold_to(of.threshold), of.direction, of.occurrence, of.from,
-                                     of.to);
+    return record_class("EventTime")(quantity_to_python(of.series), threshold_to(of.threshold), of.direction, of.occurrence, of.from, of.to,
+                                     of.name);
 }
 
 std::shared_ptr<const Quantity> value_at_from(const Members& q) {

@@ -109,6 +109,7 @@ public:
             search_from_many_places(seen, optimiser);
         else
             outcome_.report = optimisers::optimise(seen, optimiser, settings());
+        if (options_.seed != 0 && !options_.repair) begin_again(seen, optimiser);
         outcome_.replayed = outcome_.report.evaluations - computed_;
         has_ended_ = true;
         if (outcome_.report.untried.size() > 0) try_untried(seen);
@@ -214,6 +215,19 @@ private:
         optimisers::OptimiserOptions last = settings();
         last.negligible = negligible();
         go_on(seen, optimiser, last, design_.optimiser.max_evaluations - outcome_.report.evaluations);
+    }
+
+    // A random start may lie where nothing leads to what is required: in a clash, beyond a dead centre, where something never happens. What
+    // is left of the evaluations goes to others.
+    void begin_again(optimisers::Problem& seen, const optimisers::Optimiser& optimiser) {
+        constexpr int least = 20;  // worth a search
+        for (int k = 1; !outcome_.report.feasible && outcome_.report.status != optimisers::OptimiserStatus::interrupted; ++k) {
+            const int left = design_.optimiser.max_evaluations - outcome_.report.evaluations;
+            if (left < least) return;
+            narrate("from here nothing leads to what is required; on from another random place");
+            seen.start = later_start_of_seed(problem_, options_.seed, k);
+            if (!go_on(seen, optimiser, settings(), left)) return;
+        }
     }
 
     // What does not count of a sum of squares: its residuals are then a millionth of those at the start.

@@ -65,7 +65,8 @@ struct OptimiseOutcome : JudgedDesign {
 
 /// From a random start (a seed other than 0) a design in which no contact is possible, whose simulations are cheap, is searched again
 /// from other random places (later_start_of_seed) for as long as `max_evaluations` leaves evaluations, and three searches have not ended
-/// with the same objective; the best search counts.
+/// with the same objective; the best search counts. Where a search from a random start meets no design that does what is required, others
+/// follow from other random places, while there are evaluations left.
 /// The design on the sides that its joints say; those of the seed are problem_of_seed's (starting_sides.hpp).
 /// Deterministic: the same design and options give the same sequence of evaluations, bit for bit.
 /// Errors: the optimiser's name.

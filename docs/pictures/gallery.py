@@ -9,7 +9,7 @@ import sys
 
 VIEWS = {"geneva": "top", "gear_pair": "top", "cam_follower": "top", "ratchet": "top", "detent_hinge": "top", "lock_box": "iso",
          "toggle_clamp": "top", "cabinet_latch": "top",
-         "planetary": "top", "scotch_yoke": "top", "stl_housing": "top", "slider_crank": "top", "four_bar": "front"}
+         "planetary": "top", "quick_return": "top", "scotch_yoke": "top", "stl_housing": "top", "slider_crank": "top", "four_bar": "front"}
 PICTURES = [f"examples/{name}/{when}.png" for name in VIEWS for when in ("before", "after")]
 
 

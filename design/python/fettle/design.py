@@ -363,6 +363,7 @@ class EventTime(Record, Measured):
     occurrence: int = 1  #: 1: the first crossing in this direction, 2: the second, -1: the last
     from_time: Optional[Number] = number("time", None)  #: only crossings from here on
     to_time: Optional[Number] = number("time", None)
+    name: str = "the quantity"  #: what messages call what crosses
 
 
 @dataclasses.dataclass(eq=False, repr=False, slots=True)

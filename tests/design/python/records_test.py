@@ -49,7 +49,7 @@ def test_a_design_through_python_has_the_same_bits(path):
     text, answer = fettle_for_tests.evaluate_file(str(path), 3), fettle.DesignProblem(_short(direct, 3))
     at = answer.evaluate(answer.values)
     assert at.reason == text[0]
-    assert at.objective == text[1]
+    assert np.array_equal([at.objective], [text[1]], equal_nan=True)  # not a number: an event that three steps do not reach
     assert np.array_equal(at.gradient, text[2])
 
 

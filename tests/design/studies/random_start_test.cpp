@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "design/studies/optimise_design.hpp"
+#include "tests/design/gradient_audit/density_design.hpp"
 #include "tests/design/small_problem.hpp"
 
 namespace fettle::design::studies::random_start_test {
@@ -91,6 +93,41 @@ TEST_CASE("later starts of a seed are other ones, every other near the values as
             CHECK(std::abs(start[static_cast<Eigen::Index>(i)] - parameters[i].value) <=
                   0.25 * (parameters[i].upper - parameters[i].lower));
     }
+}
+
+TEST_CASE("a random start from which nothing leads to what is required is followed by another") {
+    using fettle::tests::design_support::OfDensities;
+    // The requirement is met above 0.3, and says nothing of where that is below 0.2; below -0.1 it cannot even be measured.
+    const auto required = [](const VectorX& u) { return u[0] < -0.1 ? std::nan("") : u[0] < 0.2 ? -1 : u[0] - 0.3; };
+    const auto slope = [](const VectorX& u) { return VectorX(VectorX::Constant(1, u[0] < 0.2 ? 0 : 1)); };
+    const auto beyond = [](const VectorX& u) { return std::max(0.0, u[0] - 0.3); };
+    const auto objective = std::make_shared<OfDensities>([=](const VectorX& u) { return 2 + beyond(u) * beyond(u); },
+                                                         [=](const VectorX& u) { return VectorX(VectorX::Constant(1, 2 * beyond(u))); });
+    description::Design design =
+        fettle::tests::design_support::density_problem(1, {objective, std::make_shared<OfDensities>(required, slope)}).design();
+    design.constraints[0].bounds.lower = 0;
+    const auto problem = problem::DesignProblem::create(std::move(design));
+    REQUIRE(problem);
+    int flat = 0, unmeasured = 0;
+    for (const std::uint64_t seed : seeds_of_list(1, 20)) {
+        const double u = (start_of_seed(*problem, seed)[0] - 1000) / 1000;
+        const Result<OptimiseOutcome> found = optimise_design(*problem, {.seed = seed});
+        REQUIRE(found);
+        INFO("seed " << seed << " begins at " << u << ": " << found->report.message);
+        if (seed == 0) {
+            CHECK_FALSE(found->report.feasible);  // the design's own start is the user's
+            continue;
+        }
+        flat += u < 0.2 && u >= -0.1;
+        unmeasured += u < -0.1;
+        CHECK(found->report.feasible);
+        CHECK(found->report.point[0] == Approx(1300).epsilon(0.01));
+        CHECK(found->report.evaluations <= problem->design().optimiser.max_evaluations);
+        const Result<OptimiseOutcome> again = optimise_design(*problem, {.seed = seed});
+        CHECK(again->report.point == found->report.point);
+    }
+    CHECK(flat > 3);
+    CHECK(unmeasured > 1);
 }
 
 TEST_CASE("lists of seeds begin with the design's own start and share nothing else") {
