@@ -146,7 +146,8 @@ Result<ChoicesTried> try_choices(const reading::DesignFile& file, const ChoicesR
 }
 
 std::string choices_heading(const reading::DesignFile& file, const ChoicesTried& tried) {
-    const std::string count = core::base::counted(tried.runs.size(), "combination");
+    const auto ended = std::count_if(tried.runs.begin(), tried.runs.end(), [](const ChoiceResult& run) { return run.status != "not run"; });
+    const std::string count = core::base::counted(static_cast<std::size_t>(ended), "combination");
     if (!tried.best) return "none of the " + count + " tried gave a design";
     std::string text = (tried.was_stopped ? "the best so far, of " : "best of the ") + count + " tried, " +
                        description::text_of(file.choices, tried.runs[*tried.best].combination);

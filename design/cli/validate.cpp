@@ -25,6 +25,7 @@
 #include "design/problem/buildable.hpp"
 #include "design/problem/design_problem.hpp"
 #include "design/reading/design_reader.hpp"
+#include "design/studies/choice_search.hpp"
 
 namespace fettle::design::cli {
 
@@ -164,6 +165,29 @@ Verdict validate_trajectory(const std::string& path) {
     return verdict;
 }
 
+// "  choices: material PLA (PLA, POM), teeth 15 (11 to 20); the relations allow 18 of 20 combinations"
+void add_choices(const LoadedModel& loaded, Verdict& verdict) {
+    if (loaded.choices.empty()) return;
+    Json json = Json::object();
+    std::string text;
+    for (const description::Choice& choice : loaded.choices) {
+        const std::string& value = choice.options[static_cast<std::size_t>(choice.value)];
+        json[choice.name] = {{"value", value}, {"options", choice.options}};
+        const bool is_range = choice.is_ordered && choice.options.size() > 3;
+        text += (text.empty() ? "  choices: " : ", ") + choice.name + " " + value + " (" +
+                (is_range ? choice.options.front() + " to " + choice.options.back() : core::base::joined(choice.options)) + ")";
+    }
+    const long long all = description::combination_count(loaded.choices);
+    const auto search = studies::ChoiceSearch::create(loaded.choices, loaded.conditions, 1);
+    for (const Error& error : search.errors()) verdict.warnings.push_back("choices: " + error.message);
+    verdict.facts["choices"] = std::move(json);
+    verdict.facts["combinations"] = all;
+    verdict.facts["allowed_combinations"] = search ? Json(search->allowed()) : Json();
+    if (search && static_cast<long long>(search->allowed()) != all)
+        text += "; the relations allow " + std::to_string(search->allowed()) + " of " + std::to_string(all) + " combinations";
+    verdict.text += text + "\n";
+}
+
 Verdict validate_model(const std::string& path, FileKind kind, const CommonOptions& common) {
     Verdict verdict;
     begin_to_read(path);
@@ -185,6 +209,7 @@ Verdict validate_model(const std::string& path, FileKind kind, const CommonOptio
     names = Json::array();
     for (const auto& relation : design.relations) names.push_back(relation.name);
     verdict.facts["relations"] = names;
+    add_choices(*loaded, verdict);
     for (std::string& line : problem::described(design, problem::try_bounds(*loaded->problem))) {
         verdict.warnings.push_back("bounds: " + line);
     }

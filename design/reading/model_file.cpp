@@ -173,6 +173,8 @@ Result<LoadedModel> loaded_design(DesignFile file, const VectorX& values, const 
     loaded.kind = FileKind::design;
     loaded.scene_path = file.scene_path;
     loaded.warnings = file.warnings;
+    loaded.choices = file.choices;
+    loaded.conditions = file.conditions;
     Result<problem::DesignProblem> problem = problem::DesignProblem::create(std::move(file.design));
     if (!problem) return problem.errors();
     Result<core::model::Model> model = problem->model_at(values, *scenario);

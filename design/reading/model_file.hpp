@@ -44,6 +44,8 @@ struct LoadedModel {
     int steps = -1;
     std::vector<std::string> warnings;                      ///< of the files, the meshes and the start
     std::shared_ptr<const problem::DesignProblem> problem;  ///< of a design; else null
+    std::vector<description::Choice> choices = {};          ///< of a design
+    std::vector<description::ChoiceCondition> conditions = {};
 };
 
 /// From a scene, or from a design at its parameters' values, in one of its scenarios. Errors: a file that is neither (a mesh, a table,

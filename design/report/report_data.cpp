@@ -63,6 +63,14 @@ void add_optimisation(Json& data, const ReportSource& source) {
     if (starts.is_array())
         data["notices"].push_back("The best of " + std::to_string(starts.size()) + " starts, seed " +
                                   core::files::dumped(member(result, "seed")) + "; the table of starts has all.");
+    const Json choices = member(result, "choices"), best = member(choices, "best");
+    if (best.is_object()) {
+        std::string options;
+        for (const auto& [name, option] : best.items())
+            options += ", " + name + " " + (option.is_string() ? option.get<std::string>() : core::files::dumped(option));
+        data["notices"].push_back("The best of " + std::to_string(member(choices, "tried").size()) + " combinations" + options +
+                                  "; result.json has all.");
+    }
     data["optimality"] = optimality.is_object() ? Json{{"worth", member(optimality, "worth")}} : Json();
 }
 

@@ -73,6 +73,17 @@ TEST_CASE("optimise keeps to the options that the design has where it is told to
     CHECK(few.says("; not all its neighbours were tried (--combinations)"));
 }
 
+TEST_CASE("validate lists the choices of a design, and how many combinations its relations allow") {
+    const ChoiceFolder folder;
+    const Answer text = run("validate " + folder.design());
+    CHECK(text.code == 0);
+    CHECK(text.says("choices: material PLA (PLA, POM), teeth 15 (11 to 20); the relations allow 18 of 20 combinations"));
+    const Json json = run("validate " + folder.design() + " --json").json();
+    CHECK(json.at("choices").at("teeth").at("value") == "15");
+    CHECK(json.at("combinations") == 20);
+    CHECK(json.at("allowed_combinations") == 18);
+}
+
 TEST_CASE("optimise says which relation leaves no combination") {
     const ChoiceFolder folder(fettle::tests::support::replaced(choice_design, "\"lower\": 0.01", "\"lower\": 1000"));
     const Answer answer = run("optimise " + folder.design() + " --out " + folder.file("out"), true);
