@@ -157,7 +157,7 @@ std::string choices_heading(const reading::DesignFile& file, const ChoicesTried&
                     ? ": there are no others"
                     : formatted(": the others of %lld break a relation", tried.combinations);
     } else {
-        text += tried.is_local ? "; all its neighbours are worse" : "; not all its neighbours were tried (--combinations)";
+        text += tried.is_local ? "; none of its neighbours is better" : "; not all its neighbours were tried (--combinations)";
     }
     return text;
 }
@@ -191,7 +191,7 @@ Json choices_json(const reading::DesignFile& file, const ChoicesTried& tried) {
             {"combinations", tried.combinations},
             {"allowed", tried.allowed},
             {"are_all_tried", tried.are_all},
-            {"are_neighbours_worse", tried.are_all || tried.is_local},
+            {"no_neighbour_is_better", tried.are_all || tried.is_local},
             {"tried", std::move(rows)}};
 }
 

@@ -40,7 +40,7 @@ struct ChoicesRequest {
 Result<ChoicesTried> try_choices(const reading::DesignFile& file, const ChoicesRequest& request, const RunSettings& settings,
                                  const CommonOptions& common, Console& console);
 
-/// "best of the 34 combinations tried, slots 6: all its neighbours are worse"
+/// "best of the 34 combinations tried, slots 6; none of its neighbours is better"
 std::string choices_heading(const reading::DesignFile& file, const ChoicesTried& tried);
 /// The table, best first, for people, and as JSON (`choices`: docs/interface.md).
 std::string choices_text(const ChoicesTried& tried);

@@ -92,9 +92,10 @@ std::optional<std::vector<double>> ChoiceReader::numbers_of(const JsonNode& node
         node["to"].fail(ErrorCode::inconsistent, "`to` is below `from`");
         return std::nullopt;
     }
-    if ((*to - *from) / step >= most_options) return too_many();
+    const int last = (*to - *from) / step;
+    if (last >= most_options) return too_many();
     std::vector<double> numbers;
-    for (int number = *from; number <= *to; number += step) numbers.push_back(number);
+    for (int k = 0; k <= last; ++k) numbers.push_back(*from + static_cast<double>(k) * step);
     return numbers;
 }
 
@@ -180,7 +181,10 @@ void ChoiceReader::take_variable(Choice& choice, const std::string& name, Variab
 }
 
 void ChoiceReader::apply(JsonDocument& scene) {
-    for (const std::string& name : numbers_) scene.replace(std::string(variables_place) + name, chosen_->root()["choices"][name]["value"]);
+    for (const std::string& name : numbers_) {
+        const std::string place = (nlohmann::json::json_pointer("/variables") / name).to_string();
+        scene.replace(place, chosen_->root()["choices"][name]["value"]);
+    }
     for (const Set& set : sets_)
         if (const std::string fault = scene.replace(set.pointer, set.value); !fault.empty()) set.value.fail(ErrorCode::unknown_key, fault);
 }

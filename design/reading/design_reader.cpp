@@ -67,6 +67,7 @@ public:
         file_.choices = choices_->choices();
         DesignFormulas formulas(document_, to_si(1, file_.length_unit), core::scene_files::variables_of(*scene));
         design_.parameters = read_parameters(root.require("parameters"), formulas.scene_variables(), file_.length_unit);
+        refuse_choices_among(design_.parameters, root["choices"]);
         std::vector<description::Parameter> as_made = design_.parameters;
         const ToleranceUnits units{file_.length_unit, read_processes(root["process"])};
         if (units.processes.is_missing) return all_errors();  // each feature would ask for it
@@ -133,6 +134,14 @@ private:
         return std::all_of(errors.begin(), errors.end(), [](const Error& error) {
             return error.code == ErrorCode::inconsistent || error.code == ErrorCode::out_of_range || error.code == ErrorCode::unsupported;
         });
+    }
+
+    // A number cannot be both.
+    void refuse_choices_among(const std::vector<description::Parameter>& parameters, const JsonNode& node) const {
+        for (const description::Choice& choice : file_.choices)
+            for (const description::Parameter& parameter : parameters)
+                if (choice.variables.count(parameter.name) > 0)
+                    node[choice.name].fail(ErrorCode::inconsistent, "`" + parameter.name + "` is a parameter already");
     }
 
     // Nothing: there are no choices, or a document cannot be read a second time.

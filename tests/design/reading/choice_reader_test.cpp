@@ -140,6 +140,10 @@ TEST_CASE("what is wrong with choices is told at its place") {
         fault(replaced(choice_design, R"(/bodies/wheel/density": 1240)", R"(/bodies/weel/density": 1240)")).find("has no element `weel`") !=
         std::string::npos);
     CHECK(fault(replaced(choice_design, R"("options": {)", R"("value": "ABS", "options": {)")).find("#/choices/material/value") == 0);
+    CHECK(fault(with_teeth(R"({ "from": 0, "to": 2147483647, "step": 2147483647 })")) != "none");  // no such gear
+    const std::string width = replaced(choice_design, R"("choices": {)", R"("choices": { "both": { "options": {
+        "one": { "set": { "/variables/width": "6mm" } }, "other": { "set": { "/variables/width": "7mm" } } } },)");
+    CHECK(fault(width).find("#/choices/both `width` is a parameter already") == 0);
     // A number of teeth that the part does not have, found in the scene.
     CHECK(fault(with_teeth(R"({ "values": [2] })")) != "none");
 }
